@@ -1,7 +1,7 @@
 """Measure ``multibot build`` on 100 robots with Nav2's full set, against other ways, in one run.
 
 python benchmarks/bench_build.py            print the table
-python benchmarks/bench_build.py --write    and put it into docs/benchmark-build.md
+python benchmarks/bench_build.py --write    and put it into docs/measurements.md
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import yaml
+from one_page import write_section
 from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired, seconds, table
 from robots import robot
 
@@ -31,7 +32,6 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmark-build.md"
 ROBOTS = 100
 LINKS = 12
 HEAD = "layout: frames-per-robot\naffix: prefix\nstack: nav2\ndescription: rover.urdf\n"
@@ -288,7 +288,7 @@ def main(arguments: list[str]) -> None:
     text = page()
     print(text)
     if "--write" in arguments:
-        PAGE.write_text(text)
+        write_section(text)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Measure the checking of a live graph, with real nodes on this machine, in one run.
 
 python benchmarks/bench_graph.py            print the table
-python benchmarks/bench_graph.py --write    and put it into docs/benchmark-graph.md
+python benchmarks/bench_graph.py --write    and put it into docs/measurements.md
 
 Needs rclpy and zenoh (pip install '.[test]').
 """
@@ -25,10 +25,10 @@ from typing import Any, NamedTuple
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 import live_fleet  # the nodes of the tests
 import zenoh_robots  # and its sessions
+from one_page import write_section
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.check import check
@@ -49,7 +49,6 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmark-graph.md"
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check"]
 TYPES = ("String", "Empty")
 LIVE_RUNS = 3
@@ -397,7 +396,7 @@ def main() -> None:
             "waiting times and memory are medians, CPU times the least of all runs.\n"
             f"{where}; a shared machine, so a digit more or less is noise.\n{busy(load)}\n"
         )
-        write_all([(str(PAGE), (head + text + NOTE).encode())])
+        write_section(head + text + NOTE)
 
 
 NOTE = """

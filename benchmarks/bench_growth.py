@@ -1,7 +1,7 @@
 """Measure how the cost of a rewrite and of the lint grows: what twice as much costs, in CPU time.
 
 python benchmarks/bench_growth.py            print the table
-python benchmarks/bench_growth.py --write    and put it into docs/benchmark-growth.md
+python benchmarks/bench_growth.py --write    and put it into docs/measurements.md
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from lxml import etree
+from one_page import write_section
 
 from multibot_rewrite import MultibotError, rewrite
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.settings import Settings
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "benchmark-growth.md"
 # The tests count steps of the same descriptions.
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from growing import GROWING, description  # noqa: E402
@@ -92,7 +92,7 @@ def main() -> None:
         sys.stdout.write(row)
         sys.stdout.flush()
     if "--write" in sys.argv:
-        PAGE.write_text("".join(made))
+        write_section("".join(made))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Measure the lint against its floor and other linters: ratios and files a second, in one run.
 
 python benchmarks/bench_lint.py            print the tables
-python benchmarks/bench_lint.py --write    and put them into docs/benchmark-lint.md
+python benchmarks/bench_lint.py --write    and put them into docs/measurements.md
 
 check_urdf (liburdfdom-tools), ign (ignition-tools, libsdformat-dev), urdf_validate (pip install
 urdf-validator), linkforge (pip install linkforge-core) and simcheck are measured where they are on the
@@ -26,6 +26,7 @@ from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from lxml import etree
+from one_page import write_section
 from pairs import HOW, MACHINE, Job, Row, as_installed, child, least_seconds, paired, seconds, table
 from public_files import PublicFiles, public_files
 from robots import robot
@@ -34,7 +35,6 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.settings import Settings
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmark-lint.md"
 FILES = 1000
 # Files of which nothing changed.
 UNCHANGED = 500
@@ -294,7 +294,7 @@ def main(arguments: list[str]) -> None:
     if "--write" in arguments:
         made = f"Made by `python benchmarks/bench_lint.py --write` in one run: {HOW}."
         where = f"{MACHINE}, lxml {etree.__version__}. Public files: {public.source}."
-        PAGE.write_text(f"# Benchmark of the lint\n\n{made}\n{where}\n\n{text}\n{NOTES}")
+        write_section(f"# Benchmark of the lint\n\n{made}\n{where}\n\n{text}\n{NOTES}")
 
 
 if __name__ == "__main__":

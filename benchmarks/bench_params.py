@@ -1,7 +1,7 @@
 """Measure parameter files against other ways to namespace them: ratios, taken in pairs in one run.
 
 python benchmarks/bench_params.py [FILE]            print the table
-python benchmarks/bench_params.py [FILE] --write    and put it into docs/benchmark-params.md
+python benchmarks/bench_params.py [FILE] --write    and put it into docs/measurements.md
 
 FILE is a Nav2 parameter file; without one, Nav2's own is looked for in the corpus.
 """
@@ -16,6 +16,7 @@ from functools import partial
 from pathlib import Path
 
 import yaml
+from one_page import write_section
 from pairs import HOW, MACHINE, Row, paired, seconds, table
 
 from multibot_rewrite.base.naming import make_naming
@@ -27,7 +28,6 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "benchmark-params.md"
 NAV2 = "nav2_params/ros-navigation+navigation2/nav2_bringup__params__nav2_params.yaml"
 FILE = ROOT.parent / "shared" / "corpus" / NAV2
 DECLARED: dict[str, dict[str, None]] = {
@@ -113,7 +113,7 @@ def main(arguments: list[str]) -> None:
     text = page(path.read_bytes())
     print(text)
     if "--write" in arguments:
-        PAGE.write_text(text)
+        write_section(text)
 
 
 if __name__ == "__main__":

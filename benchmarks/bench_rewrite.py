@@ -1,7 +1,7 @@
 """Measure the rewrite against its floors: ratios of CPU time, all taken in one run.
 
 python benchmarks/bench_rewrite.py                    print the tables
-python benchmarks/bench_rewrite.py --write            and put them into docs/benchmark.md
+python benchmarks/bench_rewrite.py --write            and put them into docs/measurements.md
 python benchmarks/bench_rewrite.py --files FOLDER     with public URDFs of one's own
 
 Without a folder the public files are those of the corpus beside the repository or, where there is none,
@@ -25,6 +25,7 @@ from functools import partial
 from pathlib import Path
 
 from lxml import etree
+from one_page import write_section
 from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired, seconds, table
 from public_files import PublicFiles, public_files
 from robots import robot
@@ -41,7 +42,6 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.plan import make_plan
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmark.md"
 ATTRIBUTES = {"name", "link", "joint", "reference"}
 FLEET = 1000
 MORE = 100
@@ -302,7 +302,7 @@ def main(arguments: list[str]) -> None:
         made = f"Made by `python benchmarks/bench_rewrite.py --write` in one run: {HOW}."
         where = f"{MACHINE}, lxml {etree.__version__}. Public files: {public.source}."
         note = NOTE.format(FLEET=FLEET, MORE=MORE)
-        PAGE.write_text(f"# Benchmark\n\n{made}\n{where}\n\n{text}{note}")
+        write_section(f"# Benchmark of the rewrite\n\n{made}\n{where}\n\n{text}{note}")
 
 
 if __name__ == "__main__":

@@ -18,15 +18,28 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 NEWEST_LTS = "lyrical"
 VARIABLE = "ROS_DISTRO"
+# Those that have ended -> the next one that is known.
+ENDED = {"foxy": "humble", "galactic": "humble", "iron": "jazzy"}
+_INSTALLED = "/opt/ros/"
+# The last release with Gazebo Classic and with the names of Ignition (REP 2000; gazebosim.org/docs,
+# "Installing Gazebo with ROS"): its libraries, and names that only later ones have.
+OF_OLD = "humble"
+_OLD_WORDS = (b"libgazebo_", b"ignition-", b"ign_ros2_control")
+_OLD = lazy_compile(
+    rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
+)
+_NEW = lazy_compile(rb"gz-sim|gz::sim|gz_ros2_control")
+_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:
-    """The release that is asked for, else that of ROS_DISTRO, else the newest LTS.
+    """The release that is asked for, else that of ROS_DISTRO, else of the ROS that is sourced, else the
+    newest LTS.
 
     Raises UsageError for a release that is not known.
     """
-    found = given or environment.get(VARIABLE, "") or NEWEST_LTS
+    found = given or environment.get(VARIABLE, "") or _sourced(environment) or NEWEST_LTS
     if found in RELEASES:
         return found
     known = f"known are {', '.join(RELEASES)}"
@@ -37,14 +50,66 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
+def told_release(given: str, environment: Mapping[str, str]) -> str:
+    """As ``chosen_release``, for what one description needs: the release that is asked for, else that
+    of ROS_DISTRO, else of the ROS that is sourced; empty where none of them is known."""
+    if given:
+        return chosen_release(given, environment)
+    found = environment.get(VARIABLE, "") or _sourced(environment)
+    known = ENDED.get(found, found)
+    return known if known in RELEASES else ""
+
+
+def _sourced(environment: Mapping[str, str]) -> str:
+    """The release of the first folder of an installed ROS among those that are sourced."""
+    paths = environment.get("AMENT_PREFIX_PATH", "").split(":")
+    names = (it.removeprefix(_INSTALLED) for it in paths if it.startswith(_INSTALLED))
+    return next((it for it in names if it in RELEASES), "")
+
+
+def unusual_release(given: str, environment: Mapping[str, str]) -> str:
+    """A warning about a ROS_DISTRO that is not known or has ended; empty for any other."""
+    found = environment.get(VARIABLE, "")
+    if given or not found or found in RELEASES:
+        return ""
+    what = "has ended" if found in ENDED else "is not known"
+    other = f"the facts are those of {ENDED[found]}; " if found in ENDED else ""
+    return f"{VARIABLE} is {found!r}, which {what}: {other}name another release with --distro"
+
+
+def release_of(told: str, text: bytes) -> str:
+    """The release that was told, else the newest that has what a description loads."""
+    return told or (OF_OLD if evidence(text) else NEWEST_LTS)
+
+
+def evidence(text: bytes) -> str:
+    """What says that a description is for ``OF_OLD`` or earlier: the name of a library; empty for one
+    that may be for any release."""
+    if not any(it in text for it in _OLD_WORDS):
+        return ""
+    text = _COMMENT.sub(b"", text)
+    found = None if _NEW.search(text) else _OLD.search(text)
+    return found[1].decode() if found else ""
+
+
 def release_here(given: str | None = None) -> str:
     """``chosen_release`` with this process's environment: for commands and public calls alone."""
     return chosen_release(given or "", os.environ)
 
 
-def facts_of_release(release: str) -> str:
-    """The end of a summary: which release it is for; nothing where that is not known."""
-    return f" (ROS 2 {release})" if release else ""
+def release_told(given: str | None = None) -> str:
+    """``told_release`` with this process's environment: for commands and calls about a description."""
+    return told_release(given or "", os.environ)
+
+
+def release_doubt(given: str | None = None) -> str:
+    """``unusual_release`` with this process's environment."""
+    return unusual_release(given or "", os.environ)
+
+
+def facts_of_release(release: str, why: str = "") -> str:
+    """The end of a summary: which release it is for, and why; nothing where that is not known."""
+    return f" (ROS 2 {release}{why and f': it loads {why}'})" if release else ""
 
 
 def has_release(words: str, release: str) -> bool:

@@ -34,3 +34,8 @@ def unique(names: Iterable[str]) -> tuple[str, ...]:
 def only(names: Sequence[str]) -> str:
     """The one name; empty where there are several, or none."""
     return names[0] if len(names) == 1 else ""
+
+
+def plural(count: int, word: str) -> str:
+    """A number with the word for what is counted."""
+    return f"{count} {word}{'s' * (count != 1)}"

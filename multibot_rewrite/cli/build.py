@@ -9,8 +9,8 @@ from contextlib import suppress
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.fleet import note_interfaces, words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say

@@ -11,12 +11,19 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
-from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
+from multibot_rewrite.cli.report import (
+    TEXT,
+    About,
+    check_report,
+    chosen,
+    counted_findings,
+    report_first,
+)
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
@@ -168,7 +175,7 @@ def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Findi
 def _sum_up(
     options: argparse.Namespace, plan: System, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
-    counted = f"{plural(len(plan.robots), 'robot')}, {plural(len(findings), 'finding')}"
+    counted = f"{plural(len(plan.robots), 'robot')}, {counted_findings(findings)}"
     note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")
 
 

@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import facts_of_release, release_here
-from multibot_rewrite.base.wording import clip
+from multibot_rewrite.base.wording import clip, plural
 from multibot_rewrite.cli.output import deliver, say, watched
 from multibot_rewrite.cli.parser import UNUSABLE
 from multibot_rewrite.cli.process import DONE, PROGRAM

@@ -14,9 +14,9 @@ from typing import TypeVar
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS, find_layout
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
 from multibot_rewrite.base.rosnames import check_robot_names
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import plain_words, xacro_args

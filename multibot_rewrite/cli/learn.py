@@ -7,8 +7,8 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM

@@ -12,8 +12,13 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.shared import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.releases import (
+    facts_of_release,
+    release_doubt,
+    release_of,
+    release_told,
+)
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import (
     detail,
     note,
@@ -54,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
     check_use(options)
     config = configured(".", options.config)
-    release = release_here(options.distro or config.distro)
+    asked = options.distro or config.distro
+    if doubt := release_doubt(asked):
+        note(options, f"warning: {doubt}")
+    release = release_of(release_told(asked), b"")
     config = with_options(config, **given(options), distro=release)
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)
@@ -218,8 +226,7 @@ def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | 
     if options.no_cache or options.trust:
         yield None
         return
-    from multibot_rewrite.lint.cache.cache import Cache, cache_folder
-    from multibot_rewrite.lint.cache.identity import identity
+    from multibot_rewrite.lint.cache.cache import Cache, cache_folder, identity
 
     try:
         cache = Cache(cache_folder(), identity(settings))

@@ -13,13 +13,13 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
-from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.environment import settings
+from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, NO_MORE, questions
 from multibot_rewrite.system.records import System, answering
 

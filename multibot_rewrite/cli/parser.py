@@ -206,10 +206,10 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     if other := other_words.OPTIONS.get(wrong):
         return f"unknown option {wrong}; use {other}"
     # Dashes are in all of them: compared with these, every short word is like every other.
-    words = {name.lstrip("-"): name for name in known if name.startswith("--")}
-    near = nearest(wrong.lstrip("-"), words, CHOICE)
+    full = {name.lstrip("-"): name for name in known if name.startswith("--")}
+    near = nearest(wrong.lstrip("-"), full, CHOICE)
     return (
-        f"unknown option {wrong}; did you mean '{words[near]}'?"
+        f"unknown option {wrong}; did you mean '{full[near]}'?"
         if near
         else f"unknown option {wrong}"
     )

@@ -8,8 +8,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY

@@ -8,12 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.codes import check_codes
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
 TEXT = "text"
@@ -28,6 +29,12 @@ class About(NamedTuple):
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
     release: str = ""
+
+
+def counted_findings(findings: Sequence[Finding]) -> str:
+    """How many there are; notes are called so, since with them nothing is wrong."""
+    only_notes = findings and all(it.level == NOTE for it in findings)
+    return plural(len(findings), "note" if only_notes else "finding")
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:

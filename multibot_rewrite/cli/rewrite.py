@@ -9,8 +9,13 @@ from itertools import chain
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.naming import SEPARATORS
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.releases import (
+    evidence,
+    facts_of_release,
+    release_doubt,
+    release_told,
+)
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
@@ -67,6 +72,8 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     file, given = input_name(options), rewriting(options)
+    if doubt := release_doubt(options.distro):
+        tell(options, f"warning: {doubt}")
     rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
@@ -81,7 +88,8 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
     deliver(options, results, changes, len(names))
-    tell(options, summary(first, names, _own_arguments(options, names)))
+    why = "" if release_told(options.distro) else evidence(first.prepared.job.data)
+    tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
 
 
@@ -110,9 +118,9 @@ def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
     return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
 
 
-def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
-    """One line: how many names of each kind were renamed, and how many the xacro's own arguments
-    have named."""
+def summary(first: Rewrite, robots: list[str], own_arguments: str = "", loads: str = "") -> str:
+    """One line: how many names of each kind were renamed, how many the xacro's own arguments have
+    named, and the release with what it ``loads`` that says so."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
@@ -127,5 +135,5 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
     end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
-    end += facts_of_release(first.distro)
+    end += facts_of_release(first.distro, loads)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import check_unread, deliver, input_name, is_stopped, tell
 from multibot_rewrite.cli.usage import rewriting

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
@@ -19,6 +18,7 @@ from multibot_rewrite.cli.report import (
     by_themselves,
     check_report,
     chosen,
+    counted_findings,
     report_first,
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -82,7 +82,7 @@ def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if failed else inconclusive
     _write(options, seen, findings, _outcome(verdict, unsure))
-    return _sum_up(options, len(findings), verdict)
+    return _sum_up(options, findings, verdict)
 
 
 def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
@@ -114,8 +114,8 @@ def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Fin
     return report_first(options, findings, about)
 
 
-def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
-    note(options, f"{plural(findings, 'finding')}: {WORDS[verdict]}")
+def _sum_up(options: argparse.Namespace, findings: Sequence[Finding], verdict: Verdict) -> int:
+    note(options, f"{counted_findings(findings)}: {WORDS[verdict]}")
     return live.CODES[verdict]
 
 
@@ -128,7 +128,7 @@ def _watch(options: argparse.Namespace) -> int:
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
     _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
-    return _sum_up(options, len(last.findings), final(last))
+    return _sum_up(options, last.findings, final(last))
 
 
 def _look(graph: System) -> tuple[System, Sequence[Finding]]:

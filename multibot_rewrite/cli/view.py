@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args

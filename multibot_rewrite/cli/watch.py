@@ -8,7 +8,7 @@ from contextlib import ExitStack, closing, contextmanager
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found

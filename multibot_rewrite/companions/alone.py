@@ -20,8 +20,7 @@ from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.rviz.read import read_rviz
-from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
+from multibot_rewrite.companions.rviz.rewrite import read_rviz, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.template import FileTemplate, fill_template

@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, make_naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import unread_arguments
@@ -130,7 +130,7 @@ def rewrite(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    release = release_here(distro)
+    release = release_told(distro)
     job = read_job(
         source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
     )
@@ -168,11 +168,12 @@ def rewrite_all(
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
     read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
-    ROS_DISTRO, else the newest LTS). Raises as ``rewrite`` does, before the first result.
+    ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS). Raises as
+    ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro))
     jobs = read_jobs(names, source, naming, *given)
     return rewrite_jobs(jobs, again)
 
@@ -239,7 +240,7 @@ def explain(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    release = release_here(distro)
+    release = release_told(distro)
     job = read_job(
         source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
     )
@@ -283,7 +284,7 @@ def strip(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    before, release = b"", release_here(distro)
+    before, release = b"", release_told(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
         of = read_job(

@@ -10,10 +10,10 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.rosnames import check_robot_names
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.companions.alone import kind_alone, rewrite_alone
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import read_named

@@ -40,7 +40,6 @@ HOMES: tuple[Home, ...] = (
         (
             "companions.rviz.window_checks",
             "companions.rviz.bridged",
-            "companions.rviz.display_checks",
         ),
     ),
     Home("MF5", "bridges", ("fleet.outputs.bridge_outputs",)),

@@ -39,7 +39,7 @@ from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import Place
 
 # What a program refuses or leaves out: references, what is missing, names that ROS refuses.
-_REFUSED = ("MB1", "MB2", "MB312")
+_REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
 # What Gazebo leaves out, or a plugin does not find there.
 _LEFT_OUT = ("MB211", "MB603", "MB610")
 # Names that are like one that the node has, and values of another type.

@@ -51,7 +51,8 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         column,
         tuple(_call_text(subject, call) for call in it.calls),
         subject.arguments,
-        () if subject.origins else problem.edits,
+        # An edit is one of the text that was looked at.
+        () if subject.sources else problem.edits,
     )
 
 

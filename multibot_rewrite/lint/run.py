@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import Finding, by_place
 from multibot_rewrite.base.outside import Asked, digest, recorded
-from multibot_rewrite.lint.cache.written import (
+from multibot_rewrite.lint.cache.cache import (
     among_from,
     among_written,
     findings_from,

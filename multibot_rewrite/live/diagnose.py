@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import LAYOUTS, Layout
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.pages.overview import Tile, overview
 from multibot_rewrite.pages.page_sections import (
     MOST_DRAWN,

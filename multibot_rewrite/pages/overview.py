@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.pages.scene import Crossing
 from multibot_rewrite.pages.states import FAULTY
-from multibot_rewrite.pages.svg import LETTER, MEANINGS, WIDTH, safe, tooltip
-from multibot_rewrite.pages.text import clipped
+from multibot_rewrite.pages.svg import LETTER, MEANINGS, WIDTH, clipped, safe, tooltip
 
 # Space for the arrows above the first row and below the last one.
 MARGIN = 44

@@ -12,9 +12,8 @@ from importlib.resources import files
 
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.drawings import graphs, trees
 from multibot_rewrite.pages.finding_list import Sources, explanations, filters, finding_list

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import said_of
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.page_sections import PageSection, concerns_of, look_of, summarize
 from multibot_rewrite.pages.scene import FindingRow, Scene

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
+from unicodedata import east_asian_width
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.pages.layout import OFFERING, GroupLayout, lay_out
 from multibot_rewrite.pages.scene import DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.pages.states import (
@@ -19,7 +20,6 @@ from multibot_rewrite.pages.states import (
     UNEXPECTED,
     FrameKey,
 )
-from multibot_rewrite.pages.text import clipped, columns, visible
 from multibot_rewrite.pages.tf_tree_rows import FrameTree
 from multibot_rewrite.system.records import ACTION, SERVICE
 
@@ -217,3 +217,34 @@ def _frame(frame: str, x: float, y: float, css_class: str, id_attributes: str) -
 def _tree_end(frame: str, depth: int, faults: Iterable[str]) -> float:
     letters = columns(visible(frame)) + columns(", ".join((*faults, "static, …")))
     return depth * INDENT + letters * LETTER + 60
+
+
+def visible(text: str) -> str:
+    """``text`` on one line; characters that are not printable are written as escapes."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def clipped(text: str, room: int) -> str:
+    """``text`` in at most ``room`` columns; the middle is cut, because names differ at their ends."""
+    if len(text) * 2 <= room or columns(text) <= room:
+        return text
+    back = _fitting(text[::-1], room // 2)[::-1]
+    return f"{_fitting(text, room - 1 - columns(back))}…{back}"
+
+
+def columns(text: str) -> int:
+    """The width of ``text`` in a fixed-width font; East Asian letters are two columns wide."""
+    if text.isascii():
+        return len(text)
+    return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
+
+
+def _fitting(text: str, room: int) -> str:
+    """The longest beginning of ``text`` that fits into ``room`` columns."""
+    at = 0
+    while at < len(text) and room > 0:
+        room -= columns(text[at])
+        at += room >= 0
+    return text[:at]

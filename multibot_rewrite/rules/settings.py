@@ -49,7 +49,8 @@ class Settings(NamedTuple):
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
     looks in: a configuration gives them no folder outside of its own. ``elsewhere`` are the xacro
     arguments that any of several files knows that are linted together, None for one file alone.
-    ``distro`` is the ROS 2 release that the robots run. ``simulated`` says that the robot runs in Gazebo.
+    ``distro`` is the ROS 2 release that the robots run. ``simulated`` says that the robot runs
+    in Gazebo.
     """
 
     select: tuple[str, ...] = ALL

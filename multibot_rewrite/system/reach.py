@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from multibot_rewrite.base.plural import plural
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.system.environment import machine
 from multibot_rewrite.system.records import ZENOH, System
 

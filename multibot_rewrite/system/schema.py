@@ -25,6 +25,7 @@ def schema() -> dict[str, object]:
     top["properties"] = {"schema": {"const": SCHEMA}, **top["properties"]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:multibot_rewrite:system",
         "title": "A system of robots: multibot snapshot",
         **top,
         "required": ["schema"],

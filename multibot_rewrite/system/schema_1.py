@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.system.answers import Answer, with_answers
-from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.parameters import Answer, parameter_text, with_answers
 from multibot_rewrite.system.records import (
     SIM_TIME,
     Controller,

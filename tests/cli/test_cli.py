@@ -216,7 +216,7 @@ def test_changes_stand_where_they_say(folder: Path, rover: bytes) -> None:
 
 def test_again_rewrites_what_is_rewritten(folder: Path) -> None:
     run(folder, "siblings.urdf", "robot1", "-o", "robot1.urdf")
-    result = run(folder, "robot1.urdf", "robot1", "--again")
+    result = run(folder, "robot1.urdf", "robot1", "--force")
     assert result.code == 0
     assert all(name.endswith("/robot1/robot1") for name in names(result.out, "link"))
 

@@ -125,3 +125,37 @@ def test_why_says_where_it_is_written(folder: Path, capsys: pytest.CaptureFixtur
     assert urdf_postfix.main(["--why", "lamp.urdf:3", "--vocabulary", "why.vocab"]) == 0
     said = [it.strip() for it in capsys.readouterr().out.splitlines()]
     assert said[-1] == f"source: {place}"
+
+
+CLASSIC = (
+    '<robot name="r"><link name="base"/><gazebo>'
+    '<plugin name="p" filename="libgazebo_ros_p3d.so"><body_name>base</body_name></plugin>'
+    "</gazebo></robot>"
+)
+
+
+def test_a_rewrite_says_which_release_it_is_for_and_why(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "c.urdf").write_text(CLASSIC)
+    urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
+    assert "(facts of humble: it loads libgazebo_ros_p3d.so)" in capsys.readouterr().err
+    monkeypatch.setenv("ROS_DISTRO", "noetic")
+    assert urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"]) == 0
+    said = capsys.readouterr().err
+    assert "warning: ROS_DISTRO is 'noetic', which is not known" in said
+    assert "(facts of humble: it loads" in said
+    assert urdf_postfix.main(["o.urdf", "robot1", "--strip", "-o", "back.urdf"]) == 0
+    assert (folder / "back.urdf").read_text() == CLASSIC
+    monkeypatch.setenv("ROS_DISTRO", "iron")
+    urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
+    assert "(facts of jazzy)" in capsys.readouterr().err
+
+
+def test_the_lint_goes_on_with_a_release_that_is_not_known(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "c.urdf").write_text(CLASSIC)
+    monkeypatch.setenv("ROS_DISTRO", "noetic")
+    assert urdf_lint.main(["c.urdf"]) in (0, 1)
+    assert "warning: ROS_DISTRO is 'noetic'" in capsys.readouterr().err

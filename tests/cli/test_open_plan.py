@@ -17,9 +17,9 @@ from multibot_rewrite.system.json import to_json
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
-    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; /ros_gz_bridge"
-    " publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in its parameters;"
-    " see "
+    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; "
+    "/ros_gz_bridge publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in "
+    "its parameters; see "
 )
 ODOMETRY = "odom0: base_controller/odom"
 
@@ -111,7 +111,7 @@ def test_what_was_open_before_is_counted_where_it_is_asked_for(
     assert folder.check(folder.plan, "--fail-on", "note") == 1
     out, err = capsys.readouterr()
     assert "note: MG316 no known node sends /visual/twist" in out
-    assert "1 finding: as planned (" in err
+    assert "1 note: as planned (" in err
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
@@ -70,7 +70,7 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
                 texts[option].add(str(action.help))
     # What is written or suggested differs with the command; --stack learns or uses one; init has
     # a layout of its own.
-    own = OUTPUT | {"--form", "--stack", "--diff", "--suggest", "--layout"}
+    own = OUTPUT | {"--form", "--stack", "--diff", "--suggest", "--layout", "--force"}
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
     assert all(text.endswith("missing folders are made") for text in texts["--output"])
 
@@ -291,7 +291,7 @@ def test_the_short_help_fits_a_screen_and_names_every_option(
     assert len(lines) <= 24 and max(map(len, lines)) <= 80
     assert lines[0].startswith(f"usage: {' '.join(words)} ")
     assert sum(line.startswith("  ") and words[-1] in line for line in lines) >= 2
-    names = [it.names[-1] for group in ALL[name].groups for it in group.options]
+    names = [it.names[-1] for group in ALL[name].groups for it in group.options if it.shown]
     assert [it for it in names if it.startswith("-") and f" {it}" not in shown] == []
     assert len(said(capsys, *words, "--help")[1]) > len(shown)
 
@@ -407,3 +407,38 @@ def test_json_goes_to_a_file_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixt
     words = ("urdf-lint", ROVER, "--format", "json", "--color", "always", "-o", str(target))
     assert said(capsys, *words)[0] == 0
     assert json.loads(target.read_text())["tool"] == "urdf-lint"
+
+
+def test_a_rare_option_is_taken_and_not_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    rare = [
+        it.names[-1] for c in ALL.values() for g in c.groups for it in g.options if not it.shown
+    ]
+    assert "--groups" in rare
+    assert not [it for it in set(rare) if f" {it} " in said(capsys, "urdf-postfix", "--help")[1]]
+    assert set(rare) <= {name for command in ALL.values() for name in names(command)}
+
+
+def test_all_programs_together_have_few_options() -> None:
+    """What a person may see in all help texts, ``--help`` and ``--version`` among them."""
+    shown = {it.names[-1] for c in ALL.values() for g in c.groups for it in g.options if it.shown}
+    assert len({it for it in shown if it.startswith("-")} | {"--help", "--version"}) <= 60
+    assert len(COMMANDS) <= 12
+
+
+@pytest.mark.parametrize(
+    ("words", "answer"),
+    [
+        (("multibot", "strip"), "use urdf-postfix FILE ROBOT --strip"),
+        (("multibot", "postfix", "r.urdf"), "use urdf-postfix INPUT ROBOT..."),
+        (("multibot", "lint"), "use urdf-lint"),
+        (("multibot", "doctor"), "use multibot check"),
+        (("multibot", "init", "--undo"), "multibot build FLEET --undo"),
+        (("multibot", "check", "--fleeet", "f"), "unknown option --fleeet; see"),
+        (("urdf-postfix", "r.urdf", "a", "--stripp"), "did you mean '--strip'?"),
+    ],
+)
+def test_wrong_words_are_answered_by_the_right_ones(
+    words: tuple[str, ...], answer: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, _, err = said(capsys, *words)
+    assert code == 2 and answer in err and len(err.splitlines()) == 1

@@ -89,7 +89,7 @@ PROGRAMS: dict[str, Callable[[list[str]], int]] = {
 FILE = f"{EVIL}.urdf"
 LINES = (
     *(["urdf-postfix", FILE, "robot1", "robot2", "-o", f"{EVIL}/{{robot}}"],),
-    *(["urdf-postfix", FILE, "robot1", "--again", "--fail-on", "warning"],),
+    *(["urdf-postfix", FILE, "robot1", "--force", "--fail-on", "warning"],),
     *(["urdf-postfix", FILE, EVIL],),
     *(["urdf-postfix", "--strip", FILE, "robot1"],),
     *(["urdf-postfix", f"{EVIL}.xml", "robot1"], ["urdf-postfix", "cut.urdf", "robot1"]),

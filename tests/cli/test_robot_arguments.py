@@ -91,7 +91,7 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     assert urdf_postfix.main([made, *undo, "-o", back]) == 0
     names = ["left_base_link", "left_tool0", "left_gripper", "camera_link"]
     assert links(Path(back)) == names
-    assert urdf_postfix.main([back, "left", "-o", plain, *options, "--again"]) == 0
+    assert urdf_postfix.main([back, "left", "-o", plain, *options, "--force"]) == 0
 
 
 @pytest.mark.slow

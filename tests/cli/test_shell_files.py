@@ -10,7 +10,7 @@ import pytest
 from paths import ROOT
 
 SHARE = ROOT / "share"
-FOLDERS = ("bash-completion", "zsh", "man")
+FOLDERS = ("bash-completion", "fish", "zsh", "man")
 
 
 def test_the_files_are_what_the_options_make() -> None:

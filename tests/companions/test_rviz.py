@@ -17,9 +17,8 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.rviz.colours import palette, read_colour
-from multibot_rewrite.companions.rviz.read import read_for
 from multibot_rewrite.companions.rviz.read_config import rviz_data
-from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
+from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.files.judge import judged_once

@@ -64,13 +64,13 @@ def main() -> None:
     """Build, drive one robot and then the other, write the film."""
     sys.path[:0] = [str(ROOT / "tests" / "support"), str(Path(__file__).parent)]
     os.environ.setdefault("MUJOCO_GL", "egl")
-    import test_live_physics as live
+    import scenes
 
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
-        found = live.built("launch_tutorial", out)
+        found = scenes.built("launch_tutorial", out)
         robots = [
-            live.base(found, it, out / it / "rover.urdf", at)
+            scenes.base(found, it, out / it / "rover.urdf", at)
             for it, at in (("robot1", 0.0), ("robot2", 0.0))
         ]
         robots[0]["at"], robots[1]["at"] = [0, -0.4], [0, 0.4]
@@ -79,7 +79,7 @@ def main() -> None:
         one, two = (it["commands"] for it in robots)
         turns = ((one, [0.22, -0.2]), (one, [0, 0]), (two, [0.22, 0.2]), (two, [0, 0]))
         send = [(topic, "Twist", values) for topic, values in turns]
-        live.played(120, robots, *send, film=str(FILM))
+        scenes.played(120, robots, *send, film=str(FILM))
     print(f"{FILM.relative_to(ROOT)}: {FILM.stat().st_size / 1000:.0f} kB")
 
 

@@ -382,7 +382,7 @@ def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
         (line,) = (it for it in lines if it.startswith(start) and "/left" in it)
         assert line.endswith(given)
         assert "-r __ns:=/left" in line
-    assert files["fleet.launch.py"].count('file("left/moveit_parameters.yaml")') >= 2
+    assert files["fleet.launch.py"].count("file(f'{name}/moveit_parameters.yaml')") >= 2
 
 
 @pytest.mark.sample(5)

@@ -757,3 +757,43 @@ def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
     assert build(tmp_path) == 0
     made = (tmp_path / "out" / "robot1" / "params.yaml").read_text()
     assert made == own.replace("mast:", "/robot1/mast:").replace("base_link", "robot1/base_link")
+
+
+# ---------------------------------------------------------------- undo
+
+
+def test_undo_removes_what_a_build_wrote_and_nothing_else(out: Path) -> None:
+    own = out / "robot1" / "notes.txt"
+    own.write_text("mine")
+    assert build(out.parent, "--undo") == 0
+    assert held(out) == {"robot1/notes.txt": b"mine"}
+    assert build(out.parent) == 0
+    own.unlink()
+    assert build(out.parent, "--undo") == 0
+    assert not out.exists()
+
+
+def test_undo_leaves_a_file_that_was_edited(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (out / "plan.yaml").read_bytes()
+    (out / "plan.yaml").write_bytes(before + b"# mine\n")
+    there = held(out)
+    assert build(out.parent, "--undo") == 2
+    assert "plan.yaml: it was edited since it was built" in capsys.readouterr().err
+    assert held(out) == there
+    assert build(out.parent, "--undo", "--force") == 0
+    assert not out.exists()
+
+
+def test_there_is_nothing_to_undo(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fleet_folder(tmp_path)
+    assert build(tmp_path, "--undo") == 2
+    assert "so there is nothing to undo" in capsys.readouterr().err
+
+
+def test_the_fleet_file_and_the_folder_have_defaults(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fleet_folder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert main(["build", "-q"]) == 0
+    assert (tmp_path / "out" / MANIFEST).exists()

@@ -211,8 +211,8 @@ def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     run = "move_group move_group --ros-args --params-file cell/moveit_parameters.yaml"
     assert files["commands.md"].decode().count("move_group move_group") == 1
     assert run in files["commands.md"].decode()
-    given = 'parameters=[file("cell/moveit_parameters.yaml"), CLOCK]'
-    started = files["fleet.launch.py"].decode().partition('executable="move_group"')[2]
+    given = "parameters=[file('cell/moveit_parameters.yaml'), CLOCK]"
+    started = files["fleet.launch.py"].decode().partition("executable='move_group'")[2]
     assert given in started.partition("output=")[0]
 
 

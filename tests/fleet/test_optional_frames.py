@@ -23,6 +23,15 @@ footprint_to_odom_ekf:
   ros__parameters:
     {odom_frame: odom, base_link_frame: base_footprint, world_frame: odom, odom0: odom/raw}
 """
+SUB = """\
+<sdf version="1.9"><model name="sub">
+  <link name="base_link"/>
+  <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+    <odom_frame>map</odom_frame><robot_base_frame>base_link</robot_base_frame>
+    <odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>
+  </plugin>
+</model></sdf>
+"""
 FLEET = """\
 layout: LAYOUT
 distro: humble
@@ -43,3 +52,14 @@ def test_frames_of_a_filter_that_is_started_elsewhere(layout: str, tmp_path: Pat
     (first, *_) = made.planned.robots
     assert any("base_footprint" in it for it in first.frames)
     assert read_back(plan, made, str(tmp_path / "out")) == []
+
+
+def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> None:
+    """Odometry in the map: the pose of the fleet file would be a second parent."""
+    (tmp_path / "sub.sdf").write_text(SUB)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\nrobots: [{name: robot1, description: sub.sdf, pose: {x: 1}}]\n"
+    )
+    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
+    (said,) = [it.message for it in found if it.code == "MF701"]
+    assert "because its description already says where it is" in said

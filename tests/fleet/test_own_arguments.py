@@ -18,7 +18,9 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources import job
 from multibot_rewrite.description.sources.read import SourceText, read_whole
+from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.rewritten_robots import read_jobs
 
 XACROS = FIXTURES / "xacros"
@@ -222,3 +224,49 @@ def test_two_arguments_of_which_one_has_no_default(tmp_path: Path) -> None:
     assert main(["build", str(file), "-o", str(tmp_path / "out"), "-q"]) == 0
     written = yaml.safe_load((tmp_path / "out/left/controllers.yaml").read_text())
     assert written["/left/arm_controller"]["ros__parameters"]["joints"] == ["left_elbow"]
+
+
+LBR = """\
+<robot name="lbr" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="robot_name" default="lbr"/>
+  <link name="$(arg robot_name)_link_0"/><link name="$(arg robot_name)_link_1"/>
+  <joint name="$(arg robot_name)_A1" type="continuous">
+    <parent link="$(arg robot_name)_link_0"/><child link="$(arg robot_name)_link_1"/>
+  </joint>
+  <ros2_control name="sys" type="system">
+    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+    <joint name="$(arg robot_name)_A1">
+      <command_interface name="position"/><state_interface name="position"/>
+    </joint>
+  </ros2_control>
+</robot>
+"""
+LBR_CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    jtc: {type: joint_trajectory_controller/JointTrajectoryController}
+jtc:
+  ros__parameters:
+    joints: [JOINT]
+    command_interfaces: [position]
+    state_interfaces: [position]
+"""
+
+
+@pytest.mark.parametrize("joint", ["lbr_A1", "$(var robot_name)_A1"])
+def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Path) -> None:
+    """LBR's: the argument stands in YAML, too, or its default does."""
+    (tmp_path / "lbr.urdf.xacro").write_text(LBR)
+    (tmp_path / "controllers.yaml").write_text(LBR_CONTROLLERS.replace("JOINT", joint))
+    data = {
+        "layout": "frames-per-robot",
+        "simulator": "none",
+        "description": str(tmp_path / "lbr.urdf.xacro"),
+        "arguments": {"robot_name": "{robot}"},
+        "companions": {"params": str(tmp_path / "controllers.yaml")},
+        "robots": [{"name": "robot1"}, {"name": "robot2"}],
+    }
+    made = make_outputs(plan_fleet(read_fleet(data, "jazzy", {})))
+    assert {it.code for it in made.findings} & {"MB229", "MB854"} == set()
+    text = {it.path: it.data.decode() for it in made.files}["robot2/controllers.yaml"]
+    assert "joints: [robot2_A1]" in text

@@ -130,7 +130,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
     ),
     "a node has no description": (
         in_launch(
-            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")}, ', "", 1)
+            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")},', "", 1)
         ),
         "MF823",
     ),
@@ -221,5 +221,5 @@ def test_a_description_is_launched_by_the_name_that_is_written(tmp_path: Path) -
     out = tmp_path / "out"
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
     assert (out / "robot1" / "arm.urdf").exists()
-    assert 'text("robot1/arm.urdf")' in (out / "fleet.launch.py").read_text()
+    assert "text(f'{name}/arm.urdf')" in (out / "fleet.launch.py").read_text()
     assert main(["check-launch", str(out / "fleet.launch.py")]) in (0, 3)

@@ -86,8 +86,8 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     assert "my amcl.yaml" in own
     assert made.text("robot2/robot.yaml") == "system: {ros2: {namespace: robot2}}  # kept\n"
     # Whoever else names the files names them there.
-    assert "robot2/robot.urdf.xacro" in made.text("fleet.launch.py")
-    assert "robot2/platform/config/control.yaml" in made.text("fleet.launch.py")
+    assert "text(f'{name}/robot.urdf.xacro')" in made.text("fleet.launch.py")
+    assert "file(f'{name}/platform/config/control.yaml')" in made.text("fleet.launch.py")
     robot = made.robot("robot2")
     text = made.text("robot2/platform/config/control.yaml")
     assert robot.text("my controller_manager.yaml") == text

@@ -22,8 +22,7 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources import packages
 from multibot_rewrite.lint.cache import cache as caches
-from multibot_rewrite.lint.cache.cache import Cache, cache_folder
-from multibot_rewrite.lint.cache.identity import identity
+from multibot_rewrite.lint.cache.cache import Cache, cache_folder, identity
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
 

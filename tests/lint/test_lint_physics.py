@@ -10,7 +10,7 @@ import pytest
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.description.physics.moments import eigenvalues
+from multibot_rewrite.rules.description.physics.inertia import eigenvalues
 from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB6", "MB115", "MB125"), ignore=("MB609", "MB610", "MB611"))

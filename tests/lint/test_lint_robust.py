@@ -79,7 +79,7 @@ BAD: dict[str, tuple[bytes, set[str]]] = {
     "no_xml.urdf": (b"robot: r", {"MB101"}),
     "cut_short.urdf": (TWO_ROOTS[:30], {"MB101"}),
     "other_root.urdf": (b"<model/>", {"MB101"}),
-    "a_namespace.urdf": (b'<robot name="r" xmlns="http://ros.org"/>', {"MB101"}),
+    "a_namespace.urdf": (b'<robot name="r" xmlns="http://ros.org"/>', {"MB146"}),
     "utf16.urdf": (TWO_ROOTS.decode().encode("utf-16"), {"MB101"}),
     "latin1.urdf": ('<robot name="é"/>'.encode("latin-1"), {"MB101"}),
     "null.urdf": (b'<robot name="r\0"/>', {"MB101"}),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import struct
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from fault_changes import nav, shared_tf
+from graph_cases import qos
 from graph_examples import read_example, read_system
 from healthy_systems import SYSTEMS, plan
 from node_answers import told
@@ -18,11 +22,11 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.ros.headers import HeaderSamples, sensor_topics
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.ownership import Whose
+from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.records import (
     PUBLISHES,
     TOPIC,
@@ -46,11 +50,17 @@ running: /robot1/planner publishes /robot1/goal geometry_msgs/msg/PoseStamped
 """
 
 
-def serialized(frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9) -> bytes:
+def serialized(
+    frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9, stamp: float = 7.000000008
+) -> bytes:
     """A message as DDS has it: encapsulation, stamp, text with its length and a zero, the rest."""
     order = "<" if mark == b"\x00\x01" else ">"
     text = frame.encode() + b"\x00"
-    return mark + b"\x00\x00" + struct.pack(f"{order}iII", 7, 8, len(text)) + text + rest
+    return mark + b"\x00\x00" + struct.pack(f"{order}iII", *_parts(stamp), len(text)) + text + rest
+
+
+def _parts(stamp: float) -> tuple[int, int]:
+    return int(stamp), round(stamp % 1 * 1e9)
 
 
 def found(*lines: str) -> list[Finding]:
@@ -200,7 +210,7 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
         callbacks["/two"](serialized(frame))  # type: ignore[operator]
     callbacks["/scan"](serialized("laser"))  # type: ignore[operator]
     assert ended == ["/scan"]
-    assert samples.heard() == (("/scan", "laser"), ("/two", "x"), ("/two", "y"))
+    assert [it[:2] for it in samples.heard()] == [("/scan", "laser"), ("/two", "x"), ("/two", "y")]
     assert samples.keep_waiting(1000) and not samples.keep_waiting(0)
 
 
@@ -248,7 +258,7 @@ def test_looks_from_two_machines_are_joined() -> None:
     first = with_answers(first, [told("/n", sim_time=True), told("/m", "active")])
     second = with_answers(second, [told("/n", "inactive")])
     both = merged([Look("1", first), Look("2", second)])
-    assert both.heard == (("/a", "x"), ("/a", "y"), ("/b", "x"))
+    assert [it[:2] for it in both.heard] == [("/a", "x"), ("/a", "y"), ("/b", "x")]
     assert [(it.name, it.lifecycle) for it in both.nodes] == [("/m", "active"), ("/n", "inactive")]
     assert clocks(both) == {"/n": True}
 
@@ -267,3 +277,28 @@ def test_the_table_shows_what_was_heard_and_answered(
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["/scan", "laser"] in lines and ["/n", "inactive"] in lines
     assert ["/m", "false", "arm", "(active)"] in lines
+
+
+@pytest.mark.parametrize(
+    ("before", "latched", "age"),
+    [(0.2, False, 0.0), (12.0, False, 12.0), (-60.0, False, -60.0), (12.0, True, 0.0)],
+)
+def test_a_message_has_the_age_of_its_stamp(before: float, latched: bool, age: float) -> None:
+    """What is latched may have been sent long ago."""
+    (heard,) = sampled(time.time() - before, latched)
+    assert heard.age == pytest.approx(age, abs=0.9)
+    assert bool(heard.age) == bool(age)
+
+
+def test_a_stamp_of_zero_has_no_end() -> None:
+    assert [it.age for it in sampled(0.0)] == [math.inf]
+
+
+def sampled(stamp: float, latched: bool = False) -> tuple[Heard, ...]:
+    """What is kept of one message."""
+    calls: list[Callable[[bytes], None]] = []
+    samples = HeaderSamples(lambda *it: calls.append(it[3]) or (lambda: None))
+    durability = "TRANSIENT_LOCAL" if latched else "VOLATILE"
+    samples.update([end("/scan")._replace(qos=qos(durability=durability))])
+    calls[0](serialized("laser", stamp=stamp))
+    return samples.heard()

@@ -40,7 +40,7 @@ from multibot_rewrite.pages.states import (
     OK,
     UNEXPECTED,
 )
-from multibot_rewrite.pages.text import clipped, columns, visible
+from multibot_rewrite.pages.svg import clipped, columns, visible
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import to_json

@@ -21,8 +21,8 @@ from multibot_rewrite.producers.ros.answers import AGAIN_SECONDS, Answers
 from multibot_rewrite.producers.ros.request import Request, from_text, to_text
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
-from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.json import to_json as graph_json
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.questions import Question, questions
 from multibot_rewrite.system.records import (
     PUBLISHES,

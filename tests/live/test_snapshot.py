@@ -486,6 +486,22 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
     }
 
 
+@pytest.mark.parametrize(("second", "kept"), [(1.0, (1.0, 0, 0, 0, 0, 0, 1)), (2.0, ())])
+def test_a_static_transform_of_two_senders_is_known_if_they_agree(
+    second: float, kept: tuple[float, ...]
+) -> None:
+    calls: list[Any] = []
+    session = TfSubscriptions(
+        lambda _topic, _type, _latched, callback: calls.append(callback) or bool
+    )
+    qos = QOS._replace(durability="TRANSIENT_LOCAL")
+    session.update([end("/a", "/tf_static", type="tf2_msgs/msg/TFMessage", qos=qos)], False)
+    # Each publisher counts its messages from 1.
+    for x in (1.0, second):
+        calls[0](SimpleNamespace(transforms=[stamped("base", "laser", x)]), 1)
+    assert [*session.last.values()] == [kept]
+
+
 def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
     """A transform as a message has it."""
     at = SimpleNamespace(x=x, y=0.0, z=0.0)

@@ -13,7 +13,7 @@ from paths import ROOT
 
 README = (ROOT / "README.md").read_text()
 REWRITE = (ROOT / "docs" / "rewrite.md").read_text()
-REMAP = (ROOT / "docs" / "remap.md").read_text()
+REMAP = (ROOT / "docs" / "plan.md").read_text()
 PROGRAMS = ("urdf-lint", "urdf-postfix", "multibot")
 COMMANDS = re.findall(
     r"^    (urdf-postfix (?:fixtures|--why).*|urdf-lint .*|multibot .*)$",

@@ -10,7 +10,10 @@ from multibot_rewrite.base.releases import (
     chosen_release,
     has_release,
     is_release_words,
+    release_of,
     since_version,
+    told_release,
+    unusual_release,
 )
 
 
@@ -54,6 +57,8 @@ def test_what_is_release_words(words: str) -> None:
         ("", {"ROS_DISTRO": "jazzy"}, "jazzy"),
         ("", {}, "lyrical"),
         ("", {"ROS_DISTRO": ""}, "lyrical"),
+        ("", {"AMENT_PREFIX_PATH": "/ws/install/a:/opt/ros/jazzy"}, "jazzy"),
+        ("", {"ROS_DISTRO": "kilted", "AMENT_PREFIX_PATH": "/opt/ros/jazzy"}, "kilted"),
     ],
 )
 def test_the_release_that_is_meant(given: str, environment: dict[str, str], release: str) -> None:
@@ -70,3 +75,40 @@ def test_the_release_that_is_meant(given: str, environment: dict[str, str], rele
 def test_a_release_that_is_not_known(given: str, environment: dict[str, str], words: str) -> None:
     with pytest.raises(UsageError, match=words):
         chosen_release(given, environment)
+
+
+CLASSIC = b'<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so"/></gazebo>'
+IGNITION = b"<plugin name='ignition::gazebo::x' filename='ignition-gazebo-imu-system'/>"
+NEW = b'<plugin name="p" filename="gz-sim-imu-system"/>'
+
+
+@pytest.mark.parametrize(
+    ("environment", "text", "release"),
+    [
+        ({}, CLASSIC, "humble"),
+        ({}, IGNITION, "humble"),
+        ({}, b"<plugin>ign_ros2_control/IgnitionSystem</plugin>", "humble"),
+        ({}, NEW, "lyrical"),
+        # It has a variant for each: nothing is said of the release.
+        ({}, CLASSIC + NEW, "lyrical"),
+        ({}, b"<!-- " + CLASSIC + b" -->", "lyrical"),
+        ({}, b"<robot/>", "lyrical"),
+        ({"ROS_DISTRO": "jazzy"}, CLASSIC, "jazzy"),
+        ({"ROS_DISTRO": "noetic"}, CLASSIC, "humble"),
+        ({"ROS_DISTRO": "noetic"}, NEW, "lyrical"),
+        ({"ROS_DISTRO": "iron"}, CLASSIC, "jazzy"),
+    ],
+)
+def test_the_release_of_a_description(
+    environment: dict[str, str], text: bytes, release: str
+) -> None:
+    """A library of Gazebo Classic or with a name of Ignition is in no later release."""
+    assert release_of(told_release("", environment), text) == release
+    assert release_of(told_release("kilted", environment), text) == "kilted"
+
+
+def test_a_release_that_has_ended_or_is_not_known_is_doubted() -> None:
+    assert "has ended: the facts are those of jazzy" in unusual_release("", {"ROS_DISTRO": "iron"})
+    assert "is not known" in unusual_release("", {"ROS_DISTRO": "noetic"})
+    assert unusual_release("", {"ROS_DISTRO": "jazzy"}) == unusual_release("", {}) == ""
+    assert unusual_release("jazzy", {"ROS_DISTRO": "noetic"}) == ""

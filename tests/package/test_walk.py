@@ -1,4 +1,4 @@
-"""docs/walk.md: the walk of a new user is what the commands print today."""
+"""tests/support/walk.md: the walk of a new user is what the commands print today."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vendor_sources import WITHOUT, sources_folder
 
 from multibot_rewrite import launch
 
-PAGE = (ROOT / "docs" / "walk.md").read_text()
+PAGE = (ROOT / "tests" / "support" / "walk.md").read_text()
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from fault_changes import Change, Fault, nav, shared_tf, simulation
 from node_answers import told
 
 from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.system.answers import Answer, with_answers
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.records import DEVICE, Address, Heard, Lookup
 
 MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"

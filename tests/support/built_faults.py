@@ -53,10 +53,44 @@ def read(edit: Edit) -> list[Finding]:
 
 def edited(made: Outputs, edit: Edit) -> Outputs:
     """The outputs of a build with other texts in their files."""
-    texts = {it.path: edit(it.path, it.data.decode()) for it in made.files}
-    assert any(texts[it.path] != it.data.decode() for it in made.files), "nothing was changed"
+    own = {it.path: it.data.decode() for it in made.files}
+    own[LAUNCH] = unrolled(own[LAUNCH])
+    texts = {path: edit(path, text) for path, text in own.items()}
+    assert texts != own, "nothing was changed"
     files = (it._replace(data=texts[it.path].encode()) for it in made.files)
     return made._replace(files=tuple(files))
+
+
+_CALL = re.compile(r"^    '(\w+)': partial\((\w+), '\w+'(.*)\),$", re.M)
+_TEXT = re.compile(r'"""[\s\S]*?"""|(f?)\'([^\'\n]*)\'|"[^"\n]*"')
+
+
+def unrolled(text: str) -> str:
+    """The launch file with a function for each robot, so that a fault can be put into one alone."""
+    calls = [it.groups() for it in _CALL.finditer(text)]
+    for title in {it[1] for it in calls}:
+        function = re.search(rf"(?ms)^def {title}\(.*?^    \]\n", text)
+        assert function
+        own = [_for_one(function[0], robot, given) for robot, name, given in calls if name == title]
+        text = text.replace(function[0], "\n\n".join(own))
+    text = _CALL.sub(r"    '\1': start_\1,", text)
+    return _TEXT.sub(_double_quoted, text)
+
+
+def _double_quoted(it: re.Match[str]) -> str:
+    if it[2] is None or '"' in it[2]:
+        return it[0]
+    return f'{it[1] if "{" in it[2] else ""}"{it[2]}"'
+
+
+def _for_one(function: str, robot: str, given: str) -> str:
+    """The function of one robot, with its values."""
+    body = function.partition("\n")[2].replace("{name}", robot)
+    body = re.sub(r"\bname(?=[,)])", f"'{robot}'", body)
+    for key, value in re.findall(r", (\w+)=([^,]+)", given):
+        body = body.replace(f"str({key})", f"'{value}'")
+        body = re.sub(rf"\b{key},", f"{value},", body)
+    return f"def start_{robot}():\n{body}"
 
 
 @cache

@@ -33,7 +33,7 @@ class Slot(NamedTuple):
 
 
 # What libxml2 calls the faults that TinyXML-2 does not have.
-LOOSE = {"NS_ERR_UNDEFINED_NAMESPACE", "ERR_HYPHEN_IN_COMMENT"}
+LOOSE = {"NS_ERR_UNDEFINED_NAMESPACE", "ERR_HYPHEN_IN_COMMENT", "ERR_RESERVED_XML_NAME"}
 
 
 def parsed(data: bytes) -> etree._Element:

@@ -41,9 +41,9 @@ from plans import told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.system.index import Index, Known, index
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.records import (
     ACTION,
     MAY,

@@ -14,7 +14,7 @@ from graph_faults import FAULTS, LIVE, needed
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import System

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from multibot_rewrite.system.answers import Answer
-from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.parameters import Answer, parameter_text
 from multibot_rewrite.system.records import SIM_TIME, Controller, Parameter
 
 

@@ -294,7 +294,7 @@ def place_rows() -> tuple[Fault, ...]:
 
 
 def three() -> System:
-    """Three robots, each with a battery's node that nobody reads yet."""
+    """Three robots, each with a battery's node that no node reads yet."""
     graph = simulated("robot1", "robot2", "robot3")
     for robot in ("robot1", "robot2", "robot3"):
         row = (PUBLISHES, f"/{robot}/battery_state", "sensor_msgs/msg/BatteryState")

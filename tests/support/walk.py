@@ -1,7 +1,7 @@
 """The way of a new user from one description to robots that run as planned, by ``--help`` alone.
 
 ``python tests/support/walk.py REPOSITORY [DESCRIPTION]`` walks it in a copy of a checkout and prints
-the page docs/walk.md. It needs launch, launch_ros and rclpy; neither ROS's programs nor a simulator:
+tests/support/walk.md. It needs launch, launch_ros and rclpy; neither ROS's programs nor a simulator:
 the programs of the launch file write down what they are told, and nodes that do as they are told stand
 where they would be.
 """
@@ -44,7 +44,7 @@ HELP = (
 HEAD = """\
 # From one description to two robots that run
 
-Made by `python tests/support/walk.py REPOSITORY > docs/walk.md`, in a checkout of
+Made by `python tests/support/walk.py REPOSITORY > tests/support/walk.md`, in a checkout of
 [{name}]({origin}): every
 command was run, and what it printed is below. Nothing but `--help` is needed to find the next one.
 
@@ -124,7 +124,7 @@ _MAIN = "from multibot_rewrite.cli.multibot import main; sys.exit(main())"
 def _launch(folder: Path, beside: Path) -> tuple[list[dict[str, Any]], Step]:
     """What the programs of the launch file were told."""
     file = folder / OUT / "fleet.launch.py"
-    pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', file.read_text())
+    pairs = re.findall(r"package='(\w+)',\s+executable='([\w.]+)'", file.read_text())
     programs = {executable: package for package, executable in pairs}
     begun = time.monotonic()
     told, said = launched(file, beside, programs=programs)

@@ -167,7 +167,7 @@ SAVED = repeated(
 BAG = path_option(
     "--bag",
     "a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
-    " ROS (docs/bags.md)",
+    " ROS (docs/snapshot.md)",
     "BAG",
 )
 SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))

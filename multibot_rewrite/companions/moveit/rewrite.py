@@ -6,15 +6,20 @@ no sections of nodes, anchors are legal, and of a repeated key the last value co
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
+
+import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
-from multibot_rewrite.companions.moveit.controller_manager import inserted_namespace
-from multibot_rewrite.companions.moveit.read import read_moveit
+from multibot_rewrite.companions.kinds import MOVEIT
+from multibot_rewrite.companions.moveit.file_kind import find_kind
+from multibot_rewrite.companions.moveit.name_sites import entries, find_names
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
@@ -42,3 +47,55 @@ def rewrite_moveit(
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     template = make_template(document.text, [*shift, *splices])
     return Companion(template, file)
+
+
+# moveit_ros_control_interface looks for the manager below the root unless the namespace is set.
+_MANAGER = "moveit_controller_manager"
+_ROS_CONTROL, _CONTROL_NAMESPACE = "moveit_ros_control_interface/", "ros_control_namespace"
+
+
+def inserted_namespace(document: YamlText, context: Context) -> Iterator[Splice]:
+    """The namespace of the controller manager, if it is not set: the default is the root."""
+    key = asks_below_root(document)
+    default = SPELLERS["namespace"](context, "/")
+    flow = isinstance(document.root, yaml.MappingNode) and document.root.flow_style
+    if key is None or default == "/":
+        return
+    if flow:
+        at = key.start_mark.index
+        yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}, ")
+        return
+    end = "\r\n" if "\r\n" in document.text else "\n"
+    at = key.start_mark.index
+    yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}{end}{' ' * key.start_mark.column}")
+
+
+def asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
+    """The key that selects ros2_control, if the file does not set the manager's namespace."""
+    keys = {str(key.value): (key, value) for key, value in entries(document.root)}
+    if _MANAGER not in keys or _CONTROL_NAMESPACE in keys:
+        return None
+    key, value = keys[_MANAGER]
+    return key if str(value.value).startswith(_ROS_CONTROL) else None
+
+
+# The nodes that read these files, as the stacks call them.
+MOVE_GROUP, SERVO = "move_group", "servo_node"
+
+
+def read_moveit(document: YamlText, context: Context) -> NamedFile:
+    """The names of a file; raises InputError for one that is not MoveIt's."""
+    kind = find_kind(document)
+    node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
+    names, others, twice = find_names(document.root, kind.names if kind else {}, context.names)
+    return NamedFile(
+        MOVEIT,
+        document.file,
+        document.text,
+        context,
+        {},
+        tuple(it._replace(node=node) for it in names),
+        tuple(others),
+        tuple(twice),
+        document,
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.naming import NOT_PLAIN, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
@@ -74,12 +74,28 @@ def companion_names(
 ) -> CompanionNames:
     """The names of a robot; ``own`` are declared by either of their texts."""
     # Without its argument a name may begin with the slash behind it: /imu.
-    own = {**{(kind, plain.lstrip("/")): text for (kind, plain), text in own.items()}, **own}
+    filled = {(kind, it): text for kind, it, text in _without_argument(robot, own)}
+    own = {
+        **filled,
+        **{(kind, plain.lstrip("/")): text for (kind, plain), text in own.items()},
+        **own,
+    }
     both = {kind: dict(names) for kind, names in declared.items()}
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):
             both[kind].setdefault(plain, both[kind][text])
     return CompanionNames(both, naming, robot, own, words)
+
+
+def _without_argument(
+    robot: str, own: Mapping[tuple[str, str], str]
+) -> Iterator[tuple[str, str, str]]:
+    """Kind, name and text of those in which the robot's name stands where the argument's default was:
+    of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
+    for (kind, plain), text in own.items():
+        rest = text.removeprefix(robot)
+        if robot and rest != text and rest[:1] in ("_", "/") and plain.endswith(rest):
+            yield kind, rest[1:], text
 
 
 def is_declared(names: CompanionNames, word: str, value: str) -> bool:

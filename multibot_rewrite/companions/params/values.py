@@ -170,8 +170,8 @@ MADE_ABSOLUTE = declare(
     WARNING,
     what="A relative topic of a costmap layer is made absolute.",
     why="Up to Jazzy, the costmap resolves scan as /robot1/local_costmap/scan, where no node "
-    "publishes: it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the topic in the "
-    "robot's namespace.",
+    "publishes: it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the "
+    "topic in the robot's namespace.",
     fix="Nothing has to be done; a topic with a slash before it is not reported. If the file is for "
     "Kilted or later, name that release in the fleet file (distro:) or with --distro.",
     bad="""\

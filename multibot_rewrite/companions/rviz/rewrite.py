@@ -12,6 +12,10 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import ProofError, UsageError
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.kinds import RVIZ
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
     has_own_windows,
@@ -25,20 +29,30 @@ from multibot_rewrite.companions.rviz.display_groups import (
     tools,
     windows,
 )
-from multibot_rewrite.companions.rviz.findings import config_findings
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
+    FRAME,
     PROCESS,
     RvizConfig,
+    RvizItem,
     fixed_frame,
     read_config,
     targets,
     value,
     views_of,
 )
-from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_splices
+from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, is_name, item_splices
+from multibot_rewrite.companions.rviz.window_checks import config_findings
+from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
+from multibot_rewrite.companions.yaml_text import (
+    Splice,
+    YamlText,
+    is_text,
+    pairs,
+    replaced,
+    spliced,
+)
 from multibot_rewrite.spelling.targets import target_of
 from multibot_rewrite.system.records import TOPIC
 
@@ -240,3 +254,60 @@ def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, en
     if isinstance(name, yaml.ScalarNode):
         splices.append(replaced(name, f"{robot.name} {name.value}"))
     return cut_out(document, start, end, splices)
+
+
+# Titles of displays and windows: never names of links.
+_TITLES = ("Name", "Class")
+
+
+def read_rviz(document: YamlText, context: Context) -> NamedFile:
+    """The names of a config; raises InputError for one that is not for RViz 2."""
+    config = read_config(document)
+    shown = (*leaves(config.displays), *config.tools)
+    names = (*_frames(config), *(it for one in shown for it in filter(is_name, one.places)))
+    others = tuple(site for one in shown for site in _others(one))
+    return NamedFile(
+        RVIZ,
+        document.file,
+        document.text,
+        context,
+        {},
+        names,
+        others,
+        document=document,
+        shown=tuple(leaves(config.displays)),
+    )
+
+
+def read_for(document: YamlText, robots: Sequence[RvizRobot], release: str) -> NamedFile:
+    """The names of a config that shows these robots: what one of them declares is there."""
+    every = [it.names.declared for it in robots]
+    declared = {
+        kind: {name: it for own in every for name, it in own.get(kind, {}).items()}
+        for kind in {kind for own in every for kind in own}
+    }
+    names = robots[0].names._replace(declared=declared)
+    return read_rviz(document, Context(names, names, {}, release))
+
+
+def _frames(config: RvizConfig) -> Iterator[Site]:
+    for node in (fixed_frame(config), *targets(config)):
+        if isinstance(node, yaml.ScalarNode):
+            yield site_at(node, FRAME, without_robot(str(node.value), ""))
+
+
+def _others(one: RvizItem) -> Iterator[Site]:
+    claimed = {it.slot.start for it in one.places}
+    for node in _scalars(one.node):
+        if node.start_mark.index not in claimed and is_text(node):
+            yield site_at(node, "", str(node.value))
+
+
+def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
+    """The values of a display and its maps, without titles."""
+    for key, there in pairs(node):
+        if key.value in (*_TITLES, "Displays"):
+            continue
+        if isinstance(there, yaml.ScalarNode):
+            yield there
+        yield from _scalars(there)

@@ -9,9 +9,16 @@ import yaml
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.rviz.display_groups import Robots, for_one_process, leaves
-from multibot_rewrite.companions.rviz.read_config import ABSOLUTE, PROCESS, RvizConfig, value
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    DOCK,
+    PROCESS,
+    RvizConfig,
+    RvizItem,
+    value,
+)
 from multibot_rewrite.companions.rviz.values import frame_of
-from multibot_rewrite.companions.yaml_text import found_at
+from multibot_rewrite.companions.yaml_text import found_at, pairs
 from multibot_rewrite.spelling.plan import tf_topic
 
 
@@ -188,3 +195,60 @@ def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
             if one.flag == ABSOLUTE:
                 hint = "its topics are absolute: remap them in an rviz2 for one robot"
             yield found_at(config.document, one.node, LEFT_OUT, message, hint)
+
+
+def config_findings(
+    config: RvizConfig, robots: Robots, world: str, together: bool
+) -> Iterator[Finding]:
+    """The findings, each once, in the order of the file.
+
+    ``together``: one window shows all ``robots``, in the frame ``world``.
+    """
+    found = [*window_findings(config, robots, world, together)]
+    for one in leaves(config.displays):
+        found += display_findings(config, one, robots, together)
+    yield from sorted(dict.fromkeys(found), key=lambda it: (it.line, it.column, it.code))
+
+
+def display_findings(
+    config: RvizConfig, one: RvizItem, robots: Robots, together: bool
+) -> Iterator[Finding]:
+    """What is wrong with one display; ``together`` if one window shows all robots."""
+    if together and one.flag == DOCK:
+        yield from _visibility(config, one)
+
+
+VISIBILITY_RESET = declare(
+    "MF212",
+    "rviz-camera-visibility-reset",
+    WARNING,
+    what="The Visibility of a camera display is reset, because the displays are in groups for the "
+    "robots now.",
+    why="Visibility refers to displays by name and group. What was hidden in the picture of the "
+    "camera is drawn in it again.",
+    fix="Choose the displays again in rviz2 and save the file.",
+    bad="""\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Camera
+      Topic: /camera/image_raw
+      Visibility:
+        Grid: false
+""",
+    good="""\
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Camera
+      Topic: /camera/image_raw
+""",
+    line=5,
+    formats=("rviz",),
+)
+
+
+def _visibility(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:
+    for key, there in pairs(one.node):
+        if key.value == "Visibility" and pairs(there):
+            message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
+            hint = "choose the displays again in rviz2"
+            yield found_at(config.document, key, VISIBILITY_RESET, message, hint)

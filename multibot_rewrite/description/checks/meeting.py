@@ -20,7 +20,7 @@ from multibot_rewrite.description.readback.meeting import (
     said,
     same_for_all,
 )
-from multibot_rewrite.description.readback.pairs import parted
+from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
 from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
@@ -29,6 +29,7 @@ from multibot_rewrite.system.records import KINDS
 
 LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ALL = "all robots would"
+BESIDE = "use --topics namespace or a layout with namespaces, which keep both in one place"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
 
@@ -124,7 +125,8 @@ def _changed(
 ) -> Iterator[Problem]:
     """What met or matched before the rewrite, and does not after it."""
     has_rules = b":=" in document.source
-    if not has_rules and not _alike(reading, robot):
+    images = any(CAMERA_INFO in it.name for it in reading.names)
+    if not has_rules and not images and not _alike(reading, robot):
         return
     before = read(document.source, document.file, vocabulary)
     if has_rules:
@@ -137,6 +139,10 @@ def _changed(
         )
         hint = "write both the same way"
         yield Problem(_element(document, it), message, None, hint, (), PARTED)
+    for it, asked in undescribed(before, reading):
+        image, info = (name.replace(robot, ROBOT) for name in (it.name, asked))
+        message = f"image_transport and RViz look for {info!r} beside {image!r}: nothing sends it"
+        yield Problem(_element(document, it), message, None, BESIDE, (), PARTED)
 
 
 def _alike(reading: Reading, robot: str) -> bool:

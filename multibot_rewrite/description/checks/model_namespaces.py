@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
 from multibot_rewrite.description.rewriters.text import text_at

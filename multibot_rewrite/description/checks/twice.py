@@ -14,8 +14,8 @@ from multibot_rewrite.base.naming import (
     TOPIC_KINDS,
     OwnNames,
 )
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.inserted import markers

@@ -47,7 +47,8 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",
-            "rewrite its model.sdf for each robot, and write the result here",
+            "put its folder beside the model's, or name that above it in GZ_SIM_RESOURCE_PATH; "
+            "what is older than SDF 1.7, in a world or a <gazebo>, write it here",
         )
     who = f"{part.kind} {part.name!r}"
     if part.section is not None:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.plural import plural
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.meeting import NO_LINK, PARTED, SAME_TEXT
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,

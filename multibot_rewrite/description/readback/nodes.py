@@ -295,6 +295,7 @@ def resolved(
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
         yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+    yield from _of_nobody(host, stems)
     of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     for site in filter(_holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
@@ -310,6 +311,15 @@ def resolved(
             elif below is not None:
                 yield kind, _joined(below, name), site.path
     yield from _coded(host, section, above)
+
+
+def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str, str]]:
+    """A word that topics are made of and that is there and empty: it takes the place of the model's
+    name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace"))."""
+    for site in stems:
+        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
+        if given and not any(given):
+            yield TOPIC, "/", site.path
 
 
 def as_valid_topic(name: str) -> str:

@@ -1,5 +1,5 @@
 """Ends of one topic inside a description that no longer meet after a rewrite: two that were equal have
-to stay equal."""
+to stay equal, and what another process makes of a topic's name has to be there still."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.description.readback.reading import Reading, RuntimeName
 from multibot_rewrite.system.records import SERVICE, TOPIC
 
+CAMERA_INFO = "camera_info"
 # The element of a name, its parameter, and the how manieth it is there.
 Place = tuple[str, int, str, str, int]
 
@@ -23,6 +24,25 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
     for places in of_topic.values():
         first = now[places[0]]
         yield from ((now[it], first) for it in places[1:] if now[it].name != first.name)
+
+
+def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str]]:
+    """Each image that had its camera_info beside it and has not now, with the name that is asked for.
+
+    Who shows an image replaces the last segment of its topic (image_common camera_common.cpp
+    getCameraInfoTopic; RViz and image_pipeline subscribe with it).
+    """
+    now = _by_place(after.names)
+    old, new = ({it.name for it in names} for names in (before.names, now.values()))
+    for place, name in _by_place(before.names).items():
+        beside = _info_of(name.name)
+        is_image = beside != name.name and (name.tag == "sensor" or "image" in name.name)
+        if is_image and beside in old and place in now and _info_of(now[place].name) not in new:
+            yield now[place], _info_of(now[place].name)
+
+
+def _info_of(topic: str) -> str:
+    return f"{topic.rpartition('/')[0]}/{CAMERA_INFO}"
 
 
 def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:

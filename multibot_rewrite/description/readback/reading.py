@@ -220,5 +220,6 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:
             for value in dict.fromkeys(values_of(host.element, site)):
-                if value in there:
+                # What is looked up below a link has its name.
+                if (value.partition("::")[0] if site.form == "suffixed" else value) in there:
                     yield RuntimeName(kind, value, tag, host.number, site.path)

@@ -9,6 +9,7 @@ from functools import cache
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, OwnNames
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -158,7 +159,10 @@ def reader(
     trust: bool,
     release: str,
 ) -> Reader:
-    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
+    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``.
+
+    Without a ``release`` it is the one that the sources say.
+    """
 
     @cache
     def read(pairs: frozenset[tuple[str, str]]) -> Job:
@@ -168,7 +172,8 @@ def reader(
         found = _files_read(args, [own, beside] if beside else [own])
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
-        return Job(own.data, name, naming, vocabulary, pair, release, read=found)
+        said = release_of(release, own.data + (beside.data if beside else b""))
+        return Job(own.data, name, naming, vocabulary, pair, said, read=found)
 
     return lambda args: read(frozenset(args.items()))
 

@@ -83,7 +83,12 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
-    return SourceText(read_file(path), path, (path,))
+    data = read_file(path)
+    if b"<include" in data:  # few have one
+        from multibot_rewrite.description.sources.included_models import with_includes
+
+        data = with_includes(data, path)
+    return SourceText(data, path, (path,))
 
 
 def _encoded(text: str) -> bytes:

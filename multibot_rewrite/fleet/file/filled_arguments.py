@@ -49,8 +49,8 @@ OWN_ARGUMENT = declare(
     NOTE,
     what="A xacro has an argument for a robot's names, such as `namespace` or `tf_prefix`, and the "
     "fleet file has no value for it: it is filled where names become what the layout makes of them.",
-    why="What the argument reaches has the robot's name from the xacro's author, also in places that no "
-    "other file knows.",
+    why="What the argument reaches has the robot's name from the xacro's author, also in places that "
+    "no other file knows.",
     fix="Nothing. Give a value under `arguments` if you want another one, '' for none; "
     "`fill_arguments: false` fills no argument.",
     bad=_FLEET.format(""),

@@ -23,8 +23,8 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import is_plan, read_plan
-from multibot_rewrite.system.answers import with_answers
 from multibot_rewrite.system.environment import settings
+from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, questions
 from multibot_rewrite.system.records import System
 

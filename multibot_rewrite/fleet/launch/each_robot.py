@@ -84,12 +84,12 @@ def _unique(name: str, used: list[str]) -> str:
 def _function(group: Sequence[Written], title: str) -> Function:
     first = group[0]
     if len(group) == 1:
-        head = (f"def {title}():", f'    """{first.about}."""')
+        head = (f"def {title}():", f'    """Start {first.about}."""')
         return Function((*head, *first.lines), ((first.name, title),))
     given = _parameters(group)
     names = list(dict.fromkeys(it.name for it in given.values()))
     about = _of_any(first.about, first.name, "<name>")
-    head = (f"def {title}({', '.join((_NAME, *names))}):", f'    """{about}."""')
+    head = (f"def {title}({', '.join((_NAME, *names))}):", f'    """Start {about}."""')
     body = (_with(line, at, given) for at, line in enumerate(_templates(first)))
     values = {it.name: it.values for it in given.values()}
     calls = []
@@ -166,7 +166,8 @@ def _called(line: str, number: int) -> str:
     if before in _POSE:
         return _POSE[before]
     keyword = re.match(r"\s*(\w+)=", line)
-    word = keyword[1] if keyword else before
+    word = keyword[1] if keyword and not before.startswith("-") else before
+    word = "model" if word == "-name" else word
     word = re.sub(r"\W", "_", word).strip("_").lower()
     return word if word.isidentifier() and word != _NAME else "value"
 

@@ -41,6 +41,9 @@ from multibot_rewrite.system.records import PUBLISHES
 STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
+# What helps where a node is not started.
+_DESCRIBE = "describe it in a file of nodes, with `programs:` (docs/stacks.md)"
+_NAME = "if it does, add it to a `stack:`, declare it in a parameter file, or start it here"
 _BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
 
 
@@ -105,13 +108,13 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         if name in _BY_HAND or name in relayed:
             yield name, ""
         elif it is None:
-            yield name, "nothing is known of its program"
+            yield name, f"nothing is known of its program; {_DESCRIBE}"
         elif it.when and not _is_needed(given, it):
-            yield name, said(it.when)
+            yield name, f"no file says that it runs: {said(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:
-            yield name, f"the program of package {it.package} is not known"
+            yield name, f"the program of package {it.package} is not known; {_DESCRIBE}"
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Sequence
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python

@@ -10,8 +10,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.bridged import bridged_window
-from multibot_rewrite.companions.rviz.read import read_for
-from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
+from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
@@ -175,13 +176,20 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
 
 
 def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
-    """The same of what a launch file fills in for a robot that has such an argument."""
+    """The same of what a launch file fills in for a robot that has such an argument, and of what is
+    left of a name without it."""
     own = _own(robot)
+    own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
     values = {
-        key: it._replace(value=own.get(it.value, it.value)) if isinstance(it.value, str) else it
-        for key, it in given.values.items()
+        key: it._replace(value=_said_plainly(it.value, own)) for key, it in given.values.items()
     }
     return given._replace(values=values)
+
+
+def _said_plainly(value: Value, own: Mapping[str, str]) -> Value:
+    if isinstance(value, list):
+        return [own.get(it, it) if isinstance(it, str) else it for it in value]
+    return own.get(value, value) if isinstance(value, str) else value
 
 
 def _root(robot: RewrittenRobot) -> str:

@@ -1,16 +1,23 @@
-"""The cache of one run: what is remembered, what is to be kept."""
+"""The cache of one run: what is remembered, how it is written, and what all of it rests on."""
 
 from __future__ import annotations
 
 import os
+import sys
 from _thread import get_ident  # threading is slow to import
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
+from importlib.util import find_spec
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.bounded import load_json, read_bytes
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.vocabulary.installed import installed
+from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.version import __version__
 
 # Of one file, and of all files of the cache; the oldest ones go.
 MOST_BYTES, MOST_IN_ALL, MOST_FILES = 16 * 2**20, 256 * 2**20, 4096
@@ -160,3 +167,104 @@ class Cache:
 
     def _path(self, group: str) -> str:
         return os.path.join(self.folder, f"{digest(f'{self.run} {group}'.encode())}.json")
+
+
+_EDITS = Finding._fields.index("edits")
+_ENCODING = "latin-1"
+
+
+def findings_written(findings: Iterable[Finding]) -> list[list[Any]]:
+    """Findings as lists."""
+    return [list(it._replace(edits=tuple(map(_edit_written, it.edits)))) for it in findings]
+
+
+def _edit_written(it: Edit) -> Any:
+    after = None if it.after is None else it.after.decode(_ENCODING)
+    return [it.start, it.end, it.before.decode(_ENCODING), after]
+
+
+def findings_from(value: Any) -> list[Finding] | None:
+    """The findings; None where there are none kept, or it is something else."""
+    try:
+        return None if value is None else [_finding(it) for it in value]
+    except (TypeError, ValueError, AttributeError):
+        return None
+
+
+def _finding(value: Any) -> Finding:
+    words = [tuple(it) if isinstance(it, list) else it for it in value]
+    words[_EDITS] = tuple(map(_edit, value[_EDITS]))
+    return Finding._make(words)
+
+
+def _edit(value: Any) -> Edit:
+    start, end, before, after = value
+    last = None if after is None else after.encode(_ENCODING)
+    return Edit(int(start), int(end), before.encode(_ENCODING), last)
+
+
+def among_written(settings: Settings, path: str = "") -> list[Any]:
+    """What the settings say of the other files; with a ``path`` only what counts for that one."""
+    part = [path in settings.included] if path else sorted(settings.included)
+    known = settings.elsewhere
+    return [part, settings.urdfs, None if known is None else [known.names, known.any]]
+
+
+def among_from(value: Any, settings: Settings) -> Settings | None:
+    """The settings with what was kept; None where nothing is."""
+    from multibot_rewrite.description.sources.known_arguments import KnownArguments
+
+    try:
+        part, urdfs, known = value
+        elsewhere = None if known is None else KnownArguments(tuple(known[0]), bool(known[1]))
+        pairs = tuple((name, path) for name, path in urdfs)
+    except (TypeError, ValueError, LookupError):
+        return None
+    return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
+
+
+# What reads descriptions; xacro may be that of a sourced ROS.
+LIBRARIES = ("lxml", "xacro", "yaml")
+_COMPILED = "__pycache__"
+_HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+def identity(settings: Settings) -> str:
+    """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
+    where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
+    folders = [_HERE, *map(_folder_of, LIBRARIES)]
+    programs = [_state(it) for folder in folders for it in _files(folder)]
+    return digest(repr((__version__, where, programs, _vocabulary(settings), plain(settings))))
+
+
+def plain(value: object) -> object:
+    """A value with mappings and sets in order, so that the same value is written the same."""
+    if isinstance(value, Mapping):
+        return [(plain(key), plain(it)) for key, it in sorted(value.items())]
+    if isinstance(value, frozenset):
+        return sorted(value)
+    if isinstance(value, (tuple, list)):
+        return [plain(it) for it in value]
+    return value
+
+
+def _vocabulary(settings: Settings) -> list[tuple[str, str]]:
+    """The files that are read beside those built in."""
+    paths = [*(it.path for it in installed()), *settings.vocabulary]
+    return [(path, digest(read_bytes(path))) for path in paths]
+
+
+def _folder_of(library: str) -> str:
+    spec = find_spec(library)
+    return os.path.dirname(spec.origin) if spec and spec.origin else ""
+
+
+def _files(folder: str) -> Iterator[str]:
+    for top, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if it != _COMPILED)
+        yield from (os.path.join(top, it) for it in sorted(names))
+
+
+def _state(path: str) -> tuple[str, int, int]:
+    it = os.stat(path)
+    return path, it.st_mtime_ns, it.st_size

@@ -21,7 +21,7 @@ from multibot_rewrite.description.sources.read import has_xacro
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.description.steps.document import Document, read_document
-from multibot_rewrite.lint.files.named import SRDF_MARK
+from multibot_rewrite.lint.files.pairing import SRDF_MARK
 from multibot_rewrite.rules.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.rules.subject import EXPANDED, Subject, subject_of
 
@@ -51,10 +51,24 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     part = included or (xacro and _only_defines(document.root))
     if part and (not xacro or document.root.tag not in ROOTS):
         return
+    if not xacro and b"<include" in data:
+        yield _with_models(document, settings)
+        return
     written = make_subject(document, settings)
     yield written._replace(format=XACRO) if xacro else written
     if xacro and not part:
         yield from _expansions(path, data, settings)
+
+
+def _with_models(document: Document, settings: Settings) -> Subject:
+    """The subject of a model with those that it includes, each in the line of its include."""
+    from multibot_rewrite.description.sources.included_models import with_includes
+
+    whole = with_includes(document.source, document.file)
+    if whole == document.source:
+        return make_subject(document, settings)
+    found = make_subject(read_document(whole, document.file), settings)
+    return found._replace(sources={document.file: document.source})
 
 
 def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:

@@ -37,6 +37,9 @@ _GAZEBO = {
     "gazebo": "gazebo_ros",
     "gzserver": "gazebo_ros",
 }
+# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
+_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
+_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
 # ament_index_python and Python say it so.
@@ -75,17 +78,17 @@ def failure(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def is_certain(error: BaseException) -> bool:
-    """Does the launch fail so on every machine? The launch file itself raises it, or a file that is no
-    package's is not there."""
-    if _NOT_FOUND.search(str(error)) or isinstance(error, ImportError | SystemExit):
-        return False
+def is_certain(error: BaseException, here: Visit) -> bool:
+    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
+    or the launch file itself raises what names no file or device of a machine."""
     if isinstance(error, FileNotFoundError):
-        return True
+        folder = os.path.dirname(os.path.realpath(here.place.file))
+        return str(error.filename or "").startswith(f"{folder}/")
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next
-    return last is not None and last.tb_frame.f_code.co_filename.endswith(".launch.py")
+    own = last is not None and last.tb_frame.f_code.co_filename.endswith(".launch.py")
+    return own and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
 
 
 def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:

@@ -14,14 +14,13 @@ from lxml import etree
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     expand,
     resolve_bound,
 )
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters

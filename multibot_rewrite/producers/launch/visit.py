@@ -80,7 +80,7 @@ def visit(entity: Any, seen: Visit) -> None:
             here.nodes.append(missing)
             return
         ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=is_certain(error))
+        here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=is_certain(error, here))
     finally:
         if own:
             seen.context._pop_locals()

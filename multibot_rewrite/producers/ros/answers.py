@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 
-from multibot_rewrite.system.answers import Answer
+from multibot_rewrite.system.parameters import Answer
 from multibot_rewrite.system.questions import Question, questions
 from multibot_rewrite.system.records import System
 

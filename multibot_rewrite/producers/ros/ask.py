@@ -16,9 +16,8 @@ from typing import Any
 
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.worker import Send, run_worker
-from multibot_rewrite.system.answers import Answer
 from multibot_rewrite.system.json import plain_value
-from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.parameters import Answer, parameter_text
 from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, Question
 from multibot_rewrite.system.records import Controller, Parameter
 

@@ -18,8 +18,8 @@ from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
-from multibot_rewrite.system.answers import Answer
 from multibot_rewrite.system.json import from_json, record_from
+from multibot_rewrite.system.parameters import Answer
 from multibot_rewrite.system.questions import Question
 from multibot_rewrite.system.records import UNKNOWN_NODE, ZENOH, Caveat, System
 

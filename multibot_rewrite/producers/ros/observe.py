@@ -23,8 +23,8 @@ from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system import environment
-from multibot_rewrite.system.answers import Answer, with_answers
 from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
 from multibot_rewrite.system.records import (
     ACTION,

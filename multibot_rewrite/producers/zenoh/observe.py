@@ -9,9 +9,8 @@ import time
 from collections import Counter
 from collections.abc import Generator, Iterable, Iterator
 
-from multibot_rewrite.base.plural import plural
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
+from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
 from multibot_rewrite.producers.ros.assemble import frames
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions

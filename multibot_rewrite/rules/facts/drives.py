@@ -21,8 +21,7 @@ from multibot_rewrite.description.checks.poses import Pose, axis_of, dot, minus,
 from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.facts.memo import memoized
-from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.facts.memo import link_poses, memoized
 from multibot_rewrite.rules.subject import Subject
 
 # Axes that point the same way, as a cosine.

@@ -12,7 +12,7 @@ from multibot_rewrite.description.checks.poses import Pose, origin_of, placed, p
 from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.checks.shapes import extent_of, shapes_of
 from multibot_rewrite.rules.facts.drives import drives, radii
-from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.facts.memo import link_poses
 from multibot_rewrite.rules.subject import Subject
 
 Point = tuple[float, float]

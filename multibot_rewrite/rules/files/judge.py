@@ -20,10 +20,8 @@ from multibot_rewrite.rules.files import (
     costmaps,
     declared,
     demands,
-    frames,
     included,
     keys,
-    lists,
     moveit,
     names,
     plugin_names,
@@ -43,9 +41,7 @@ THEMES = (
     names,
     ros_names,
     robot_words,
-    frames,
     keys,
-    lists,
     controllers,
     releases,
     bridges,
@@ -76,7 +72,7 @@ def _each(
 SHARED: tuple[Rule, ...] = (
     reading.leftover._replace(check=ros_names.placeholders),
     description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
-    description_names.leading_slash._replace(check=frames.slashes),
+    description_names.leading_slash._replace(check=ros_names.slashes),
     rewriting.unclaimed_mention._replace(check=names.unknown_uses),
     shape.misspelt._replace(
         check=_each(

@@ -8,7 +8,7 @@ from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.controller_manager import asks_below_root
+from multibot_rewrite.companions.moveit.rewrite import asks_below_root
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.sites import slot_of
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark

@@ -52,7 +52,7 @@ def into_gazebo(launched: Launched) -> set[str]:
     "bridge-to-another-robot",
     what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo, or with "
     "one that has no robot's name although the rows of the other robots have theirs.",
-    why="A robot obeys the commands of another one, or nobody can tell whose data they are.",
+    why="A robot obeys the commands of another one, or it is unknown whose data they are.",
     fix="Name the same robot on both sides of the row.",
     bad=launch_of(
         *_BOTH,

@@ -198,7 +198,7 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule(
     "MG726",
-    "nobody-activates",
+    "not-activated",
     what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
     "file starts one, or a manager lists a node that the launch file does not start.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
@@ -260,8 +260,8 @@ def _listed(it: RunningNode) -> Iterator[str]:
     "manager-waits",
     level=WARNING,
     what="A lifecycle manager of Nav2 has no `autostart: true`.",
-    why="Its nodes stay unconfigured until somebody calls its service, or presses the button in RViz.",
-    fix="Set `autostart` to true, unless somebody starts it by hand.",
+    why="Its nodes stay unconfigured until its service is called, or one presses the button in RViz.",
+    fix="Set `autostart` to true, unless it is started by hand.",
     bad=launch_of(_AMCL, _managed('"amcl"', False)),
     good=launch_of(_AMCL, _managed('"amcl"')),
     line=1,

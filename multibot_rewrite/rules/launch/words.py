@@ -32,8 +32,8 @@ _TURN = 2 * pi
     "MG711",
     "static-transform-implausible",
     what="The words of a static_transform_publisher make no transform, or not the one that is meant: a "
-    "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words that are no "
-    "numbers where numbers belong.",
+    "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words "
+    "in the place of numbers.",
     why="tf2 refuses the transform, or the robot and its sensors stand turned.",
     fix="Write angles in radians, a quaternion of length one, and two different frames; use the flags "
     "(`--x`, `--yaw`, `--frame-id`) so that no order matters.",
@@ -63,7 +63,7 @@ def _faults(it: RunningNode) -> Iterator[tuple[str, str]]:
             yield f"{flag} {word} is more than a turn in radians", f"degrees? write {radians}"
         elif not flags and value is None:
             hint = "numbers come first, then the two frames; or use flags, as --frame-id"
-            yield f"{word} stands where {flag} belongs", hint
+            yield f"{word} is in the place of {flag}", hint
     yield from _no_rotation(named)
 
 

@@ -56,7 +56,8 @@ def _is_of(enclave: str, robot: str) -> bool:
     "without-enclave",
     WARNING,
     what="A robot's node is in no SROS2 enclave, and others of the fleet are in one.",
-    why="Nodes with and without security do not see each other: it is alone, or the others are not protected.",
+    why="Nodes with and without security do not see each other: it is alone, or the others are "
+    "not protected.",
     fix="Start it with `ROS_SECURITY_ENABLE=true` and `--ros-args --enclave /ROBOT`.",
     bad="""\
 as planned: /robot1/driver

@@ -5,12 +5,12 @@ It is made from the sources by ``tools.interfaces``; its first lines have its gr
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.schema.tables import table_text
 
 WORDS = "words"
 _VERSION = lazy_compile(r"\d+\.\d+")
@@ -96,3 +96,12 @@ def _with(row: Row, word: str) -> Row:
 
 def _version(text: str) -> tuple[int, ...]:
     return tuple(map(int, text.split(".")))
+
+
+_FOLDER = os.path.dirname(__file__)
+
+
+def table_text(file: str) -> str:
+    """A table as it is written; ``pathlib`` would be loaded for it alone."""
+    with open(os.path.join(_FOLDER, file), encoding="utf-8") as table:
+        return table.read()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.schema.tables import table_text
+from multibot_rewrite.rules.schema.described import table_text
 from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
 
 _FILE = "readers.schema"

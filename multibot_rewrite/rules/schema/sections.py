@@ -14,7 +14,7 @@ from functools import lru_cache
 from lxml import etree
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.schema.tables import table_text
+from multibot_rewrite.rules.schema.described import table_text
 from multibot_rewrite.rules.schema.values import FINE
 from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
 

@@ -104,7 +104,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """The velocities that a robot's drive reads and nobody sends, where its twist_mux is unread."""
+    """The velocities that a robot's drive reads and no node sends, where its twist_mux is unread."""
     robot, kinds = seen.robot(ends.name), set(ends.type.split(" | "))
     if not any(map(chooses, nodes_of(ends.publishers))):
         return ""

@@ -41,7 +41,7 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 
 
 def _data(seen: Index, end: End) -> Ends | None:
-    """What nobody reads; of what a body measures also what others read."""
+    """What no node reads; of what a body measures also what others read."""
     # Such as a footprint, which a person may send.
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand
@@ -56,7 +56,7 @@ def _data(seen: Index, end: End) -> Ends | None:
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
     """Does another node of its robot send it, and does its own not read it already? What the nodes of
-    Nav2 and MoveIt show is no sensor; a twist_mux that nobody reads is a finding of its own."""
+    Nav2 and MoveIt show is no sensor; a twist_mux that no node reads is a finding of its own."""
     if any(it.node == end.node for it in ends.subscribers):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)

@@ -139,7 +139,7 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
 
 
 def _unsent(seen: Index, node: str) -> Sequence[str]:
-    """The scans and maps that it reads and nobody publishes."""
+    """The scans and maps that it reads and no node publishes."""
     names = (
         it.name
         for it in seen.by_node.get(node, ())

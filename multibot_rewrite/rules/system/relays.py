@@ -120,7 +120,7 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
                 drivers = [it for it in readers if it != mux and _word(seen, it) not in _LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
-                        f"obeys {given.name}, an input of {mux}, whose output {ends.name} no node reads",
+                        f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
                         f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
                         robot=seen.robot(drivers[0]),
                         node=drivers[0],

@@ -223,7 +223,7 @@ def test_the_message_names_the_names_with_their_lines() -> None:
         "the description is already rewritten for robot1: its name is in link 'base_link/robot1' "
         "(line 2), joint 'left_wheel_joint_robot1' (line 5) and 3 more names"
     )
-    for way in ("--strip", "name the robot otherwise", "--again"):
+    for way in ("--strip", "name the robot otherwise", "--force"):
         assert way in finding.hint
 
 
@@ -241,7 +241,7 @@ def test_added_elements_alone_are_said() -> None:
     assert bare != once
     with pytest.raises(RewriteRefused, match="elements were added for it") as caught:
         rewrite(bare, "robot1", again=True)
-    assert "--again" not in caught.value.findings[-1].hint
+    assert "--force" not in caught.value.findings[-1].hint
 
 
 def test_robots_of_one_call_are_each_looked_at() -> None:

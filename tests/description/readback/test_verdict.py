@@ -82,7 +82,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
         tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--fail-on", "warning"
     )
     assert healthy.code == 0
-    assert healthy.err.endswith("; proved (ROS 2 lyrical)\n")
+    assert healthy.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
 
 
 @pytest.mark.slow

@@ -94,7 +94,7 @@ def test_claims_are_counted_by_the_kind_that_they_turn_out_to_be() -> None:
         ("<x><jointName>hip</jointName></x>", "/x/jointName"),
         ('<x frame="base"/>', "/x@frame"),
         ('<param name="a">base</param>', "/param[a]"),
-        ('<y xmlns="http://gazebosim.org/schema">base</y>', "/gz:y"),
+        ('<y xmlns="http://gazebosim.org/schema">base</y>', "/y"),
         ('<q:y xmlns:q="urn:q">base</q:y>', "/q:y"),
         ("<x/>base", ""),
     ],

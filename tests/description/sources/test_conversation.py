@@ -161,7 +161,7 @@ def test_places_that_are_not_as_many_as_elements(
     file: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lie(monkeypatch, told(GOOD, origins=array("i", [0] * 3).tobytes()))
-    with pytest.raises(InputError, match="places that its process told are wrong"):
+    with pytest.raises(InputError, match="places that its process reported are wrong"):
         expand_traced(file, SOURCE, {})
 
 

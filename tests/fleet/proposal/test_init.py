@@ -258,7 +258,7 @@ def test_what_a_xacro_needs_is_as_its_launch_file_has_it(launch: str, tmp_path: 
     (tmp_path / "r.launch.py").write_text(f"x = [{launch}]\n")
     fleet = made(tmp_path, tmp_path)
     assert fleet["arguments"] == {"kind": "small"}
-    assert "# It needs kind, which nobody gave" in (tmp_path / "fleet.yaml").read_text()
+    assert "# It needs kind; init chose a value" in (tmp_path / "fleet.yaml").read_text()
 
 
 def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:

@@ -66,8 +66,8 @@ not_read = rule(
     "misplaced",
     WARNING,
     what="An element of URDF or SDF, or a parameter of a plugin, in a place where no parser "
-    "looks for it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> beside "
-    "<ros>.",
+    "looks for it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> "
+    "beside <ros>.",
     why="Readers look for children by name in one place only. It has no effect.",
     fix="Move it to the place that the hint names.",
     bad='<link name="a"><mass value="1"/></link>',

@@ -1,4 +1,4 @@
 """MB7: mesh and texture files, and the packages they are in."""
 
 # The files of its rules, loaded where they are asked.
-THEMES = (".lookup", ".paths", ".formats", ".boxes")
+THEMES = (".lookup", ".paths", ".boxes")

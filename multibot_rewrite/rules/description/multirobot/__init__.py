@@ -4,7 +4,6 @@
 THEMES = (
     ".topics",
     ".namespaces",
-    ".model_namespaces",
     ".frames",
     ".resources",
     ".prefixes",

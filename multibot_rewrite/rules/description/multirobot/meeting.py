@@ -168,9 +168,11 @@ parted_topic = rule(
     "MB438",
     "parted-topic",
     WARNING,
-    what="Two parameters that held one topic would hold two after the rewrite.",
-    why="One of them sends what the other listens to: after the rewrite nothing arrives.",
-    fix="Write both the same way, best without a slash in front.",
+    what="Two parameters that held one topic would hold two after the rewrite, or the camera_info of a "
+    "camera would no longer stand beside its image.",
+    why="One of them sends what the other listens to: after the rewrite nothing arrives. RViz and "
+    "image_transport replace the last segment of an image's topic to find its camera_info.",
+    fix="Write both the same way, best without a slash in front; for a camera use --topics namespace.",
     bad=_HEARD.format("~/hit"),
     good=_HEARD.format("hit"),
     line=2,

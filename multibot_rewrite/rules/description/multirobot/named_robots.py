@@ -15,8 +15,15 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
-from multibot_rewrite.rules.facts.renames import rename_map
 from multibot_rewrite.rules.subject import Subject
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.steps.renames import RenameMap
+
+
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.rules.facts.memo import memoized
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
@@ -275,3 +282,11 @@ hard_wired_name = rule(
     line=7,
     options={"robots": TWO},
 )(partial(_if_robots, hazards.hardwired))
+
+
+@memoized
+def rename_map(subject: Subject) -> RenameMap:
+    """The rename map of a subject, made once."""
+    from multibot_rewrite.description.steps.renames import make_renames  # most lints name no robots
+
+    return make_renames(subject.inventory, subject.settings.naming)

@@ -1,4 +1,4 @@
 """MB3: how names are written."""
 
 # The files of its rules, loaded where they are asked.
-THEMES = (".links_and_joints", ".ros_names", ".targets")
+THEMES = (".links_and_joints", ".ros_names")

@@ -1,4 +1,4 @@
 """MB6: mass, inertia, shapes, and geometry against the robot."""
 
 # The files of its rules, loaded where they are asked.
-THEMES = (".mass", ".inertia", ".shapes", ".drives", ".sensors", ".placement", ".loads", ".grip")
+THEMES = (".mass", ".inertia", ".shapes", ".drives", ".sensors", ".placement", ".loads")

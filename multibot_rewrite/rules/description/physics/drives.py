@@ -1,4 +1,4 @@
-"""Drives against the robot: where their wheels are, how large, and which way they turn."""
+"""Drives against the robot: where their wheels are, how large, which way they turn, their grip."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ from multibot_rewrite.rules.facts.drives import (
     size_of,
     wheel_joints,
 )
+from multibot_rewrite.rules.facts.memo import driven_joints
+from multibot_rewrite.rules.facts.sensors import number_at
 from multibot_rewrite.rules.subject import Subject
 
 # A wheel with limits so far apart is not meant to stop, in radians.
@@ -131,3 +133,34 @@ def _fault_of(joint: Joint) -> str:
     if lower is None or upper is None or upper - lower >= ENDLESS:
         return ""
     return f"turns from {lower:g} to {upper:g} radians only"
+
+
+_FRICTION = ("mu1", "mu", "mu2")
+
+
+@rule(
+    "MB636",
+    "wheel-without-grip",
+    WARNING,
+    what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block.",
+    why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
+    fix="Write 1.0 or so for both.",
+    bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
+    good=a_rover() + '<gazebo reference="left"><mu1>1</mu1></gazebo>\n',
+    line=32,
+)
+def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
+    """Blocks of links on a continuous joint that something drives."""
+    blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]
+    driven = driven_joints(subject) if blocks else ()
+    wheels = {
+        it.child for it in subject.robot.joints if it.type == "continuous" and it.name in driven
+    }
+    for block in blocks:
+        name = block.get("reference", "")
+        for tag in _FRICTION if name in wheels else ():
+            value, element = number_at(block, tag), block.find(tag)
+            if value is not None and value <= 0 and element is not None:
+                message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"
+                yield Problem(element, message, "", "write 1.0 or so")
+                break

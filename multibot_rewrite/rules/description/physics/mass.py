@@ -8,6 +8,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.description.examples import a_joint, a_link
 from multibot_rewrite.rules.description.physics.shared import (
     an_inertial,
@@ -16,7 +17,6 @@ from multibot_rewrite.rules.description.physics.shared import (
     moving_link,
     one_link,
 )
-from multibot_rewrite.rules.facts.kept import relied_on
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
@@ -147,3 +147,27 @@ def _masses(robot: Robot) -> dict[str, float]:
         if body is not None:
             mass[body] += 1.0 if inertial.mass is None else max(inertial.mass, 0.0)
     return mass
+
+
+def relied_on(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
+    """What goes with these links, in the words of a message."""
+    joints = {it.name for it in subject.robot.joints if it.child in gone or it.parent in gone}
+    found = [*_sensors(subject, gone | joints), *_driven(subject, joints)]
+    return tuple(dict.fromkeys(found))
+
+
+def _sensors(subject: Subject, gone: frozenset[str]) -> Iterator[str]:
+    for block in subject.elements.tops("gazebo"):
+        if block.get("reference") in gone:
+            yield from (f"sensor {it.get('name')!r}" for it in block.iterchildren("sensor"))
+
+
+def _driven(subject: Subject, joints: set[str]) -> Iterator[str]:
+    """Joints of which a plugin of the model, or ros2_control, knows the name."""
+    for block in subject.elements.tops("gazebo"):
+        for plugin in () if block.get("reference") else block.iterchildren("plugin"):
+            named = (text_of(it) for it in plugin.iterdescendants("*"))
+            yield from (f"joint {it!r} of a plugin" for it in named if it in joints)
+    for system in subject.elements.tops("ros2_control"):
+        named = (it.get("name", "") for it in system.iterchildren("joint"))
+        yield from (f"joint {it!r} of ros2_control" for it in named if it in joints)

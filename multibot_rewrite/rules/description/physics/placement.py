@@ -24,8 +24,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     one_link,
     part_of,
 )
-from multibot_rewrite.rules.facts.memo import memoized
-from multibot_rewrite.rules.facts.parts import parts
+from multibot_rewrite.rules.facts.memo import memoized, parts
 from multibot_rewrite.rules.subject import Subject
 
 # Metres between shapes that should be in one place, and between two places of one mesh; smaller shapes

@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.rotation import inverse, turned
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
 from multibot_rewrite.rules.description.examples import a_joint, a_link, block
 from multibot_rewrite.rules.description.physics.shared import a_rover
-from multibot_rewrite.rules.facts.poses import link_poses
+from multibot_rewrite.rules.facts.memo import link_poses
 from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors
 from multibot_rewrite.rules.facts.support import ground_of
 from multibot_rewrite.rules.subject import Subject

@@ -21,8 +21,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     visual,
 )
 from multibot_rewrite.rules.facts.elements import Elements
-from multibot_rewrite.rules.facts.memo import memoized
-from multibot_rewrite.rules.facts.parts import parts
+from multibot_rewrite.rules.facts.memo import memoized, parts
 from multibot_rewrite.rules.schema.versions import KNOWN
 from multibot_rewrite.rules.subject import Subject
 

@@ -3,7 +3,6 @@
 # The files of its rules, loaded where they are asked.
 THEMES = (
     ".undeclared",
-    ".frames",
     ".duplicates",
     ".gazebo",
     ".control",

@@ -19,7 +19,7 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
 )
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
-from multibot_rewrite.rules.facts.driven import driven_joints
+from multibot_rewrite.rules.facts.memo import driven_joints
 from multibot_rewrite.rules.subject import Subject
 
 # Types that a motor cannot move.

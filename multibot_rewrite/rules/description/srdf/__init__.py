@@ -1,4 +1,4 @@
 """MB8: an SRDF against its URDF."""
 
 # The files of its rules, loaded where they are asked.
-THEMES = (".names", ".pairs", ".planning", ".states", ".joints")
+THEMES = (".names", ".pairs", ".states")

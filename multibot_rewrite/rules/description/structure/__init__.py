@@ -1,4 +1,4 @@
 """MB5: the kinematic tree and its joints."""
 
 # The files of its rules, loaded where they are asked.
-THEMES = (".tree", ".limits", ".joints", ".mimic", ".safety", ".starts", ".control_values")
+THEMES = (".tree", ".limits", ".joints", ".mimic", ".starts", ".control_values")

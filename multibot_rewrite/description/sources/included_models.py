@@ -1,0 +1,205 @@
+"""``<include>`` in the models of an SDF -> what Gazebo makes of it: the included model, or with
+``merge="true"`` its parts, in place of the element.
+
+Sources: gazebosim/sdformat src/parser.cc (readXml, insertIncludedElement, merged parts get the frame
+``_merged__NAME__model__``), src/SDF.cc (findFile: SDF_PATH), gazebosim/gz-sim src/Util.cc
+(resourcePaths: GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH).
+
+What is put in stands in one line, so that every line keeps its number.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from copy import deepcopy
+
+from lxml import etree
+from lxml.etree import _Element
+
+from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.outside import is_file, outside, variable
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.steps.document import Document, read_document
+
+VARIABLES = ("GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH")
+# An include of an include, and so on.
+_DEEPEST = 10
+_OWN = "__model__"
+_MERGED = frozenset({"link", "model", "joint", "frame", "gripper", "plugin"})
+# Before 1.7 a pose had a frame, and an axis that of the model above: not the same text in a new file.
+_OLD = lazy_compile(rb"\bframe\s*=|use_parent_model_frame")
+_SPACES = lazy_compile(rb"\s*\n\s*")
+_END = lazy_compile(rb"<!--.*?-->|</include\s*>|<include\b[^>]*/>", 16)
+
+
+def with_includes(data: bytes, file: str, depth: int = 0) -> bytes:
+    """The text of a model with every included model in it that is found; others stay as they are."""
+    if b"<include" not in data or depth > _DEEPEST:
+        return data
+    with suppress(InputError):
+        document = read_document(data, file)
+        if document.root.tag == "sdf" and document.root.find("world") is None:
+            return _filled(document, depth)
+    return data
+
+
+def _filled(document: Document, depth: int) -> bytes:
+    source, last = document.source, 0
+    done: list[bytes] = []
+    for element, start in zip(document.elements, document.starts, strict=True):
+        parent = element.getparent()
+        if element.tag != "include" or parent is None or parent.tag != "model":
+            continue
+        made = _made(element, document.file, depth)
+        end = next((it.end() for it in _END.finditer(source, start) if it[0][:4] != b"<!--"), 0)
+        if made and end and len(made) + len(source) <= MAX_BYTES:
+            done += (source[last:start], made, b"\n" * source.count(b"\n", start, end))
+            last = end
+    return b"".join((*done, source[last:]))
+
+
+def _made(include: _Element, file: str, depth: int) -> bytes:
+    """What stands in place of an include; nothing where its model is not found or not as new."""
+    path = model_file(text_at(include, "uri"), os.path.dirname(os.path.abspath(file)))
+    if not path:
+        return b""
+    data = with_includes(_text(path), path, depth + 1)
+    root = _root(data, path)
+    model = root.find("model") if root is not None else None
+    if root is None or model is None or (_is_old(root) and _OLD.search(data)):
+        return b""
+    if next(model.iter("include"), None) is not None:  # it would be lost
+        return b""
+    model = deepcopy(model)
+    _with_paths(model, os.path.dirname(path))
+    parts = _merged(include, model) if _is_merged(include) else [_nested(include, model)]
+    return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
+
+
+def _root(data: bytes, path: str) -> _Element | None:
+    with suppress(InputError):
+        root = read_document(data, path).root
+        etree.strip_tags(root, etree.Comment)
+        return root
+    return None
+
+
+def _is_old(root: _Element) -> bool:
+    return _version(root) < (1, 7)
+
+
+def _is_merged(include: _Element) -> bool:
+    return include.get("merge", "").strip().lower() in ("true", "1")
+
+
+def _nested(include: _Element, model: _Element) -> _Element:
+    """The model with the name, pose and plugins of its include."""
+    model.set("name", _name(include, model))
+    if text_at(include, "placement_frame"):
+        model.set("placement_frame", text_at(include, "placement_frame"))
+    for tag in ("pose", "static"):
+        given = include.find(tag)
+        if given is not None:
+            model[:] = [it for it in model if it.tag != tag]
+            model.append(deepcopy(given))
+    model.extend(deepcopy(it) for it in include.iterchildren("plugin"))
+    return model
+
+
+def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
+    """The parts of the model, placed from a frame that stands for it."""
+    proxy = f"_merged__{_name(include, model)}__model__"
+    frame = etree.Element("frame", name=proxy, attached_to=_canonical(model))
+    given = include.find("pose") if include.find("pose") is not None else model.find("pose")
+    pose = deepcopy(given) if given is not None else etree.Element("pose")
+    pose.set("relative_to", pose.get("relative_to") or _OWN)
+    frame.append(pose)
+    yield frame
+    for part in (*model, *(deepcopy(it) for it in include.iterchildren("plugin"))):
+        if part.tag in _MERGED:
+            _placed(part, proxy)
+            yield part
+
+
+def _placed(part: _Element, proxy: str) -> None:
+    """What a part says of its model it says of the frame for it."""
+    if part.tag in ("link", "model") and part.find("pose") is None:
+        etree.SubElement(part, "pose").text = "0 0 0 0 0 0"
+    if part.tag == "frame" and part.get("attached_to", _OWN) == _OWN:
+        part.set("attached_to", proxy)
+    for pose in part.iterchildren("pose"):
+        told = pose.get("relative_to", "")
+        if told == _OWN or (not told and part.tag in ("link", "model")):
+            pose.set("relative_to", proxy)
+    for end in part.iterchildren("parent", "child") if part.tag == "joint" else ():
+        if (end.text or "").strip() == _OWN:
+            end.text = proxy
+    for axis in part.iterfind(".//xyz[@expressed_in]"):
+        if axis.get("expressed_in") == _OWN:
+            axis.set("expressed_in", proxy)
+
+
+def _canonical(model: _Element) -> str:
+    first = model.find("link")
+    usual = first.get("name", "") if first is not None else ""
+    return model.get("canonical_link") or usual
+
+
+def _name(include: _Element, model: _Element) -> str:
+    return text_at(include, "name") or model.get("name", "")
+
+
+def _with_paths(model: _Element, folder: str) -> None:
+    """A path of a mesh or picture is looked up beside the file that names it."""
+    for element in model.iter("uri", "filename", "albedo_map", "normal_map"):
+        text = (element.text or "").strip()
+        if text and "://" not in text and is_file(os.path.join(folder, text)):
+            element.text = "file://" + os.path.join(folder, text)
+
+
+def model_file(uri: str, folder: str) -> str:
+    """The file of an included model, looked up as Gazebo does, then beside the file's folder."""
+    name = uri.removeprefix("model://").strip("/")
+    if not name or "://" in name or name.startswith("/") or ".." in name.split("/"):
+        return ""
+    above = os.path.dirname(folder)
+    beside = (folder, above, os.path.join(above, "models"))
+    for home in (*_told(), *beside):
+        found = _in_folder(os.path.join(home, name))
+        if found:
+            return found
+    return ""
+
+
+def _told() -> list[str]:
+    paths = os.pathsep.join(variable(name) or "" for name in VARIABLES)
+    return [it for it in paths.split(os.pathsep) if it]
+
+
+def _in_folder(path: str) -> str:
+    """The newest file that the model.config of a folder names, or a file itself."""
+    if path.endswith(".sdf"):
+        return path if is_file(path) else ""
+    config = os.path.join(path, "model.config")
+    said = _root(_text(config), config) if is_file(config) else None
+    files = sorted(said.iter("sdf"), key=_version) if said is not None else []
+    name = (files[-1].text or "").strip() if files else ""
+    found = os.path.join(path, name)
+    return found if name and "/" not in name and is_file(found) else ""
+
+
+def _version(element: _Element) -> tuple[int, ...]:
+    parts = element.get("version", "").split(".")
+    return tuple(int(it) for it in parts) if all(it.isdigit() for it in parts) else ()
+
+
+@outside
+def _text(path: str) -> bytes:
+    try:
+        return read_bytes(path, MAX_BYTES)
+    except (OSError, ValueError):
+        return b""

@@ -1,0 +1,180 @@
+"""Included models are what libsdformat makes of them, and are renamed with the model around them."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import rewrite, strip
+from multibot_rewrite.description.sources.included_models import VARIABLES, with_includes
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.rules.settings import Settings
+
+IGN = next(filter(None, map(shutil.which, ("gz", "ign"))), "")
+BASE = """<?xml version="1.0"?>
+<sdf version="1.9">
+  <model name="base">
+    <pose>0 0 0.2 0 0 0</pose>
+    <!-- two
+         lines -->
+    <link name="base_link"/>
+    <link name="rotor"><pose>0 0 1 0 0 0</pose></link>
+    <joint name="spin" type="revolute">
+      <parent>base_link</parent><child>rotor</child>
+      <axis><xyz expressed_in="__model__">0 0 1</xyz></axis>
+    </joint>
+    <frame name="top"><pose>0 0 2 0 0 0</pose></frame>
+    <frame name="tip" attached_to="rotor"/>
+    {0}
+  </model>
+</sdf>
+"""
+CAM = """<sdf version="1.9"><model name="cam"><link name="camera_link">
+<sensor name="eye" type="camera"><topic>image</topic></sensor></link></model></sdf>"""
+ROVER = """<?xml version="1.0"?>
+<sdf version="1.9">
+  <model name="rover">
+    <include merge="true">
+      <uri>model://mid</uri>
+      <pose>1 2 3 0 0 0</pose>
+    </include>
+    <include><uri>model://cam</uri><name>front</name>
+      <pose relative_to="top">0 0 1 0 0 0</pose></include>
+    <joint name="mount" type="fixed"><parent>base_link</parent><child>front::camera_link</child></joint>
+    <plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointStatePublisher">
+      <joint_name>spin</joint_name>
+    </plugin>
+  </model>
+</sdf>
+"""
+MID = '<sdf version="1.9"><model name="mid"><include merge="1"><uri>base</uri></include></model></sdf>'
+
+
+CONFIG = "<model><name>m</name><sdf version='1.9'>model.sdf</sdf></model>"
+OLD = """<sdf version='1.6'><model name='b'>
+<link name='base_link'><pose frame='x'/></link></model></sdf>"""
+
+
+@pytest.fixture
+def rover(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name in VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    texts = {"base": BASE.format(""), "mid": MID, "cam": CAM, "rover": ROVER}
+    for name, text in texts.items():
+        (tmp_path / "models" / name).mkdir(parents=True)
+        (tmp_path / "models" / name / "model.sdf").write_text(text)
+        (tmp_path / "models" / name / "model.config").write_text(CONFIG)
+    return tmp_path / "models" / "rover" / "model.sdf"
+
+
+def test_all_is_known_renamed_and_proved(rover: Path) -> None:
+    done = rewrite(rover, "r1")
+    assert {it.code for it in done.findings} == set()
+    assert done.not_proved == ()
+    for name in (b"rotor/r1", b"spin_r1", b"top/r1", b"front_r1::camera_link/r1", b"image/r1"):
+        assert name in done.data, name
+    assert b"<include" not in done.data
+    whole = with_includes(rover.read_bytes(), str(rover))
+    assert strip(done.data, "r1") == whole
+
+
+def test_every_line_keeps_its_number(rover: Path) -> None:
+    before = rover.read_text().splitlines()
+    after = with_includes(rover.read_bytes(), str(rover)).decode().splitlines()
+    assert len(after) == len(before)
+    assert [it for it in before if "mount" in it] == [after[9]]
+
+
+def test_the_lint_knows_what_is_included(rover: Path) -> None:
+    assert not {"MB211", "MB202", "MB219", "MB906"} & {
+        it.code for it in lint_file(str(rover), Settings())
+    }
+    rover.write_text(ROVER.replace(">spin<", ">spun<"))
+    (found,) = (it for it in lint_file(str(rover), Settings()) if it.code == "MB211")
+    assert (
+        found.line
+        == ROVER.splitlines().index(next(it for it in ROVER.splitlines() if "spin" in it)) + 1
+    )
+    assert "spin" in found.hint
+
+
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_it_is_looked_for_where_gazebo_looks(
+    rover: Path, variable: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    alone = tmp_path / "elsewhere" / "deep" / "model.sdf"
+    alone.parent.mkdir(parents=True)
+    alone.write_text(ROVER)
+    assert [it.code for it in rewrite(alone, "r1").findings].count("MB906") == 2
+    monkeypatch.setenv(variable, f"/nowhere:{rover.parents[1]}")
+    assert rewrite(alone, "r1").not_proved == ()
+
+
+def test_the_file_is_the_one_that_the_config_names(rover: Path) -> None:
+    home = rover.parents[1] / "cam"
+    sdf = "<sdf version='1.10'>new.sdf</sdf><sdf version='1.9'>model.sdf</sdf>"
+    (home / "model.config").write_text(f"<model><name>c</name>{sdf}</model>")
+    (home / "new.sdf").write_text(CAM.replace("eye", "new_eye"))
+    assert b"new_eye" in rewrite(rover, "r1").data
+
+
+def test_a_file_beside_the_included_model_is_found_from_the_new_one(rover: Path) -> None:
+    mesh = rover.parents[1] / "base" / "meshes" / "a.stl"
+    mesh.parent.mkdir()
+    mesh.write_text("")
+    visual = "<visual name='v'><geometry><mesh><uri>meshes/a.stl</uri></mesh></geometry></visual>"
+    base = BASE.format(f"<link name='more'>{visual}</link>")
+    (rover.parents[1] / "base" / "model.sdf").write_text(base)
+    assert f"<uri>file://{mesh}</uri>".encode() in rewrite(rover, "r1").data
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("base", OLD),
+        ("mid", MID.replace(">base<", ">mid<")),
+        ("base", "<sdf version='1.9'><model"),
+        ("base", "<robot name='r'/>"),
+    ],
+    ids=("old", "itself", "broken", "no-model"),
+)
+def test_what_cannot_be_put_in_stays_and_is_said(rover: Path, file: str, text: str) -> None:
+    (rover.parents[1] / file / "model.sdf").write_text(text)
+    done = rewrite(rover, "r1")
+    assert "MB906" in {it.code for it in done.findings}
+    assert b"<include" in done.data
+
+
+@pytest.mark.parametrize(
+    "uri", ["../../../etc/x.sdf", "https://fuel.gazebosim.org/a", "/etc/passwd", ""]
+)
+def test_nothing_else_is_read(rover: Path, uri: str) -> None:
+    rover.write_text(ROVER.replace("model://mid", uri))
+    assert uri.encode() in rewrite(rover, "r1").data
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not IGN, reason="libsdformat is missing: apt install ignition-tools libsdformat-dev"
+)
+def test_libsdformat_makes_the_same_of_it(rover: Path) -> None:
+    """Its own text of both; numbers are written as they were read."""
+    home = str(rover.parents[1])
+    whole = rover.with_name("whole.sdf")
+    whole.write_bytes(with_includes(rover.read_bytes(), str(rover)))
+    one, other = (printed(it, home) for it in (rover, whole))
+    assert any("_merged__mid__model__" in it for it in one)
+    assert other == one
+
+
+def printed(file: Path, home: str) -> list[str]:
+    run = [IGN, "sdf", "-p", str(file)]
+    env = {**os.environ, "SDF_PATH": home}
+    done = subprocess.run(run, capture_output=True, text=True, check=True, env=env)
+    lines = (it.replace("-0", "0").strip() for it in done.stdout.splitlines())
+    return re.findall(r"<.*|[^\s<].*", "\n".join(it for it in lines if it))

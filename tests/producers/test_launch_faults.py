@@ -1,0 +1,174 @@
+"""Faults planted in a healthy fleet of two in Gazebo, and what check-launch says of them.
+
+Expectations: what the programs do with it, by their sources (the rules name them).
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from paths import ROOT
+
+from multibot_rewrite.cli.multibot import main
+
+LAUNCH, BRIDGE = "fleet.launch.py", "robot2/bridge.yaml"
+ROVER, WORLD = "robot2/rover.urdf", "world.sdf"
+# What is given to robot2 alone.
+OF_TWO = "robot2/{}' if name == 'robot2' else f'{{name}}/{}"
+SYSTEM = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"'
+
+
+class Fault(NamedTuple):
+    """A text of a built file that is changed, the code of the finding and the file that it is in."""
+
+    file: str
+    old: str
+    new: str
+    code: str
+    place: str = LAUNCH
+    level: str = "error"
+
+
+def for_two(old: str, new: str) -> tuple[str, str]:
+    """A text of the function, for robot2 another one."""
+    return old, f"{new} if name == 'robot2' else {old}"
+
+
+FAULTS = {
+    "the other robot's description": Fault(
+        LAUNCH, *for_two("text(f'{name}/rover.urdf')", "text('robot1/rover.urdf')"), "MG703"
+    ),
+    "spawned from the other's topic": Fault(
+        LAUNCH,
+        *for_two("f'/{name}/robot_description'", "'/robot1/robot_description'"),
+        "MG703",
+    ),
+    "one model name": Fault(LAUNCH, "'-name', name,", "'-name', 'robot1',", "MG701"),
+    "one place": Fault(LAUNCH, "'robot2', x=3.0", "'robot2', x=1.0", "MG702"),
+    "commands the wrong way": Fault(BRIDGE, "ROS_TO_GZ", "GZ_TO_ROS", "MG704"),
+    "a row of another type": Fault(BRIDGE, "gz.msgs.Twist", "gz.msgs.Pose", "MB879", BRIDGE),
+    "types that are not converted": Fault(
+        BRIDGE, "gz.msgs.LaserScan", "gz.msgs.IMU", "MB874", BRIDGE
+    ),
+    "a scan that nothing sends": Fault(BRIDGE, '"/robot2/scan"', '"/robot2/scn"', "MB879", BRIDGE),
+    "commands into the other robot": Fault(
+        BRIDGE, 'gz_topic_name: "/robot2/cmd_vel"', 'gz_topic_name: "/robot1/cmd_vel"', "MG705"
+    ),
+    "commands of no robot": Fault(
+        BRIDGE, 'ros_topic_name: "/robot2/cmd_vel"', 'ros_topic_name: "/cmd_vel"', "MG705"
+    ),
+    "a bridge file that is lost": Fault(
+        LAUNCH, *for_two("file(f'{name}/bridge.yaml')", "file('robot2/bridges.yaml')"), "MG713"
+    ),
+    "a namespace twice": Fault(
+        LAUNCH, *for_two("f'/{name}/robot_description'", "'/robot2/robot2/robot_description'"), "MG724"
+    ),
+    "an angle in degrees": Fault(LAUNCH, "'--yaw', '0.0'", "'--yaw', '90'", "MG711"),
+    "a frame above itself": Fault(LAUNCH, "f'{name}/odom'", "'map'", "MG711"),
+    "a program that is misspelt": Fault(
+        LAUNCH, "executable='robot_state_publisher'", "executable='robot_state_publish'", "MG714"
+    ),
+    "a launch that ends": Fault(LAUNCH, "/rover.urdf'", "/rover.xml'", "MG721"),
+    "a rule that matches nothing": Fault(
+        LAUNCH, "name='joint_state_publisher',",
+        "name='joint_state_publisher', remappings=[('joint_stats', 'a')],", "MG712",
+        level="warning",
+    ),
+    "a parameter that is misspelt": Fault(
+        LAUNCH, "{'robot_description'", "{'frame_prefixx': 'a', 'robot_description'", "MB110",
+        level="warning",
+    ),
+    "no time": Fault(
+        LAUNCH, "name='joint_state_publisher',\n            parameters=[CLOCK]",
+        "name='joint_state_publisher',\n            parameters=[CLOCK] if name == 'robot1' else []",
+        "MG514", level="warning",
+    ),
+    "odometry of the other robot": Fault(
+        ROVER, "robot2/odom</frame_id>", "robot1/odom</frame_id>", "MG414"
+    ),
+    "a wheel without mass": Fault(ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "MB603", ROVER),
+    "a robot without mass": Fault(ROVER, "<mass value=", "<mass kg=", "MB115", ROVER),
+    "a joint of the other robot": Fault(
+        ROVER, "<left_joint>robot2", "<left_joint>robot1", "MB211", ROVER
+    ),
+    "what is left of a xacro": Fault(
+        ROVER, 'link name="robot2/base_link"', 'link name="${ns}base_link"', "MB202", ROVER
+    ),
+    "a world without sensors": Fault(
+        WORLD, SYSTEM.format("sensors", "Sensors"), SYSTEM.format("label", "Label"), "MG706"
+    ),
+    "a world that spawns nothing": Fault(
+        WORLD, SYSTEM.format("user-commands", "UserCommands"), SYSTEM.format("label", "Label"), "MG706"
+    ),
+    "a world without physics": Fault(
+        WORLD, SYSTEM.format("physics", "Physics"), SYSTEM.format("label", "Label"), "MG706"
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def healthy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("healthy") / "out"
+    fleet = ROOT / "examples" / "launch_tutorial" / "fleet.yaml"
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    return out
+
+
+def found_in(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> tuple[int, list[dict[str, object]]]:
+    code = main(["check-launch", str(folder / LAUNCH), "--format", "json"])
+    return code, json.loads(capsys.readouterr().out)["findings"]
+
+
+def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert found_in(healthy, capsys) == (0, [])
+
+
+@pytest.mark.sample(8)
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_planted_fault_is_found_at_its_place(
+    name: str, healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    it, folder = FAULTS[name], tmp_path / "out"
+    shutil.copytree(healthy, folder)
+    text = (folder / it.file).read_text()
+    assert it.old in text
+    (folder / it.file).write_text(text.replace(it.old, it.new))
+    capsys.readouterr()
+    code, found = found_in(folder, capsys)
+    own = [one for one in found if one["code"] == it.code]
+    assert own, found
+    assert {one["level"] for one in own} == {it.level}
+    assert all(str(one["file"]).endswith(it.place) and one["line"] for one in own)
+    assert code == (1 if it.level == "error" else 0)
+
+
+def test_two_launch_files_are_one_system(
+    healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The clock of a launch file may be in another one."""
+    (tmp_path / "robot.launch.py").write_text(ONE.format(NODE))
+    (tmp_path / "clock.launch.py").write_text(ONE.format(CLOCK))
+    files = [str(tmp_path / it) for it in ("robot.launch.py", "clock.launch.py")]
+    assert main(["check-launch", files[0]]) == 1
+    assert "MG501" in capsys.readouterr().out
+    assert main(["check-launch", *files]) == 0
+
+
+ONE = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([{}])
+"""
+NODE = "Node(package='joint_state_publisher', executable='joint_state_publisher', \
+namespace='robot1', parameters=[{'use_sim_time': True, 'robot_description': \
+'<robot name=\"r\"><link name=\"a\"/></robot>'}])"
+CLOCK = "Node(package='ros_gz_bridge', executable='parameter_bridge', \
+arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock'])"
