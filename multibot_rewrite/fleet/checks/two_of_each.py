@@ -23,6 +23,9 @@ from multibot_rewrite.system.records import System
 # What two robots do to each other needs two of them.
 _OF_EACH = 2
 _FUNCTION = re.compile(r"(?m)^def start_(\w+)\(\):\n(?:(?:[ ].*)?\n)*")
+# The table of the launch file: what starts each robot.
+_TABLE = "\nROBOTS = {\n"
+_ROW = re.compile(r'(?m)^    "(\w+)": .*,\n')
 _PLANNED = re.compile(r"(?m)^  ([^\s:]+):\n(?:    .*\n)+")
 _FILE = re.compile(r'(?:file|text)\("([^"\n]+)"\)')
 _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.])")
@@ -45,12 +48,15 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> tuple[Outputs, fr
     files = {it.path: it for it in made.files}
     launch, plan = (files[it].text if it in files else "" for it in (LAUNCH, PLAN))
     parts, plans = _by_name(_FUNCTION, launch), _by_name(_PLANNED, plan)
+    rows = _by_name(_ROW, launch.partition(_TABLE)[2])
     sorts: list[_Sort] = []
     of_sort: dict[int, list[RobotSpec]] = defaultdict(list)
     for it in robots:
-        if launch.count(_row(it)) != 1 or it.name not in parts or it.namespace not in plans:
+        row, part = rows.get(it.name, ""), parts.get(it.name, "")
+        is_whole = bool(part) == (f"start_{it.name}" in row)
+        if not (row and is_whole and it.namespace in plans):
             return made, frozenset()
-        own = _sort(it, (_row(it), parts[it.name], plans[it.namespace]), files)
+        own = _sort(it, (row, part, plans[it.namespace]), files)
         at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
@@ -81,11 +87,6 @@ def _texts(graph: LaunchGraph) -> Iterator[str]:
 
 def _by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:
     return {it[1]: it[0] for it in pattern.finditer(text)}
-
-
-def _row(it: RobotSpec) -> str:
-    """The line of the robot in the table of the launch file."""
-    return f'    "{it.name}": start_{it.name},\n'
 
 
 def _sort(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) -> _Sort:
@@ -121,13 +122,16 @@ def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bo
 
 def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
     """The outputs without some robots."""
-    names, rows = {it.name for it in left}, {_row(it) for it in left}
+    names = {it.name for it in left}
     files = [it for it in made.files if it.path.partition("/")[0] not in names]
+
+    def kept(one: re.Match[str]) -> str:
+        return "" if one[1] in names else one[0]
+
     for at, it in enumerate(files):
         if it.path == LAUNCH:
-            text = _FUNCTION.sub(lambda one: "" if one[1] in names else one[0], it.text)
-            lines = (line for line in text.splitlines(True) if line not in rows)
-            files[at] = it._replace(data="".join(lines).encode())
+            above, table, rows = _FUNCTION.sub(kept, it.text).partition(_TABLE)
+            files[at] = it._replace(data=f"{above}{table}{_ROW.sub(kept, rows)}".encode())
     planned = _planned(made.planned, {it.namespace for it in left})
     return made._replace(files=tuple(files), planned=planned) if left else made
 
