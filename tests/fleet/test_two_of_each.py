@@ -51,7 +51,7 @@ def test_what_is_read_has_no_word_of_the_others() -> None:
     few, _ = two_of_each(made, [it.spec for it in plan.robots])
     assert {it.name for it in few.planned.robots} == {"robot3", "robot4"}
     launch = next(it.text for it in few.files if it.path == LAUNCH)
-    assert {*re.findall(r'(?m)^    "(robot\d)": ', launch)} == {"robot3", "robot4"}
+    assert {*re.findall(r"(?m)^    '(robot\d)': ", launch)} == {"robot3", "robot4"}
     assert {it.path.partition("/")[0] for it in few.files} & {*NAMES} == {"robot3", "robot4"}
 
 
@@ -61,9 +61,9 @@ def test_what_is_read_has_no_word_of_the_others() -> None:
         in_file("robot1/nav2_params.yaml", "scan_topic: scan", "scan_topic: scan2"),
         in_file("robot1/bridge.yaml", "/robot1/scan", "/robot2/scan"),
         in_file("robot1/hexbase.urdf", "<link", "<!-- --><link"),
-        in_file(LAUNCH, '"robot1": partial(', '"robot1":  partial('),
+        in_file(LAUNCH, "'robot1': partial(", "'robot1':  partial("),
         in_file("plan.yaml", "  robot1:\n", "  robot1:\n    tag: other\n"),
-        in_file(LAUNCH, '"robot1": partial(start, "robot1"', '"robot1": partial(start, "robot2"'),
+        in_file(LAUNCH, "(start, 'robot1'", "(start, 'robot2'"),
     ],
 )  # fmt: skip
 def test_a_robot_with_another_text_is_read(edit: Edit) -> None:
