@@ -61,13 +61,13 @@ def test_what_is_read_has_no_word_of_the_others() -> None:
         in_file("robot1/nav2_params.yaml", "scan_topic: scan", "scan_topic: scan2"),
         in_file("robot1/bridge.yaml", "/robot1/scan", "/robot2/scan"),
         in_file("robot1/hexbase.urdf", "<link", "<!-- --><link"),
-        in_file(LAUNCH, "'robot1': partial(", "'robot1':  partial("),
+        in_file(LAUNCH, '"robot1": start_robot1', '"robot1":  start_robot1'),
         in_file("plan.yaml", "  robot1:\n", "  robot1:\n    tag: other\n"),
-        in_file(LAUNCH, "(start, 'robot1'", "(start, 'robot2'"),
+        in_file(LAUNCH, '"robot1": start_robot1', '"robot1": start_robot2'),
     ],
 )  # fmt: skip
 def test_a_robot_with_another_text_is_read(edit: Edit) -> None:
-    assert "robot1" not in left(edit)
+    assert left(edit) == {"robot5", "robot2"}
 
 
 def test_all_are_read_where_names_are_within_each_other() -> None:
