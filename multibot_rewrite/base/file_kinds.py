@@ -100,7 +100,10 @@ def recognised(data: bytes) -> str:
     if text.startswith(b"<"):
         return _first(_XML, text)
     if text.startswith(b"{"):
-        return PLAN if b'"layout"' in text else SNAPSHOT if _SNAPSHOT.search(text) else ""
+        ends = _SNAPSHOT.search(text)
+        if b'"ways"' in text or (ends and b'"layout"' in text):
+            return PLAN
+        return SNAPSHOT if ends else FLEET if b'"robots"' in text else ""
     return _first((*BESIDE, *_OTHERS), text)
 
 

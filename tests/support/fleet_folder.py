@@ -5,10 +5,14 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-ROVER = """\
+MASS = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>'
+)
+ROVER = f"""\
 <robot name="rover">
   <!-- kept -->
-  <link name="base_link"/>
+  <link name="base_link">{MASS}</link>
   <link name="lidar_link"/>
   <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
 </robot>

@@ -16,7 +16,7 @@ DOOR = (
 )
 FINGER = f'<link name="finger_link">{MASS}</link>\n'
 CASTER = (
-    f'{FINGER}<link name="caster"/><joint name="caster_joint" type="continuous">'
+    f'{FINGER}<link name="caster">{MASS}</link><joint name="caster_joint" type="continuous">'
     '<parent link="base_link"/><child link="caster"/><axis xyz="0 1 0"/></joint>\n'
 )
 SECOND_FILTER = """\
