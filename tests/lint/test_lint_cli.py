@@ -167,7 +167,7 @@ def test_lines_are_such_that_editors_find_the_place(capsys: pytest.CaptureFixtur
     assert all(lines)
     assert {it["file"] for it in lines if it} >= {"left.urdf", "two_roots.urdf"}
     assert re.fullmatch(
-        r"urdf-lint: 5 files: 1 error, 1 warning(, \d+ notes?)? \(facts of \w+\)\n", err
+        r"urdf-lint: 5 files: 1 error, 1 warning(, \d+ notes?)? \(ROS 2 \w+\)\n", err
     )
 
 
