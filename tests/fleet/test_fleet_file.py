@@ -213,7 +213,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "no-robots": ("layout: L1\n", " there are no robots; write robots:"),
     "empty-robots": ("robots: []\n", "1: robots: the list is empty; write at least one"),
     "robots-as-keys": ("robots: {a: 1}\n", "1: robots: {'a': 1} is not valid; write a list"),
-    "robot-as-word": ("robots: [a]\n", "1: robots[0]: 'a' is not valid; write keys with values"),
+    "robot-as-word": ("robots: [a]\n", "1: robots[0]: 'a' is not valid; write {name: a}"),
     "no-name": ("robots:\n  - {description: rover.urdf}\n", "2: robots[0]: the key 'name' is miss"),
     "name-number": ("robots:\n  - {name: 1}\n", "2: robots[0].name: 1 is not valid; write it in q"),
     "name-on": ("robots:\n  - {name: on}\n", "2: robots[0].name: True is not valid; write it in q"),
