@@ -46,12 +46,20 @@ def _data(seen: Index, end: End) -> Ends | None:
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand
     kind = words.kind_of_data(end.name, end.type)
-    if outside and kind != words.DESCRIPTION:
+    # What a node has below its own name is for whoever calls it by that: servo, a controller.
+    if end.name.startswith(f"{end.node}/") or (outside and kind != words.DESCRIPTION):
         return None
     given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
     unread = [it for it in given if not at_work(it.subscribers)]
+    # Joints come from several nodes, and a node that merges them need not have all.
+    several = words.JOINTS in (kind, end.type)
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
-    return _nearest(end, unread or same)
+    return _only(given if several and unread else unread or ([] if several else same))
+
+
+def _only(given: Sequence[Ends]) -> Ends | None:
+    """The one that there is: of two that fit none is surely meant."""
+    return given[0] if len(given) == 1 else None
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:

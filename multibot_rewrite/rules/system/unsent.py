@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.conventions import is_from_outside
+from multibot_rewrite.base.conventions import chooses, is_from_outside
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import shorten, unique
@@ -69,10 +69,11 @@ def open_ends(seen: Index) -> list[End]:
 
 
 def is_needed(end: End) -> bool:
-    """Must something of the robot give it, as far as is known?"""
+    """Must something of the robot give it, as far as is known? What chooses seldom has all inputs."""
     by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
     outside = is_from_outside(end.name) or is_from_outside(end.code_name)
-    return bool(by_code) and not outside and not is_viewer(end.node)
+    idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))
+    return bool(by_code) and not outside and not idle
 
 
 def _is_status(seen: Index, kind: str, name: str) -> bool:
