@@ -303,7 +303,7 @@ def _is_led(end: End, space: str) -> bool:
 
 
 def _has_robot_last(name: str, node: str) -> bool:
-    """``/goal_pose/robot1`` of ``/bt_navigator_robot1`` or of ``/robot1/local_costmap/local_costmap``, as
+    """``/goal_pose/robot1`` of ``/bt_navigator_robot1``, or of ``/robot1/costmap/costmap``, as
     the layout `postfix` has them."""
     last = name.rpartition("/")[2]
     return name.count("/") > 1 and (node.endswith(f"_{last}") or node.startswith(f"/{last}/"))

@@ -46,7 +46,11 @@ WAITS = {
 # system here starts it without.
 _FOLLOW = "follow_joint_trajectory"
 WAITS |= {
-    (release, f"/{it}/motion_controller/{_FOLLOW}", f"/{it}{sep}joint_trajectory_controller/{_FOLLOW}")
+    (
+        release,
+        f"/{it}/motion_controller/{_FOLLOW}",
+        f"/{it}{sep}joint_trajectory_controller/{_FOLLOW}",
+    )
     for it in ROBOTS
     for sep in "/_"
     for release in ("kilted", "lyrical")
