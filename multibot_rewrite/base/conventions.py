@@ -167,6 +167,8 @@ FROM_OUTSIDE = {
         *("reference", "commands", "joint_trajectory", "trajectory", "external_wrench", "feedback"),
         *("set_feedback", "trajectory_execution_event", "enable_freedrive_mode", "script_command"),
         *("equilibrium_pose", "speed_scaling_input", "footprint"),
+        # moveit_servo servo_parameters.yaml.
+        *("delta_twist_cmds", "delta_joint_cmds", "pose_target_cmds"),
     ),
     "a scene": (
         *(

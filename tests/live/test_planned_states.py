@@ -127,7 +127,7 @@ states:
     [
         (("/robot1/amcl", "/robot1/driver"), True, []),
         (("/robot1/amcl",), True, [("MG503", "/robot1/driver", "true")]),
-        (("/robot1/amcl", "/robot1/driver"), False, [("MG501", "/robot1/amcl", "nobody")]),
+        (("/robot1/amcl", "/robot1/driver"), False, [("MG501", "/robot1/amcl", "no node")]),
         (
             ("/robot1/amcl", "/robot1/driver", "/robot2/amcl"),
             True,

@@ -56,7 +56,7 @@ def chain_rows() -> tuple[Fault, ...]:
                 added("/robot1/button", (PUBLISHES, "/robot2/stop", BOOL)),
                 *(added(f"/{it}/base", (SUBSCRIBES, f"/{it}/stop", BOOL)) for it in TWO),
             ),
-            "MG311", ("/robot1/button", "belongs to robot2"),
+            "MG311", ("/robot1/button", "a name of robot2"), ERROR, ("MG316",),
         ),
         Fault(
             "the controller sends past collision_monitor", nav,

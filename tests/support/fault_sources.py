@@ -283,7 +283,7 @@ def _launched(
     ``held``."""
     space, _, last = name.rpartition("/")
     # No rule leads an action elsewhere (rcl_action action_client.c): its name is in the code.
-    outside = [it for it in ends if not it.name.startswith(f"{space}/") and it.kind != ACTION]
+    outside = [it for it in ends if it.kind != ACTION and _is_led(it, space)]
     rules = tuple((_code_name(it), it.name) for it in outside)
     values = {**({SIM_TIME: "true"} if simulated else {}), **asked}
     if _is_description(ends):
@@ -297,10 +297,24 @@ def _launched(
     return LaunchedNode(*words)
 
 
+def _is_led(end: End, space: str) -> bool:
+    """Is it a rule that leads the name out of the node's namespace, or to its robot at the end?"""
+    return not end.name.startswith(f"{space}/") or _has_robot_last(end.name, end.node)
+
+
+def _has_robot_last(name: str, node: str) -> bool:
+    """``/goal_pose/robot1`` of ``/bt_navigator_robot1``, or of ``/robot1/costmap/costmap``, as
+    the layout `postfix` has them."""
+    last = name.rpartition("/")[2]
+    return name.count("/") > 1 and (node.endswith(f"_{last}") or node.startswith(f"/{last}/"))
+
+
 def _code_name(end: End) -> str:
     """tf2_ros has absolute names (transform_broadcaster.hpp)."""
     if end.type == TF:
         return "/tf_static" if "tf_static" in end.name else "/tf"
+    if _has_robot_last(end.name, end.node):
+        return end.name.strip("/").rpartition("/")[0]
     return end.name.strip("/").replace("/", "_")
 
 

@@ -183,6 +183,8 @@ def slam_with_filters() -> System:
     graph = started(("nav2_slam", "robot_localization_gps"))
     for robot in TWO:
         graph = moved(graph, f"/{robot}/imu", f"/{robot}/imu/data", "/imu_driver")
+        fix = (PUBLISHES, f"/{robot}/gps/fix", "sensor_msgs/msg/NavSatFix")
+        graph = with_node(graph, f"/{robot}/gps_driver", fix)
     return with_tools(graph, TWO)
 
 

@@ -123,11 +123,11 @@ def command_rows() -> tuple[Fault, ...]:
     return (
         Fault(
             "robot2's teleop drives robot1", nav, added("/robot2/teleop_twist_joy_node", send1),
-            "MG311", ("/robot2/teleop_twist_joy_node", "belongs to robot1"),
+            "MG311", ("/robot2/teleop_twist_joy_node", "a name of robot1"),
         ),
         Fault(
             "a joystick called after robot2 drives robot1", nav, added("/teleop_robot2", send1),
-            "MG311", ("/teleop_robot2", "belongs to robot1"),
+            "MG311", ("/teleop_robot2", "a name of robot1"),
         ),
         Fault(
             "a joystick against Nav2", nav, added("/robot1/teleop_twist_joy_node", send1),
@@ -194,7 +194,7 @@ def command_rows() -> tuple[Fault, ...]:
                 added("/right_arm/arm_controller", (SUBSCRIBES, RIGHT, TRAJECTORY)),
                 added("/left_arm/demo", (PUBLISHES, RIGHT, TRAJECTORY)),
             ),
-            "MG311", ("/left_arm/demo", "belongs to right_arm"),
+            "MG311", ("/left_arm/demo", "a name of right_arm"),
         ),
         Fault(
             "robot1's patrol sends goals to robot2", nav,

@@ -42,6 +42,19 @@ WAITS = {
     ("humble", f"/{it}/controller_manager/robot_description", f"/{it}/robot_description")
     for it in ROBOTS
 }
+# The vendor's launch file leads this client to the controller by a rule (ur_control.launch.py); the
+# system here starts it without.
+_FOLLOW = "follow_joint_trajectory"
+WAITS |= {
+    (
+        release,
+        f"/{it}/motion_controller/{_FOLLOW}",
+        f"/{it}{sep}joint_trajectory_controller/{_FOLLOW}",
+    )
+    for it in ROBOTS
+    for sep in "/_"
+    for release in ("kilted", "lyrical")
+}
 ARM = """\
 <robot name="arm">
   <link name="world"/><link name="base"/><link name="tool"/>

@@ -4,14 +4,13 @@ it is spelled."""
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.rules.system.unsent import meant
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, once
-from multibot_rewrite.system.records import CALLS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
+from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
@@ -23,6 +22,8 @@ COMMON = (
     "type_description_interfaces/",
     "std_msgs/",
 )
+# Of such a type are many topics that have nothing to do with each other.
+_PLAIN_TYPES = "std_"
 # Of which the name says what they are for.
 _TRIGGERS = "std_srvs/"
 
@@ -46,12 +47,20 @@ def _data(seen: Index, end: End) -> Ends | None:
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand
     kind = words.kind_of_data(end.name, end.type)
-    if outside and kind != words.DESCRIPTION:
+    # What a node has below its own name is for whoever calls it by that: servo, a controller.
+    if end.name.startswith(f"{end.node}/") or (outside and kind != words.DESCRIPTION):
         return None
     given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
     unread = [it for it in given if not at_work(it.subscribers)]
+    # Joints come from several nodes, and a node that merges them need not have all.
+    several = words.JOINTS in (kind, end.type)
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
-    return _nearest(end, unread or same)
+    return _only(given if several and unread else unread or ([] if several else same))
+
+
+def _only(given: Sequence[Ends]) -> Ends | None:
+    """The one that there is: of two that fit none is surely meant."""
+    return given[0] if len(given) == 1 else None
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
@@ -127,3 +136,51 @@ def listed_in_vain(seen: Index, end: End) -> str:
     node = end.name.rpartition("/")[0]
     manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
     return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""
+
+
+def is_needed(end: End) -> bool:
+    """Must something of the robot give it, as far as is known? What chooses seldom has all inputs."""
+    by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
+    outside = is_from_outside(end.name) or is_from_outside(end.code_name)
+    idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))
+    return bool(by_code) and not outside and not idle
+
+
+def meant(seen: Index, end: End) -> Ends | None:
+    """What may be meant by an end: what is sent of the same type, with the same last word or the likest
+    name; nothing for one of which it is not known what the code calls it."""
+    if not is_needed(end) or not end.type:
+        return None
+    given = _given(seen)
+    own = {"", seen.robot(end.node)}
+    same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
+    alike = {same[at].name: same[at] for at in sorted(same) if _may_be(seen, same[at], end)}
+    if end.type.startswith(_PLAIN_TYPES):
+        # What their names in the code have in common counts, not the robot's namespace.
+        words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}
+        return words.get(nearest(last_word(end.code_name), words))
+    last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
+    return alike.get(nearest(end.name, last or alike, alike=0.0))
+
+
+@once
+def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
+    """What is sent or served, by its kind, its type and the robot that does, each with its place among
+    all: a look at all names for each end takes the square of the robots."""
+    found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
+    for at, it in enumerate(seen.by_name.values()):
+        for robot in {seen.robot(one.node) for one in _givers(it)}:
+            found[it.kind, it.type, robot].append((at, it))
+    return found
+
+
+def _may_be(seen: Index, ends: Ends, end: End) -> bool:
+    """Does another node of the same robot, or of none, send it, and is it not read already?"""
+    if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
+        return False
+    own = ("", seen.robot(end.node))
+    return any(it.node != end.node and seen.robot(it.node) in own for it in _givers(ends))
+
+
+def _givers(ends: Ends) -> Iterable[End]:
+    return (*ends.publishers, *ends.servers)
