@@ -51,7 +51,7 @@ def shadowed(folder: Path, capsys: pytest.CaptureFixture[str], *sections: str) -
         pytest.param((AMCL, OTHER), [], id="no pattern"),
         pytest.param((AMCL, section("/**", gamma=1)), [], id="a pattern with other parameters"),
         pytest.param((AMCL, section("/**/node", alpha1=1)), [], id="a pattern of another node"),
-        pytest.param((OTHER, section("/**/amcl", alpha1=1), ALL), [], id="two patterns"),
+        pytest.param((OTHER, section("/**/amcl", alpha1=1.0), ALL), [], id="two patterns"),
     ],
 )
 def test_a_pattern_takes_the_place_of_earlier_sections_only(
