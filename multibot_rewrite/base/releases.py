@@ -73,7 +73,7 @@ def unusual_release(given: str, environment: Mapping[str, str]) -> str:
     if given or not found or found in RELEASES:
         return ""
     what = "has ended" if found in ENDED else "is not known"
-    other = f"the facts are those of {ENDED[found]}; " if found in ENDED else ""
+    other = f"{ENDED[found]} is taken in its place; " if found in ENDED else ""
     return f"{VARIABLE} is {found!r}, which {what}: {other}name another release with --distro"
 
 

@@ -108,7 +108,7 @@ def test_the_release_of_a_description(
 
 
 def test_a_release_that_has_ended_or_is_not_known_is_doubted() -> None:
-    assert "has ended: the facts are those of jazzy" in unusual_release("", {"ROS_DISTRO": "iron"})
+    assert "has ended: jazzy is taken in its place" in unusual_release("", {"ROS_DISTRO": "iron"})
     assert "is not known" in unusual_release("", {"ROS_DISTRO": "noetic"})
     assert unusual_release("", {"ROS_DISTRO": "jazzy"}) == unusual_release("", {}) == ""
     assert unusual_release("jazzy", {"ROS_DISTRO": "noetic"}) == ""

@@ -25,9 +25,9 @@ _OF_EACH = 2
 _FUNCTION = re.compile(r"(?m)^def start_(\w+)\(\):\n(?:(?:[ ].*)?\n)*")
 # The table of the launch file: what starts each robot.
 _TABLE = "\nROBOTS = {\n"
-_ROW = re.compile(r'(?m)^    "(\w+)": .*,\n')
+_ROW = re.compile(r"""(?m)^    ['"](\w+)['"]: .*,\n""")
 _PLANNED = re.compile(r"(?m)^  ([^\s:]+):\n(?:    .*\n)+")
-_FILE = re.compile(r'(?:file|text)\("([^"\n]+)"\)')
+_FILE = re.compile(r"""(?:file|text)\(['"]([^'"\n]+)['"]\)""")
 _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.])")
 # The read-back looks for an RViz config, and not into it.
 _NOT_READ = (".rviz",)

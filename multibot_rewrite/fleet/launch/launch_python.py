@@ -292,7 +292,7 @@ def _given(
 def _list(key: str, items: Sequence[str]) -> Iterator[str]:
     """A keyword with a list: in one line where that is short, whatever the names of robots are."""
     line = f"{key}=[{', '.join(items)}],"
-    if len(line) <= _SHORT:
+    if _is_short(line):
         yield line
         return
     yield f"{key}=["
@@ -300,9 +300,14 @@ def _list(key: str, items: Sequence[str]) -> Iterator[str]:
     yield "],"
 
 
+def _is_short(text: str) -> bool:
+    """Does it stay in one line? Robots that only a number tells apart look the same."""
+    return len(re.sub(r"\d", "", text)) <= _SHORT
+
+
 def _item(it: str) -> Iterator[str]:
     """An item of a list; a long dictionary or list of words in several lines."""
-    if len(it) <= _SHORT or not it.startswith("{"):
+    if _is_short(it) or not it.startswith("{"):
         yield f"{it},"
         return
     yield "{"
@@ -313,7 +318,7 @@ def _item(it: str) -> Iterator[str]:
 
 def _entry(text: str) -> Iterator[str]:
     key, _, value = text.partition(": ")
-    if len(text) <= _SHORT or not value.startswith("["):
+    if _is_short(text) or not value.startswith("["):
         yield f"{text},"
         return
     yield f"{key}: ["
