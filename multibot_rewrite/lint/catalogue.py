@@ -66,6 +66,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
+            "fleet.robots.named_twice",
             "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
             "fleet.robots.srdf_of_another",

@@ -185,6 +185,13 @@ PLANTED = {
     "a parameter of a shim's controller": (SHIM, "max_vel_x", "max_vel_xx", "MB110:7"),
     "a parameter of a shim": (SHIM, "angular_dist", "anglar_dist", "MB110:6"),
     "a critic of a shim's controller": (SHIM, "GoalDist.scale", "GoalDist.scael", "MB110:9"),
+    "a parameter that is not declared": (
+        CONTROLLERS,
+        "base_frame_id: base_link",
+        "acme_extra: 1",
+        "MB111:12",
+    ),
+    "a source without parameters": (PLUGINS, "scan: {", "front_scan: {", "MB115:31"),
     "an integer for a double": (CONTROLLERS, "0.34", "1", "MB120:10"),
     "a text for a double": (CONTROLLERS, "wheel_radius: 0.07", 'wheel_radius: "0.07"', "MB120:11"),
     "a number for a name": (
@@ -213,7 +220,7 @@ PLANTED = {
         CONTROLLERS,
         "joints: [left_wheel_joint",
         "joints: [elbow",
-        "MB854:19",
+        "MB854:19 MB111:22",
     ),
     "a joint of MoveIt": (MOVEIT_LIMITS, "left_wheel_joint", "left_wheel", "MB854:2"),
     "a separation of another robot": (CONTROLLERS, "0.34", "0.5", "MB856:10"),
@@ -265,7 +272,6 @@ HEALTHY = {
     "an empty list": (CONTROLLERS, "command_interfaces: [position]", "command_interfaces: []"),
     "a number for rcl alone": (CONTROLLERS, "2.0", "2e0"),
     "an octal number": (CONTROLLERS, "update_rate: 100", "update_rate: 0100"),
-    "a parameter of its own": (CONTROLLERS, "base_frame_id", "acme_extra"),
     "a parameter of every node": (NAV, "scan_topic: scan", "use_sim_time: true"),
     "quality of service": (NAV, "scan_topic: scan", "qos_overrides./tf.publisher.depth: 3"),
     "a plugin's own parameter": (NAV, "desired_linear_vel: 0.5", "acme_velocity: 1"),
@@ -300,7 +306,11 @@ HEALTHY = {
         "GoalDist: {class: acme_critics::Far, scael",
     ),
     "a critic of another package": (PLUGINS, "[CostCritic]", "[CostCritic, AcmeCritic]"),
-    "another name of a source": (PLUGINS, "scan: {", "front_scan: {"),
+    "another name of a source": (
+        PLUGINS,
+        "sources: scan\n        scan: {",
+        "sources: front_scan\n        front_scan: {",
+    ),
     "a planner's own parameter": (PLUGINS, "angle_quantization_bins", "acme_bins"),
     "a frame of another node": (NAV, "base_frame_id: base_footprint", "base_frame_id: gps_mast"),
     "a frame at run time": (VIEW, "base_link", "map"),
@@ -332,7 +342,9 @@ def found(text: str, folder: Path, name: str = "") -> list[str]:
     (folder / "urdf/rover.urdf").write_text((ROBOTS / "rover_gz.urdf").read_text())
     file = folder / (name or "file.yaml")
     file.write_text(text)
-    return [f"{it.code}:{it.line}" for it in lint_file(str(file), Settings())]
+    # Nav2 has primary_controller until kilted, and primary_controller.plugin from lyrical on.
+    settings = Settings(distro="kilted") if "primary_controller:" in text else Settings()
+    return [f"{it.code}:{it.line}" for it in lint_file(str(file), settings)]
 
 
 def linted(case: tuple[str, str], folder: Path) -> set[str]:

@@ -109,7 +109,8 @@ def _near(name: str, there: Sequence[str]) -> str:
 
 
 def _critics(it: Demand) -> Iterator[Remark]:
-    """Critics are classes of a scope: DWB adds the word Critic, and may look in others."""
+    """Critics are classes of a scope: DWB adds the word Critic, and may look in others.
+    Another package may register more of them in that scope (pluginlib looks a name up in all)."""
     base = it.words[0]
     scope, known = _CRITIC_SCOPES[base], plugin_bases()[base].classes
     names = {name.rpartition("::")[2]: name for name in known}
@@ -122,9 +123,9 @@ def _critics(it: Demand) -> Iterator[Remark]:
         if plain and word not in names and not short:
             shown = [n.removesuffix(_CRITIC) for n in names] if scope == _DWB else [*names]
             near = nearest(word, shown)
-            hint = f"did you mean {near}?" if near else f"there are {', '.join(shown)}"
             message = f"{it.section.title}: no critic of {scope} is called {word!r}"
-            yield remark_at(it.given.node, message, hint, ERROR if near else WARNING)
+            if near:
+                yield remark_at(it.given.node, message, f"did you mean {near}?", ERROR)
 
 
 def _solvers(file: NamedFile, release: str) -> Iterator[Remark]:

@@ -59,7 +59,7 @@ running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
 running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
 running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 """,
-    line=4,
+    line=7,
 )
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """What another finding is about as well is left to that one (``unexplained``)."""

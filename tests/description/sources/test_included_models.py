@@ -35,7 +35,7 @@ BASE = """<?xml version="1.0"?>
 </sdf>
 """
 CAM = """<sdf version="1.9"><model name="cam"><link name="camera_link">
-<sensor name="eye" type="camera"><topic>image</topic></sensor></link></model></sdf>"""
+<sensor name="eye" type="imu"><topic>tilt</topic></sensor></link></model></sdf>"""
 ROVER = """<?xml version="1.0"?>
 <sdf version="1.9">
   <model name="rover">
@@ -76,7 +76,7 @@ def test_all_is_known_renamed_and_proved(rover: Path) -> None:
     done = rewrite(rover, "r1")
     assert {it.code for it in done.findings} == set()
     assert done.not_proved == ()
-    for name in (b"rotor/r1", b"spin_r1", b"top/r1", b"front_r1::camera_link/r1", b"image/r1"):
+    for name in (b"rotor/r1", b"spin_r1", b"top/r1", b"front_r1::camera_link/r1", b"tilt/r1"):
         assert name in done.data, name
     assert b"<include" not in done.data
     whole = with_includes(rover.read_bytes(), str(rover))

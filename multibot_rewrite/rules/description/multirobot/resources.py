@@ -9,6 +9,14 @@ from multibot_rewrite.base.findings.rule import URDF, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback.active import (
+    ADDRESS,
+    FILE,
+    HARDWARE,
+    active_parts,
+    opened,
+)
+from multibot_rewrite.description.readback.parameters import given_at
 from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
@@ -61,6 +69,17 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
             text = (element.text or "").strip()
             message = f"parameter {element.get('name', '')!r} is {text!r} for every robot"
             yield Problem(element, message, "", "make it a xacro argument")
+    yield from _usual_device(subject)
+
+
+def _usual_device(subject: Subject) -> Iterator[Problem]:
+    """Addresses and files that hardware opens where the description names none."""
+    for part in active_parts(subject.document.root, subject.tree.vocabulary):
+        if part.kind == HARDWARE and part.section is not None:
+            for kind, value, path in opened(part.element, part.section):
+                if kind in (ADDRESS, FILE) and not any(given_at(part.element, path)):
+                    message = f"{value!r} is the {kind} of every robot: {path} is not given"
+                    yield Problem(part.element, message, "", "make it a xacro argument")
 
 
 one_device = of_both.ONE_DEVICE._replace(
