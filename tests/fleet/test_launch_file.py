@@ -128,7 +128,7 @@ def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
     text = (out / "fleet.launch.py").read_text()
-    assert '"node_names": ["map_server", "amcl"]' in text
+    assert "'node_names': ['map_server', 'amcl']" in text
 
 
 @pytest.mark.slow
@@ -144,7 +144,7 @@ def test_a_plugin_of_the_simulator_is_not_started_again(
     if layout == "postfix":
         return
     text = (out / "fleet.launch.py").read_text()
-    assert 'arguments=["wheels"' in text
+    assert "arguments=['wheels'" in text
 
 
 @pytest.mark.parametrize(
@@ -210,26 +210,25 @@ def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
 def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
     python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
-    before = python.partition('executable="sync_slam_toolbox_node"')[0].split()
-    assert before[-3:] == ["*brought_up(", "LifecycleNode(", 'package="slam_toolbox",']
-    assert python.count("*brought_up(") == 2, "one a robot, and nothing else"
+    before = python.partition("executable='sync_slam_toolbox_node'")[0].split()
+    assert before[-3:] == ["*brought_up(", "LifecycleNode(", "package='slam_toolbox',"]
+    assert python.count("*brought_up(") == 1, "in the one function for both robots"
 
 
 @pytest.mark.slow
 def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
-    assert 'executable="sync_slam_toolbox_node"' in python
+    assert "executable='sync_slam_toolbox_node'" in python
     assert "brought_up" not in python
 
 
 @pytest.mark.slow
 def test_a_container_has_its_components(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="both", stack="nav2_composed")
-    assert 'plugin="nav2_controller::ControllerServer"' in python
-    assert 'executable="component_container_isolated"' in python
-    starts = python.split("\ndef start_")[1:]
-    found = [it.partition("\nROBOTS")[0].count(" ComposableNode(") for it in starts]
-    assert len(found) == 2 and min(found) > 10
+    assert "plugin='nav2_controller::ControllerServer'" in python
+    assert "executable='component_container_isolated'" in python
+    assert python.count("\ndef start(") == 1
+    assert python.partition("\nROBOTS")[0].count(" ComposableNode(") > 10
 
 
 @pytest.mark.slow
@@ -238,16 +237,16 @@ def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
     python = of_nav2(
         tmp_path, layout="both", stack="nav2", shared_nodes="[map_server]", shared_topics=topics
     )
-    assert '{"autostart": True, "node_names": ["map_server"]}' in python
-    assert python.count('executable="map_server"') == 1
+    assert "{'autostart': True, 'node_names': ['map_server']}" in python
+    assert python.count("executable='map_server'") == 1
 
 
 @pytest.mark.slow
 def test_relays_of_tf_are_started(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
-    told = '{"input_topic": "/robot1/tf", "output_topic": "/tf"}'
+    told = "{'input_topic': f'/{name}/tf', 'output_topic': '/tf'}"
     assert told in python
-    assert python.count('package="topic_tools"') == 4
+    assert python.count("package='topic_tools'") == 2
 
 
 @pytest.mark.slow
@@ -255,8 +254,8 @@ def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     """Its parameter files have no namespaces, so a node in one would get nothing of them."""
     python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
     assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
-    assert 'package="nav2_amcl"' not in python
-    assert 'package="robot_state_publisher"' in python
+    assert "package='nav2_amcl'" not in python
+    assert "package='robot_state_publisher'" in python
 
 
 REAL = pytest.mark.skipif(

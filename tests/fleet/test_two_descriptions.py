@@ -86,8 +86,8 @@ def test_both_are_rewritten_and_the_model_is_spawned(
     assert "<topic>robot2/cmd_vel</topic>" in model
     line = next(it for it in text["commands.md"].splitlines() if "ros_gz_sim create" in it)
     assert "-name robot1 -file robot1/rover.sdf" in line
-    assert 'file("robot2/rover.sdf")' in text["fleet.launch.py"]
-    assert ('"frame_prefix": "robot2/"' in text["fleet.launch.py"]) == (layout == "frame-prefix")
+    assert "file(f'{name}/rover.sdf')" in text["fleet.launch.py"]
+    assert ("'frame_prefix': f'{name}/'" in text["fleet.launch.py"]) == (layout == "frame-prefix")
     rows = yaml.safe_load(text["robot2/bridge.yaml"])
     assert "/robot2/cmd_vel" in {it["ros_topic_name"] for it in rows}
     frames = yaml.safe_load(text["plan.yaml"])["robots"]["robot2"]["frames"]
