@@ -17,7 +17,8 @@ from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import OFF, SUBSCRIBES, TOPIC, End
 
-_MAP, _ODOM = "map", "odom"
+_MAP = "map"
+_ODOM = "odom"
 _START = "set_initial_pose"
 
 
