@@ -109,7 +109,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
         "MG102",
     ),
     "a lifecycle manager waits for nobody": (
-        in_launch(lambda it: it.replace("'smoother_server',", "'smother_server',", 1)),
+        in_launch(lambda it: it.replace('  "smoother_server",', '  "smother_server",', 1)),
         "MG102",
     ),
     "a frame of the other robot": (

@@ -26,7 +26,8 @@ from multibot_rewrite.rules.settings import Settings
 pytestmark = pytest.mark.slow
 
 ROBOTS = ("robot1", "robot2")
-CODES = tuple(sorted(SHARED_CODES))
+# An address has no name: each judge calls it by what opens it.
+CODES = tuple(sorted(SHARED_CODES - {"MB412"}))
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 EVERY = 23
 _NAME = re.compile(r"'([^']+)'")
