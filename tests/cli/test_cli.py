@@ -268,7 +268,7 @@ def test_the_report_counts_by_kind(folder: Path, rover: bytes) -> None:
     start = f"urdf-postfix: robot1: {links} links, {joints} joints, 3 sensors, 1 model"
     assert result.err.startswith(start)
     assert ", 5 nodes, 1 topic word, 2 topics, " in result.err
-    assert result.err.endswith("; proved (ROS 2 lyrical)\n")
+    assert result.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
     assert result.err.count("\n") == 1
 
 

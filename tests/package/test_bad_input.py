@@ -62,12 +62,7 @@ UNREADABLE = {
         '<?xml version="0.0"?>\n<robot name="a"/>',
         ("in.urdf:1:", "0.0", 'write <?xml version="1.0"?>'),
     ),
-    "undeclared-prefix": (
-        robot("<gz:link/>"),
-        ("in.urdf:3:", "gz", 'xmlns:prefix="..."'),
-    ),
     "markup-before-declaration": ("<!-- made by hand -->\n" + robot(""), ("in.urdf:2:", "start")),
-    "blank-before-declaration": ("\n" + robot(""), ("in.urdf:2:", "start")),
     "two-roots": (robot("") + "<robot/>", ("in.urdf:5:", "Extra content", "correct")),
     "tag-mismatch": (robot('<link name="a">'), ("in.urdf:4:", "link line 3", "correct")),
     "attribute-twice": (

@@ -8,6 +8,7 @@ from contextlib import redirect_stderr
 from functools import partial
 from glob import escape
 from io import StringIO
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
@@ -17,12 +18,14 @@ from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.rules.settings import Settings, matches
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.sources.access import Reach
 
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
 NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
@@ -143,6 +146,8 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
 
 def reach_of(settings: Settings) -> Reach:
     """How far the xacro files of a lint may reach: no longer than it looks at a file."""
+    from multibot_rewrite.description.sources.access import Reach
+
     return Reach(settings.readable, settings.trust, settings.seconds)
 
 

@@ -50,12 +50,26 @@ def _data(seen: Index, end: End) -> Ends | None:
     # What a node has below its own name is for whoever calls it by that: servo, a controller.
     if end.name.startswith(f"{end.node}/") or (outside and kind != words.DESCRIPTION):
         return None
+    # One that merges need not have all; what is not the robot's own may be of nobody's.
+    if _has_another(seen, end) or seen.robot(end.name) != seen.robot(end.node):
+        return None
     given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
     unread = [it for it in given if not at_work(it.subscribers)]
     # Joints come from several nodes, and a node that merges them need not have all.
     several = words.JOINTS in (kind, end.type)
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
     return _only(given if several and unread else unread or ([] if several else same))
+
+
+def _has_another(seen: Index, end: End) -> bool:
+    """Does its node read something else of that type, which is sent?"""
+    return any(
+        it.role == SUBSCRIBES
+        and (it.type, it.kind) == (end.type, end.kind)
+        and it.name != end.name
+        and seen.by_name[it.kind, it.name].publishers
+        for it in seen.by_node[end.node]
+    )
 
 
 def _only(given: Sequence[Ends]) -> Ends | None:
