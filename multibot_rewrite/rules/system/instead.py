@@ -3,6 +3,7 @@ it is spelled."""
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -13,6 +14,7 @@ from multibot_rewrite.system.index import Ends, Index, at_work, once
 from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
+_DIGITS = re.compile(r"_?\d+")
 _MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
@@ -54,6 +56,8 @@ def _data(seen: Index, end: End) -> Ends | None:
     if _has_another(seen, end) or seen.robot(end.name) != seen.robot(end.node):
         return None
     given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
+    # A second camera that is off is no other name of the first one.
+    given = [it for it in given if _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)]
     unread = [it for it in given if not at_work(it.subscribers)]
     # Joints come from several nodes, and a node that merges them need not have all.
     several = words.JOINTS in (kind, end.type)
@@ -163,7 +167,8 @@ def is_needed(end: End) -> bool:
 def meant(seen: Index, end: End) -> Ends | None:
     """What may be meant by an end: what is sent of the same type, with the same last word or the likest
     name; nothing for one of which it is not known what the code calls it."""
-    if not is_needed(end) or not end.type:
+    mux = end.role == SUBSCRIBES and chooses(end.node)
+    if not (is_needed(end) or (mux and end.code_name and end.sure == RUNS)) or not end.type:
         return None
     given = _given(seen)
     own = {"", seen.robot(end.node)}

@@ -63,7 +63,10 @@ running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """What another finding is about as well is left to that one (``unexplained``)."""
-    made = {it: _made(seen, it) for it in seen.robots}
+    own: dict[str, list[str]] = {it: [] for it in seen.robots}
+    for node in seen.nodes:
+        own.get(seen.robot(node), []).append(node)
+    made = {robot: _made(seen, names) for robot, names in own.items()}
     for likes in _alike(made):
         others = len(likes) - 1
         nodes = Counter(node for it in likes for node in made[it].nodes)
@@ -92,11 +95,11 @@ def unexplained(found: Sequence[Finding]) -> list[Finding]:
     ]
 
 
-def _made(seen: Index, robot: str) -> _Made:
+def _made(seen: Index, own: Iterable[str]) -> _Made:
     nodes, ends = {}, {}
-    for name in seen.nodes:
+    for name in own:
         plain = seen.plain(name)
-        if seen.robot(name) != robot or seen.is_tool(name) or _RANDOM.search(last_word(name)):
+        if seen.is_tool(name) or _RANDOM.search(last_word(name)):
             continue
         nodes[plain] = name
         for it in seen.by_node.get(name, ()):
