@@ -148,8 +148,7 @@ def rules() -> Mapping[str, Rule]:
 
 
 def declared(home: Home) -> Iterator[Rule]:
-    """The rules of its modules."""
-    for name in home.modules:
-        module = import_module(f"multibot_rewrite.{name}")
-        found = (it for it in vars(module).values() if isinstance(it, Rule))
-        yield from (it for it in found if it.code.startswith(home.start))
+    """The rules of its modules, once each: some modules import one of another."""
+    modules = [import_module(f"multibot_rewrite.{name}") for name in home.modules]
+    found = [it for one in modules for it in vars(one).values() if isinstance(it, Rule)]
+    yield from {id(it): it for it in found if it.code.startswith(home.start)}.values()

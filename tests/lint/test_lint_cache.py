@@ -459,7 +459,8 @@ ASKING = re.compile(
 # The cache itself, what decides which files are linted, processes; what only marked functions call.
 ALLOWED = (
     "lint/cache/", "lint/config/", "lint/workers.py", "lint/run.py", "lint/__main__.py",
-    "lint/launched.py", "rules/launch/", "rules/files/parameter_table.py", "rules/files/plugin_table.py",
+    "lint/launched.py", "rules/launch/", "rules/files/parameter_table.py",
+    "rules/files/plugin_table.py",
     "description/sources/child/", "description/sources/processes.py",
     "description/sources/packages.py", "description/sources/access.py",
 )  # fmt: skip
