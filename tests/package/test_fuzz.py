@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from expected_names import ROBOT, graph_problems
-from lxml import etree
 from mutants import (
     MUTATIONS,
     SAMPLE,
@@ -21,6 +20,7 @@ from mutants import (
 from real_robots import spread
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
+from multibot_rewrite.base.loose_xml import well_formed
 
 pytestmark = pytest.mark.slow
 
@@ -44,8 +44,8 @@ def outcome(data: bytes, options: Mapping[str, str]) -> str:
     except MultibotError as error:
         assert str(error)
         return type(error).__name__
-    etree.fromstring(result)
-    assert graph_problems(data, result, options) == []
+    # Some mutants are what only TinyXML-2 reads.
+    assert graph_problems(well_formed(data).text, well_formed(result).text, options) == []
     assert strip(result, ROBOT, **options) == data, "strip does not give the mutant back"
     return "rewritten"
 

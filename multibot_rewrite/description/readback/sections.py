@@ -51,8 +51,8 @@ def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> Vocabul
     a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    whole = plugin.getroottree()
-    if old is None or any(whole.find(it) is not None for it in ("ros2_control", ".//plugin/ros")):
+    own = plugin.find("ros") is not None
+    if old is None or own or plugin.getroottree().find("ros2_control") is not None:
         return new
     tags = {child.tag for child in plugin}
     return old if len(tags & old.tags) > len(tags & new.tags) else new

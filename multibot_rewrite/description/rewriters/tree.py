@@ -271,15 +271,15 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 
 
 def _is_of_ros_2(root: _Element) -> bool:
-    return root.find("ros2_control") is not None or root.find(".//plugin/ros") is not None
+    return root.find("ros2_control") is not None
 
 
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. So is every
-    plugin of a robot that has one elsewhere, or a ``ros2_control``. Source: gazebo_ros_pkgs branches
-    noetic-devel (camelCase, robotNamespace) and ros2 (snake_case).
+    plugin of a robot with a ``ros2_control``; a ``ros`` elsewhere may be one that a rewrite added.
+    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
     own = element.find("ros") is not None
     if own or (len(found) > 1 and _is_of_ros_2(element.getroottree().getroot())):
