@@ -18,7 +18,8 @@ from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import entries, package_of
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.lint.files.pairing import described, robot_name
+from multibot_rewrite.lint.files.named import robot_name
+from multibot_rewrite.lint.files.pairing import described
 from multibot_rewrite.lint.files.subjects import make_subject
 from multibot_rewrite.rules.files.judge import judged, rules_for
 from multibot_rewrite.rules.settings import Settings

@@ -28,7 +28,9 @@ OTHER = """\
 
 
 @pytest.mark.parametrize(
-    ("more", "is_ros_2"), [("", False), (CONTROL, True), (OTHER, True)], ids=["1", "control", "ros"]
+    ("more", "is_ros_2"),
+    [("", False), (CONTROL, True), (OTHER, False)],
+    ids=["1", "control", "ros"],
 )
 def test_its_node_is_one_of_the_robot(more: str, is_ros_2: bool) -> None:
     text = f'<robot name="rover"><link name="base"/>\n{more}{PLUGIN}</robot>'

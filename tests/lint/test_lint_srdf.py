@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.files.pairing import robot_name
+from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import Settings
 

@@ -10,9 +10,8 @@ from glob import escape
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.outside import is_file, outside
+from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
@@ -22,6 +21,7 @@ from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
 from multibot_rewrite.rules.settings import Settings, matches
 
 if TYPE_CHECKING:
@@ -157,29 +157,3 @@ def _names(srdf: Inventory) -> set[str]:
     uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
     used = {it.value.strip() for it in uses}
     return used.difference(own)
-
-
-_NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
-# What the name of an SRDF has in it.
-SRDF_MARK = ".srdf"
-# The root element is in the first bytes: the whole file need not be read.
-HEAD = 4096
-
-
-@outside
-def robot_name(path: str) -> str:
-    """The name on the root element as it is written; empty if the first bytes do not have it."""
-    try:
-        with open(path, "rb") as file:
-            found = _NAME.search(file.read(HEAD))
-    except (OSError, ValueError):
-        return ""
-    return found[1].decode("utf-8", "replace").strip() if found else ""
-
-
-@outside
-def files_like(pattern: str) -> tuple[str, ...]:
-    """The files that a pattern names, in order."""
-    from glob import glob  # few descriptions come to this
-
-    return tuple(sorted(glob(pattern)))

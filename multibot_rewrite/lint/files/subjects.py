@@ -21,7 +21,7 @@ from multibot_rewrite.description.sources.read import has_xacro
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.description.steps.document import Document, read_document
-from multibot_rewrite.lint.files.pairing import SRDF_MARK
+from multibot_rewrite.lint.files.named import SRDF_MARK
 from multibot_rewrite.rules.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.rules.subject import EXPANDED, Subject, subject_of
 
