@@ -25,7 +25,7 @@ PAGES = {it.stem: it.read_text() for it in sorted(FOLDER.glob("*.md"))}
 SAVED = re.compile(r"[Ss]ave it as `([\w.-]+)`:\n\n```\w+\n(.*?)^```$", re.S | re.M)
 STEP = re.compile(rf"{SAVED.pattern}|(^```console\n.*?^```$)", re.S | re.M)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.S | re.M)
-DECLARED = re.compile(r'DeclareLaunchArgument\("(\w+)"')
+DECLARED = re.compile(r"DeclareLaunchArgument\(\s*['\"](\w+)")
 
 
 class Followed(NamedTuple):

@@ -77,7 +77,7 @@ def _word(type_: str) -> str:
 def _words(end: End) -> Iterator[str]:
     if end.qos and end.qos.reliability == "BEST_EFFORT":
         yield "best_effort"
-    latched = not end.qos and end.role == PUBLISHES and end.name.endswith(LATCHED)
+    latched = not end.qos and end.role in (PUBLISHES, SUBSCRIBES) and end.name.endswith(LATCHED)
     if latched or (end.qos and end.qos.durability == "TRANSIENT_LOCAL"):
         yield "latched"
 

@@ -179,6 +179,9 @@ def meant(seen: Index, end: End) -> Ends | None:
         words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}
         return words.get(nearest(last_word(end.code_name), words))
     last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
+    if mux:  # idle, unless it is misspelt
+        words_of = {last_word(it): it for it in alike}
+        return alike.get(words_of.get(nearest(last_word(end.name), words_of), ""))
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 

@@ -189,15 +189,6 @@ BREAKS = [
     ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MB879", 2, "rover.urdf:43"),
     ("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Magnetometer", "MB879", 2, "rover.urdf:43"),
     ("bridge.yaml", "msg/Imu", "msg/MagneticField", "MG306", 4, "bridge.yaml:1"),
-    # twist_mux has a topic that no node sends.
-    (
-        "nav2.yaml",
-        "{topic: cmd_vel_smoothed, timeout",
-        "{topic: nav_vel, timeout",
-        "MG303",
-        25,
-        "/cmd_vel",
-    ),
     (
         "moveit.yaml",
         "follow_joint_trajectory",
