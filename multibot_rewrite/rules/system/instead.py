@@ -15,6 +15,8 @@ from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UN
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _DIGITS = re.compile(r"_?\d+")
+# So alike that it is a slip: cmd_vel_smoth, not cmd_vel_ui beside cmd_vel_nav.
+_SLIP = 0.85
 _MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
@@ -181,7 +183,7 @@ def meant(seen: Index, end: End) -> Ends | None:
     last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
     if mux:  # idle, unless it is misspelt
         words_of = {last_word(it): it for it in alike}
-        return alike.get(words_of.get(nearest(last_word(end.name), words_of), ""))
+        return alike.get(words_of.get(nearest(last_word(end.name), words_of, alike=_SLIP), ""))
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 
