@@ -23,6 +23,7 @@ from multibot_rewrite.description.sources.child.frames import (
     LONGEST,
     NUMBER,
     ORIGINS,
+    PIECES,
     QUESTION,
     READ,
     REFUSAL,
@@ -38,7 +39,7 @@ from multibot_rewrite.description.sources.processes import XacroChild, child
 
 # What a child may ask, and read in all.
 MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
-_TRIPLE, _QUADRUPLE = 3, 4
+_TRIPLE, _QUADRUPLE, _EIGHT = 3, 4, 8
 # What reading an answer raises that is not what was agreed on.
 _GARBAGE = (
     GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError,
@@ -59,7 +60,8 @@ class Failure(NamedTuple):
 
 class Result(NamedTuple):
     """What a child told; nothing says that it is true. ``fences`` are those that it has, ``files``
-    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``."""
+    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``,
+    ``pieces`` and their ``words`` as ``child/pieces.py`` numbers them."""
 
     notes: str
     fences: tuple[str, ...]
@@ -70,6 +72,8 @@ class Result(NamedTuple):
     text: bytes
     origins: array[int]
     calls: array[int]
+    pieces: array[int]
+    words: tuple[str, ...]
 
 
 class Sources:
@@ -92,7 +96,9 @@ class Sources:
         return self.texts[name]
 
 
-def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Result:
+def converse(
+    arguments: Mapping[str, str], sources: Sources, traced: bool, in_pieces: bool = False
+) -> Result:
     """Let a child expand the file of ``sources.access``; raises InputError where it cannot tell."""
     access = sources.access
     reach = access.reach
@@ -103,6 +109,7 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
         "path": access.path,
         "arguments": dict(arguments),
         "traced": traced,
+        "in_pieces": in_pieces,
         "folder": os.getcwd(),
         "fences": () if reach.trust else reach.fences,
         "seconds": seconds,
@@ -172,6 +179,8 @@ def _result(it: XacroChild, data: bytes) -> Result:
         text,
         _numbers(origins, _TRIPLE),
         _numbers(_expected(it, CALLS), _QUADRUPLE),
+        _numbers(_expected(it, PIECES), _EIGHT),
+        tuple(_text(word) for word in report["words"]),
     )
 
 

@@ -12,6 +12,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse
+from multibot_rewrite.description.sources.pieces import Pieces
 from multibot_rewrite.description.sources.trace import Origins, Trace, alike
 from multibot_rewrite.description.steps.document import start_offsets, tag_end
 
@@ -65,13 +66,14 @@ class Expanded(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """A text, the origin of each of its elements, the XML files that were read, by their names; and
-    all files that were ``read``, as they were asked for."""
+    """A text, the origin of each of its elements, the XML files that were read, by their names; all
+    files that were ``read``, as they were asked for; and the pieces of its values, if they were."""
 
     data: bytes
     origins: Origins
     sources: Mapping[str, bytes]
     read: tuple[str, ...]
+    pieces: Pieces
 
 
 def expand(
@@ -100,15 +102,17 @@ def expand_traced(
     arguments: Mapping[str, str],
     find: Find | None = None,
     reach: Reach = BOUNDED,
+    in_pieces: bool = False,
 ) -> Expansion:
-    """The same for a file that holds ``data``, with the origins of the elements."""
+    """The same for a file that holds ``data``, with the origins of the elements, and of the pieces of
+    their values where they are asked for."""
     sources = Sources(Access(path, reach, find), {path: data})
-    result = converse(arguments, sources, traced=True)
+    result = converse(arguments, sources, True, in_pieces)
     trace = Trace(result, sources, path)
     text = _text(path, result, trace)
     if len(result.origins) != 3 * len(start_offsets(text)):
         raise InputError(f"{path}: xacro failed: the places that its process reported are wrong")
-    return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts))
+    return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:

@@ -233,7 +233,7 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
     A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
     """
     uri, _, local = name.encode().rpartition(b"}")
-    there = _attribute_slots(source, start)
+    there = attribute_slots(source, start)
     # Without a prefix a name is in no namespace.
     names = (it for it in there if it.endswith(b":" + local)) if uri else (local,)
     slot = next((there[it] for it in names if it in there), None)
@@ -242,7 +242,8 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
 
 # A tag may have thousands of attributes.
 @lru_cache(maxsize=4)
-def _attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
+def attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
+    """Where the values of a tag's attributes are, as they are written."""
     found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
     return {it[1]: (it.start(2) + 1, it.end(2) - 1) for it in found}
 

@@ -1,7 +1,7 @@
 """The frames that a child and its parent send each other: a letter, a length, and that many bytes.
 
 A child asks for what it needs (QUESTION), one thing at a time, and gets a VALUE or a REFUSAL. Its
-result is a REPORT, and for an expansion the TEXT, and the numbers of ORIGINS and CALLS.
+result is a REPORT, and for an expansion the TEXT, and the numbers of ORIGINS, CALLS and PIECES.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 
 HEAD = struct.Struct(">cI")
 REQUEST, VALUE, REFUSAL = b"R", b"V", b"X"
-QUESTION, REPORT, TEXT, ORIGINS, CALLS = b"Q", b"J", b"T", b"O", b"C"
+QUESTION, REPORT, TEXT, ORIGINS, CALLS, PIECES = b"Q", b"J", b"T", b"O", b"C", b"P"
 # What a child may ask for.
 READ, GLOB, FIND, ENVIRONMENT = "read", "glob", "find", "env"
 # The fences around a child.
@@ -26,8 +26,9 @@ LONGEST: Mapping[bytes, int] = {
     TEXT: MOST_TEXT,
     ORIGINS: 2**25,
     CALLS: 2**25,
+    PIECES: 2**27,
 }
-# The signed integers of ORIGINS and CALLS.
+# The signed integers of ORIGINS, CALLS and PIECES.
 NUMBER = "i"
 # A letter and the number of a process; the answer is such a number, or that of a signal.
 COMMAND, REPLY = struct.Struct(">ci"), struct.Struct(">i")

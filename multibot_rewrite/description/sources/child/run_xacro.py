@@ -20,6 +20,7 @@ from xml.parsers.expat import ExpatError, errors
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.asking import Ask, connect
 from multibot_rewrite.description.sources.child.frames import MOST_TEXT, NUMBER
+from multibot_rewrite.description.sources.child.pieces import note, numbers, tracking
 
 # What xacro's functions call the element that they work on.
 _NODES = ("node", "elt", "tag")
@@ -37,6 +38,7 @@ class Expanded(NamedTuple):
     text: bytes = b""
     origins: bytes = b""
     calls: bytes = b""
+    pieces: bytes = b""
 
 
 def missing() -> str:
@@ -48,29 +50,37 @@ def missing() -> str:
     return "" if xacro else "xacro is empty"
 
 
-def expand(path: str, arguments: Mapping[str, str], traced: bool, ask: Ask) -> Expanded:
-    """The text of a xacro file, or in the report why there is none."""
+def expand(
+    path: str, arguments: Mapping[str, str], traced: bool, in_pieces: bool, ask: Ask
+) -> Expanded:
+    """The text of a xacro file, or in the report why there is none; ``traced`` with the origin of each
+    element, ``in_pieces`` also with that of each piece of a value."""
     import xacro
     from xacro import substitution_args
 
     connect(xacro, substitution_args, ask)
-    marks = Marks()
+    marks = Marks(in_pieces)
     if traced:
         marking(xacro, marks)
+    given = tracking(xacro, arguments, marks.number) if in_pieces else dict(arguments)
     sys.stderr = sys.stdout = notes = io.StringIO()
     root, text, failed = None, b"", None
-    origins = array(NUMBER)
+    origins = pieces = array(NUMBER)
+    words: list[str] = []
     try:
-        document = xacro.process_file(path, mappings=dict(arguments))
+        document = xacro.process_file(path, mappings=given)
         root = [document.documentElement.prefix, document.documentElement.tagName]
         text = document.toprettyxml(indent="  ").encode()
         origins = marks.origins(document) if traced else origins
+        pieces = numbers(document, words) if in_pieces else pieces
         _check_length(text)
     except Exception as error:  # an expression of the file may raise anything
         failed = _failure(error, (xacro.filestack or [path])[-1], marks)
-    report = {"notes": notes.getvalue()[:MOST_NOTES], "files": marks.files, "macros": marks.macros}
+    said = notes.getvalue()[:MOST_NOTES]
+    report = {"notes": said, "files": marks.files, "macros": marks.macros, "words": words}
     result = {"error": failed} if failed else {"root": root}
-    return Expanded({**report, **result}, text, origins.tobytes(), marks.calls.tobytes())
+    rows = (origins.tobytes(), marks.calls.tobytes(), pieces.tobytes())
+    return Expanded({**report, **result}, text, *rows)
 
 
 def _check_length(text: bytes) -> None:
@@ -142,7 +152,8 @@ class Marks:
     the call under way, ``failed`` the one that was when an error passed.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, in_pieces: bool) -> None:
+        self.in_pieces = in_pieces
         self.files: list[tuple[str, int]] = []
         self.macros: list[str] = []
         self.calls = array(NUMBER)
@@ -156,10 +167,17 @@ class Marks:
     def mark(self, document: Any, file: str) -> None:
         """Give the elements of a file that was just parsed their marks."""
         elements = document.getElementsByTagName("*")
-        number = len(self.files)
-        self.files.append((file, len(elements)))
+        number = self.number(file, len(elements))
         for at, element in enumerate(elements):
             element.setUserData(MARK, Mark(number, at, NOWHERE), self)
+        if self.in_pieces:
+            note(document, number)
+
+    def number(self, file: str, elements: int = 0) -> int:
+        """The number of a file that was just read."""
+        if (file, elements) not in self.files[-1:]:
+            self.files.append((file, elements))
+        return len(self.files) - 1
 
     def call(self, macro: str, at: Mark) -> int:
         """The number of a new call, inside the current one."""

@@ -25,6 +25,7 @@ from multibot_rewrite.description.sources.child.frames import (
     ENDED,
     MOST_TEXT,
     ORIGINS,
+    PIECES,
     REPLY,
     REPORT,
     REQUEST,
@@ -140,14 +141,15 @@ def _expanded(request: dict[str, Any], ask: Ask) -> Expanded:
     missing = run_xacro.missing()
     if missing:
         return Expanded({"missing": missing})
-    return run_xacro.expand(request["path"], request["arguments"], request["traced"], ask)
+    ways = (request["traced"], request["in_pieces"])
+    return run_xacro.expand(request["path"], request["arguments"], *ways, ask)
 
 
 def _frames(result: Expanded) -> bytes:
     frames = framed(REPORT, json.dumps(result.report).encode())
     if "root" in result.report:
         frames += framed(TEXT, result.text) + framed(ORIGINS, result.origins)
-    return frames + framed(CALLS, result.calls)
+    return frames + framed(CALLS, result.calls) + framed(PIECES, result.pieces)
 
 
 if __name__ == "__main__":

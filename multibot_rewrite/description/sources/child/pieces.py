@@ -1,0 +1,269 @@
+"""Texts that know where they were written: what xacro makes of them, piece by piece.
+
+A value of an expansion is put together from what stands in an element, a property, the call of a macro, an
+argument or a YAML file. While xacro runs, each of these is a ``Written``: a str with its pieces. What an
+expression makes in any other way is a piece that has only the place of the expression.
+
+Source: xacro 2.1.1 __init__.py (``eval_text``, ``grab_macro``, ``load_yaml``), substitution_args.py.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, SupportsIndex
+from xml.dom import Node
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.child.frames import NUMBER
+
+GIVEN = -1
+# What holds a text that is no attribute, by the number of its text node.
+TEXT_NODE = "#"
+
+
+class Place(NamedTuple):
+    """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the element's;
+    the attribute, ``#0`` for the first text in it; the offset there, in characters. ``length`` is that of
+    an expression whose result the piece is, 0 for a piece that stands there as it is."""
+
+    file: int
+    element: int
+    attribute: str
+    at: int
+    length: int = 0
+
+
+class Piece(NamedTuple):
+    """So many characters of a text, and their place."""
+
+    length: int
+    place: Place | None
+
+
+class Written(str):
+    """A text and its pieces, as long as it is together."""
+
+    __slots__ = ("pieces",)
+    pieces: tuple[Piece, ...]
+
+    def __new__(cls, text: str, pieces: Iterable[Piece]) -> Written:
+        self = super().__new__(cls, text)
+        self.pieces = tuple(pieces)
+        return self
+
+    def __str__(self) -> str:
+        return self
+
+    def __deepcopy__(self, _: object) -> Written:
+        return self
+
+    def __add__(self, other: str) -> Written:
+        return joined((self, other))
+
+    def __radd__(self, other: str) -> Written:
+        return joined((other, self))
+
+    def __getitem__(self, key: SupportsIndex | slice) -> Written:
+        text = str.__getitem__(self, key)
+        index = range(len(self))[key]
+        if isinstance(index, int):
+            index = range(index, index + 1)
+        if index.step != 1:
+            return Written(text, pieces_of(text))
+        return Written(text, _cut(self.pieces, index.start, index.stop))
+
+
+def pieces_of(text: str) -> tuple[Piece, ...]:
+    """The pieces of a text, which may know of none."""
+    if isinstance(text, Written):
+        return text.pieces
+    return (Piece(len(text), None),) if text else ()
+
+
+def joined(texts: Sequence[str]) -> Written:
+    """One text of several."""
+    pieces = (piece for text in texts for piece in pieces_of(text))
+    return Written("".join(texts), _merged(pieces))
+
+
+def placed(text: str, place: Place) -> Written:
+    """A text that stands as it is at a place."""
+    return Written(text, [Piece(len(text), place)] if text else ())
+
+
+def _cut(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
+    at = 0
+    for piece in pieces:
+        first, last = max(at, start), min(at + piece.length, end)
+        if first < last:
+            yield Piece(last - first, _moved(piece.place, first - at))
+        at += piece.length
+
+
+def _moved(place: Place | None, by: int) -> Place | None:
+    """The place of what follows so many characters of a piece; an expression has one place."""
+    return place._replace(at=place.at + by) if place and not place.length else place
+
+
+def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
+    last = None
+    for piece in pieces:
+        if last and piece.place == _moved(last.place, last.length):
+            last = Piece(last.length + piece.length, last.place)
+            continue
+        if last:
+            yield last
+        last = piece
+    if last:
+        yield last
+
+
+def tracking(
+    xacro: Any, arguments: Mapping[str, str], number: Callable[[str], int]
+) -> dict[str, str]:
+    """From now on ``xacro`` keeps pieces; the ``arguments`` of the caller, with theirs. ``number`` gives
+    one to a file that was read and is no XML."""
+    import yaml
+
+    xacro.eval_text = _evaluator(xacro)
+    xacro.parse_macro_arg = _defaults(xacro.parse_macro_arg)
+    scalar = yaml.SafeLoader.construct_scalar
+
+    def construct(loader: Any, node: Any) -> str:
+        at = node.start_mark.index + (node.style in ("'", '"'))
+        return placed(scalar(loader, node), Place(number(xacro.filestack[-1]), 0, "", at))
+
+    yaml.SafeLoader.add_constructor("tag:yaml.org,2002:str", construct)
+    return {name: placed(text, Place(GIVEN, 0, name, 0)) for name, text in arguments.items()}
+
+
+def note(document: Any, number: int) -> None:
+    """Give the texts of a file that was just parsed their places; ``number`` is that of the file."""
+    for at, element in enumerate(document.getElementsByTagName("*")):
+        for name, value in element.attributes.items():
+            element.getAttributeNode(name).value = placed(value, Place(number, at, name, 0))
+        texts = [it for it in element.childNodes if it.nodeType == Node.TEXT_NODE]
+        for which, it in enumerate(texts):
+            it.data = placed(it.data, Place(number, at, f"{TEXT_NODE}{which}", 0))
+
+
+def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
+    """xacro's ``eval_text``, whose result knows its pieces."""
+    lexer = xacro.LEXER
+
+    def expression(text: str, symbols: Any) -> Any:
+        try:
+            return xacro.safe_eval(evaluated(text, symbols), symbols)
+        except Exception as error:
+            suffix = f"\nwhen evaluating expression '{text}'"
+            raise xacro.XacroException(exc=error, suffix=suffix) from error
+
+    def extension(text: str, symbols: Any) -> str:
+        said = str(evaluated(text, symbols))
+        found = xacro.eval_extension(f"$({said})")
+        words = said.split()
+        known = xacro.substitution_args_context["arg"].get(words[-1]) if words else None
+        return known if words[:1] == ["arg"] and known == found else found
+
+    def result(kind: int, part: str, symbols: Any) -> Any:
+        if kind == lexer.EXPR:
+            return _known(expression(part[2:-1], symbols), part)
+        if kind == lexer.EXTENSION:
+            return _known(extension(part[2:-1], symbols), part)
+        return part[1:] if kind == lexer.DOLLAR_DOLLAR_BRACE else part
+
+    def evaluated(text: str, symbols: Any) -> Any:
+        results, at = [], 0
+        lex = xacro.QuickLexer(lexer)
+        lex.lex(str.__str__(text))
+        while lex.peek():
+            kind, token = lex.next()
+            part = text[at : at + len(token)]
+            at += len(token)
+            results.append((result(kind, part, symbols), part))
+        if len(results) == 1:
+            return results[0][0]
+        return joined([_as_text(*it) for it in results])
+
+    return evaluated
+
+
+def _as_text(value: object, part: str) -> str:
+    text = str(value)
+    return text if isinstance(text, Written) else Written(text, [Piece(len(text), _of(part))])
+
+
+def _known(value: Any, part: str) -> Any:
+    """A result of the expression that is ``part`` of a text: what has no place has that of the whole, or
+    of the word in quotes that it is."""
+    if not isinstance(value, str):
+        return value
+    pieces, at = [], 0
+    for piece in pieces_of(value):
+        text = str.__getitem__(value, slice(at, at + piece.length))
+        pieces.append(piece if piece.place else Piece(piece.length, _quoted(text, part) or _of(part)))
+        at += piece.length
+    return Written(value, pieces)
+
+
+def _quoted(text: str, part: str) -> Place | None:
+    """Where a text stands in quotes, if that is in one place."""
+    found = [part.find(f"{quote}{text}{quote}") for quote in "'\"" if part.count(f"{quote}{text}{quote}") == 1]
+    place = _of(part)
+    if len(found) != 1 or not place:
+        return None
+    return place._replace(at=place.at + found[0] + 1, length=0)
+
+
+def _of(part: str) -> Place | None:
+    """The place of an expression that stands as it is somewhere."""
+    pieces = pieces_of(part)
+    whole = len(pieces) == 1 and pieces[0].place
+    return whole._replace(length=len(part)) if whole and not whole.length else None
+
+
+def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
+    """xacro's reading of a macro's parameters, whose defaults know where they stand."""
+
+    def parsed(text: str) -> Any:
+        param, value, rest = parse(text)
+        start = len(text) - len(rest)
+        if value is not None and value[1]:
+            at = text.rfind(value[1], 0, start)
+            value = (value[0], text[at : at + len(value[1])])
+        return param, value, text[start:]
+
+    return parsed
+
+
+def numbers(document: Any, words: list[str]) -> array[int]:
+    """The pieces of all values of an expanded document, eight numbers each: element, attribute, length,
+    file, element, attribute, offset, length of an expression; attributes by their number in ``words``."""
+    known: dict[str, int] = {}
+
+    def number(word: str) -> int:
+        if word not in known:
+            known[word] = len(words)
+            words.append(word)
+        return known[word]
+
+    found = array(NUMBER)
+    for at, element in enumerate(document.getElementsByTagName("*")):
+        for name, value in _values(element):
+            for length, place in pieces_of(value):
+                if place:
+                    file, source, attribute, offset, whole = place
+                    where = (file, source, number(attribute), offset, whole)
+                else:
+                    where = (GIVEN, 0, number(""), 0, 0)
+                found.extend((at, number(name), length, *where))
+    return found
+
+
+def _values(element: Any) -> Iterator[tuple[str, str]]:
+    """Attributes, and the text of an element that has nothing else in it."""
+    yield from element.attributes.items()
+    inside = element.childNodes
+    if len(inside) == 1 and inside[0].nodeType == Node.TEXT_NODE:
+        yield TEXT_NODE, inside[0].data
