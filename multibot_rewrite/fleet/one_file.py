@@ -117,6 +117,13 @@ def rewrite_files(
     return _rewritten(source, tuple(robots), naming, *given)
 
 
+def marked_file(data: bytes, word: str, naming: Naming, urdf: bytes, file: str) -> bytes:
+    """A file beside the description ``urdf`` with a word put where the naming says. Raises what
+    ``rewrite_file`` does."""
+    given = (urdf, None, (), file, False, release_here(""))
+    return next(_rewritten(data, (word,), naming, *given)).data
+
+
 def _rewritten(
     source: Source,
     robots: Sequence[str],

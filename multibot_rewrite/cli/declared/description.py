@@ -21,6 +21,7 @@ from multibot_rewrite.cli.options import (
     Example,
     OptionGroup,
     argument,
+    choice,
     output,
     path_option,
     rare,
@@ -177,4 +178,40 @@ LINT = Command(
     "0 nothing found (notes do not count); 1 findings; 2 wrong use, nothing to lint, or a rule that"
     " crashed",
     findings_first=True,
+)
+
+RENAME = Command(
+    "rename",
+    "rename",
+    "%(prog)s OLD NEW FOLDER --kind KIND [options]",
+    "Rename a link, joint, frame or topic in a package's own files.",
+    (
+        Example("multibot rename base_footprint base_ground my_robot_description --kind link"),
+        Example("multibot rename wheel_l left_wheel src/ --kind joint --diff", "look first"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument("old", "OLD", "the name as it is in the expanded description"),
+                argument("new", "NEW", "the name that it gets"),
+                argument("folder", "FOLDER", "the package, or a folder of packages"),
+                choice(
+                    "--kind",
+                    "KIND",
+                    ("link", "joint", "frame", "topic"),
+                    "what it names; default: link",
+                    default="link",
+                ),
+                VOCABULARY,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        OptionGroup("output", (switch("--diff", about="print a unified diff and change nothing"),)),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use, a name that is not there or taken, or one that cannot be changed alone",
+    more="Changed are the xacro files that make the name, plain descriptions, SRDFs, parameters, RViz configs,"
+    " bridges, MoveIt's files and behavior trees, all or none.",
 )

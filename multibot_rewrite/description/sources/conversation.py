@@ -8,11 +8,12 @@ import signal
 import struct
 from array import array
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.bounded import MAX_BYTES, load_json
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.outside import unrepeatable
+from multibot_rewrite.base.outside import real_path, unrepeatable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import Access, NotAllowedError
 from multibot_rewrite.description.sources.child.frames import (
@@ -77,16 +78,24 @@ class Result(NamedTuple):
 
 
 class Sources:
-    """The files that were read for one expansion, by the name that was asked for."""
+    """The files that were read for one expansion, by the name that was asked for. ``changed`` are texts
+    that are not as on the disk, by their real paths."""
 
-    def __init__(self, access: Access, at_hand: Mapping[str, bytes]) -> None:
-        self.access, self.texts = access, dict(at_hand)
+    def __init__(
+        self,
+        access: Access,
+        at_hand: Mapping[str, bytes],
+        changed: Mapping[str, bytes] = MappingProxyType({}),
+    ) -> None:
+        self.access, self.texts, self.changed = access, dict(at_hand), changed
         self.left = MOST_READ
 
     def read(self, name: str) -> bytes:
         """The bytes of a file, the same each time; raises NotAllowedError and OSError."""
         if name not in self.texts:
-            data = self.access.read(name)
+            path = self.access.readable(name)
+            other = self.changed.get(real_path(path)) if self.changed else None
+            data = self.access.read(name) if other is None else other
             if len(data) > MAX_BYTES:
                 raise NotAllowedError(f"{name} is over the limit of {MAX_BYTES // 2**20} MB")
             self.texts[name] = data

@@ -6,6 +6,7 @@ import os
 import re
 import sys
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
@@ -103,10 +104,11 @@ def expand_traced(
     find: Find | None = None,
     reach: Reach = BOUNDED,
     in_pieces: bool = False,
+    changed: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Expansion:
     """The same for a file that holds ``data``, with the origins of the elements, and of the pieces of
-    their values where they are asked for."""
-    sources = Sources(Access(path, reach, find), {path: data})
+    their values where they are asked for. Files that are ``changed`` have these texts, by real path."""
+    sources = Sources(Access(path, reach, find), {path: data}, changed)
     result = converse(arguments, sources, True, in_pieces)
     trace = Trace(result, sources, path)
     text = _text(path, result, trace)

@@ -202,14 +202,20 @@ def _known(value: Any, part: str) -> Any:
     pieces, at = [], 0
     for piece in pieces_of(value):
         text = str.__getitem__(value, slice(at, at + piece.length))
-        pieces.append(piece if piece.place else Piece(piece.length, _quoted(text, part) or _of(part)))
+        pieces.append(
+            piece if piece.place else Piece(piece.length, _quoted(text, part) or _of(part))
+        )
         at += piece.length
     return Written(value, pieces)
 
 
 def _quoted(text: str, part: str) -> Place | None:
     """Where a text stands in quotes, if that is in one place."""
-    found = [part.find(f"{quote}{text}{quote}") for quote in "'\"" if part.count(f"{quote}{text}{quote}") == 1]
+    found = [
+        part.find(f"{quote}{text}{quote}")
+        for quote in "'\""
+        if part.count(f"{quote}{text}{quote}") == 1
+    ]
     place = _of(part)
     if len(found) != 1 or not place:
         return None

@@ -1,0 +1,52 @@
+"""``multibot rename``: one name of a package's descriptions changed where it is made and used."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.output import detail, diff, is_coloured, note, print_bytes
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
+
+
+def run(options: argparse.Namespace) -> int:
+    """Change the files, or print the difference; returns the exit code."""
+    made = rename_symbol(
+        options.old,
+        options.new,
+        options.folder,
+        kind=options.kind,
+        vocabulary=(*configured_vocabulary(options.folder), *options.vocabulary),
+        trust=options.trust,
+        distro=options.distro or "",
+    )
+    if options.diff:
+        _print(options, made)
+    else:
+        write_all(made.after.items())
+    _tell(options, made)
+    return DONE
+
+
+def _print(options: argparse.Namespace, made: Renaming) -> None:
+    colour = is_coloured(options.color, sys.stdout)
+    for path, data in made.after.items():
+        name = os.path.relpath(path)
+        print_bytes(diff(made.before[path], data, f"a/{name}", f"b/{name}", colour))
+
+
+def _tell(options: argparse.Namespace, made: Renaming) -> None:
+    where = f"{plural(made.places, 'place')} in {plural(len(made.after), 'file')}"
+    note(options, f"{options.kind} {options.old} -> {options.new}: {where}; proved")
+    for path, why in made.unread.items():
+        note(options, f"not looked at: {why or path}")
+    left = made.mentions
+    if left:
+        note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
+        for place in left[:MOST_MENTIONS]:
+            detail(options, f"  {place}")

@@ -1,0 +1,1 @@
+"""A description package's own sources changed: what a name becomes is written where it is made."""

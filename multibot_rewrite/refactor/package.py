@@ -1,0 +1,92 @@
+"""A folder -> its descriptions, each xacro expanded with what its arguments are by default."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from contextlib import redirect_stderr
+from io import StringIO
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.expand import Expansion, expand_traced
+from multibot_rewrite.description.sources.read import is_xacro, read_file
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.proposal.searching import Found, search
+
+# Of an SRDF that has no URDF here; its names are then used, not declared.
+_NO_URDF: Declared = {"link": {}}
+
+
+class Description(NamedTuple):
+    """A description file, what is in it, and, of a xacro, how it was expanded."""
+
+    path: str
+    inventory: Inventory
+    read: Expansion | None = None
+
+
+class Package(NamedTuple):
+    """What a folder has: its files by kind, its descriptions, SRDFs among them, and those that could
+    not be read, with the reason."""
+
+    found: Found
+    descriptions: tuple[Description, ...]
+    unread: Mapping[str, str]
+
+
+def read_package(folder: str, tree: Tree, reach: Reach) -> Package:
+    """Read every description in a folder; raises UsageError for one that is not there."""
+    found = search([folder])
+    texts: dict[str, tuple[bytes, Expansion | None]] = {}
+    unread: dict[str, str] = {}
+    for path in (*found.descriptions, *found.srdf):
+        try:
+            texts[path] = read_text(path, reach)
+        except InputError as error:
+            unread[path] = str(error)
+    made: list[Description] = []
+    for path, (data, read) in texts.items():
+        try:
+            urdfs = [it.inventory for it in made] if path in found.srdf else ()
+            made.append(Description(path, inventory_of(data, path, tree, urdfs), read))
+        except InputError as error:
+            unread[path] = str(error)
+    return Package(found, tuple(made), unread)
+
+
+def read_text(
+    path: str,
+    reach: Reach,
+    texts: Mapping[str, bytes] | None = None,
+    arguments: Mapping[str, str] | None = None,
+) -> tuple[bytes, Expansion | None]:
+    """The text of a description; ``texts`` are the bytes of files that are not as on the disk, by their
+    real paths. Raises InputError."""
+    known = texts or {}
+    data = known.get(os.path.realpath(path)) or read_file(path)
+    if not is_xacro(path):
+        return data, None
+    # What xacro warns about is not said here.
+    with redirect_stderr(StringIO()):
+        read = expand_traced(path, data, arguments or {}, None, reach, True, known)
+    return read.data, read
+
+
+def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] = ()) -> Inventory:
+    """What is in a description; of an SRDF with what the URDF declares whose names it has."""
+    document = read_document(data, path)
+    alone = collect(document, tree)
+    if alone.format != SRDF_SECTION:
+        return alone
+    pairs = [collect(document, tree, it.declared) for it in urdfs if it.format != SRDF_SECTION]
+    return min(pairs, key=_lacks, default=collect(document, tree, _NO_URDF))
+
+
+def _lacks(pair: Inventory) -> int:
+    return sum(not name.kind for names in pair.names for name in names)

@@ -1,0 +1,275 @@
+"""One name of a package's descriptions changed everywhere: where it is made, and where it is used.
+
+Which values hold the name is what a rewrite asks, too: the rewriters find it, the map of renames has
+nothing but this one name. It is changed in the source of each xacro, and proved by expanding all of them
+again: nothing else may have changed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.model import InputError, MultibotError, UsageError
+from multibot_rewrite.base.naming import TWIN, Affix, Naming, make_naming
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.contact import respell_collisions
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
+from multibot_rewrite.description.steps.renames import make_renames
+from multibot_rewrite.fleet.one_file import marked_file
+from multibot_rewrite.refactor.package import (
+    Description,
+    Package,
+    inventory_of,
+    read_package,
+    read_text,
+)
+from multibot_rewrite.refactor.source_edits import (
+    Change,
+    Composed,
+    SourceEdit,
+    edited,
+    expected,
+    source_edit,
+    spans,
+)
+
+# What a name of a kind may be called where it is used: a link's is that of a frame.
+KINDS: Mapping[str, tuple[str, ...]] = {
+    "link": ("link", "frame"),
+    "joint": ("joint",),
+    "frame": ("frame",),
+    "topic": ("topic", "subtopic"),
+}
+_HERE = Affix(0, "", "")
+_NAME = re.compile(r"[^\s<>&\"'{}$]+")
+_TEXTS = (".py", ".yaml", ".yml", ".xml", ".rviz", ".lua", ".cpp", ".hpp", ".h", ".xacro", ".srdf")
+MOST_MENTIONS = 50
+
+
+class Renaming(NamedTuple):
+    """What a rename changes. ``before`` and ``after`` are the bytes of the files that change, by path;
+    ``places`` is in how many places, ``mentions`` are lines of other files that have the name too and
+    were left, as ``file:line``; ``unread`` are descriptions that could not be read, with the reason."""
+
+    before: Mapping[str, bytes]
+    after: Mapping[str, bytes]
+    places: int
+    mentions: tuple[str, ...]
+    unread: Mapping[str, str]
+
+
+class _Symbol(NamedTuple):
+    old: str
+    new: str
+    kind: str
+
+    @property
+    def naming(self) -> Naming:
+        """Puts a mark in front of this name and changes nothing else."""
+        own = {(kind, self.old): _HERE for kind in KINDS[self.kind]}
+        return make_naming()._replace(separators={}, own=own)
+
+    def respelled(self, kind: str, name: str) -> str:
+        """The new spelling of a name."""
+        return self.new if name == self.old and kind in KINDS[self.kind] else name
+
+
+@checked
+def rename_symbol(
+    old: str,
+    new: str,
+    folder: str,
+    *,
+    kind: str = "link",
+    vocabulary: Iterable[str] = (),
+    trust: bool = False,
+    distro: str = "",
+) -> Renaming:
+    """Rename a link, joint, frame or topic in every description of ``folder``, in the xacro files that
+    make its name, in SRDFs, parameters, RViz configs, bridges, MoveIt's files and behavior trees.
+
+    Writes nothing. Raises UsageError for names that cannot be, InputError where the name is put together
+    so that no edit changes it alone.
+    """
+    symbol = _Symbol(old, new, kind)
+    _check(symbol)
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    reach = TRUSTED if trust else BOUNDED
+    package = read_package(folder, tree, reach)
+    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
+    if not any(changes.values()):
+        raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
+    _check_free(symbol, package)
+    edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
+    sources = _sources(edits, package)
+    after = edited(sources, edits)
+    _prove(package, changes, after, tree, reach)
+    beside = dict(_beside(package, symbol, changes, after))
+    places = len(edits) + sum(count for _, count in beside.values())
+    after |= {path: data for path, (data, _) in beside.items()}
+    before = {path: sources.get(path) or read_bytes(path) for path in after}
+    found = tuple(_mentions(package, symbol.old, after))
+    return Renaming(before, after, places, found, package.unread)
+
+
+def _check(symbol: _Symbol) -> None:
+    if symbol.kind not in KINDS:
+        raise UsageError(f"kind {symbol.kind!r} is not known, use one of {', '.join(KINDS)}")
+    for name in symbol[:2]:
+        if not _NAME.fullmatch(name):
+            raise UsageError(f"{name!r} is no name of a {symbol.kind}: write it without blanks")
+    if symbol.old == symbol.new:
+        raise UsageError(f"{symbol.old!r} is called so already")
+
+
+def _named(symbol: _Symbol, package: Package) -> str:
+    known = {
+        name.text
+        for it in package.descriptions
+        for names in it.inventory.names
+        for name in names
+        if name.kind in KINDS[symbol.kind]
+    }
+    near = did_you_mean_one_of(symbol.old, sorted(known))
+    return f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
+
+
+def _check_free(symbol: _Symbol, package: Package) -> None:
+    """The new name is not that of another one."""
+    for it in package.descriptions:
+        for kind in KINDS[symbol.kind]:
+            claim = it.inventory.declared.get(kind, {}).get(symbol.new)
+            if claim is not None:
+                raise UsageError(f"{it.path} has a {kind} {symbol.new!r} already")
+
+
+def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
+    document, claims, _, declared, *_ = it.inventory
+    numbers = {start: at for at, start in enumerate(document.starts)}
+    renames = make_renames(it.inventory, symbol.naming)
+    for claim, spelling in zip(claims, renames.values, strict=True):
+        _, _, start, attribute, value = claim
+        for found in spelling:
+            at = found.affix.at
+            end = at + len(symbol.old)
+            yield Change(numbers[start], attribute, value, at, end, symbol.new)
+    for claim, text in respell_collisions(document.root, claims, declared, symbol.respelled):
+        _, _, start, attribute, value = claim
+        yield Change(numbers[start], attribute, value, 0, len(value), text)
+
+
+def _edits(it: Description, changes: Sequence[Change]) -> Iterator[SourceEdit]:
+    document = it.inventory.document
+    for change in changes:
+        if it.read is None:
+            yield _in_place(it, change)
+            continue
+        found = source_edit(it.read, document, change)
+        if isinstance(found, Composed):
+            what = f"{found.place}: {found.value!r} cannot be renamed here: {found.why}"
+            raise InputError(f"{what}; write the name out, or change what makes it by hand")
+        yield found._replace(file=os.path.realpath(found.file))
+
+
+def _in_place(it: Description, change: Change) -> SourceEdit:
+    document = it.inventory.document
+    span = next(spans(document, [change]))
+    if span is None:
+        where = ":".join(
+            map(str, (it.path, *locate(document.source, document.starts[change.element])))
+        )
+        raise InputError(
+            f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
+        )
+    return SourceEdit(os.path.realpath(it.path), *span)
+
+
+def _sources(edits: Iterable[SourceEdit], package: Package) -> dict[str, bytes]:
+    """The bytes of each file that is edited, by real path, as it was read."""
+    known: dict[str, bytes] = {}
+    for it in package.descriptions:
+        texts = it.read.sources if it.read else {it.path: it.inventory.document.source}
+        known.update({os.path.realpath(path): data for path, data in texts.items()})
+    outside = sorted({it.file for it in edits} - known.keys())
+    assert not outside, outside
+    return {it.file: known[it.file] for it in edits}
+
+
+def _prove(
+    package: Package,
+    changes: Mapping[str, Sequence[Change]],
+    after: Mapping[str, bytes],
+    tree: Tree,
+    reach: Reach,
+) -> None:
+    """Every description is what it was but for the name; raises InputError for one that is not."""
+    for it in package.descriptions:
+        wanted = expected(it.inventory.document, changes[it.path])
+        data, _ = read_text(it.path, reach, after)
+        if data == wanted:
+            continue
+        other = inventory_of(data, it.path, tree).document
+        raise InputError(f"{it.path}: {_difference(it, other.source, wanted)}")
+
+
+def _difference(it: Description, made: bytes, wanted: bytes | None) -> str:
+    lines = zip(made.splitlines(), (wanted or b"").splitlines(), strict=False)
+    line = next((one for one, other in lines if one != other), b"").strip().decode(errors="replace")
+    what = "what makes the name makes others, too" if line else "the name cannot be changed alone"
+    return f"{what}: then there would be {line}; change what makes it by hand"
+
+
+def _beside(
+    package: Package,
+    symbol: _Symbol,
+    changes: Mapping[str, Sequence[Change]],
+    after: Mapping[str, bytes],
+) -> Iterator[tuple[str, tuple[bytes, int]]]:
+    """The files beside the descriptions that change, with their bytes and in how many places."""
+    urdf = next(path for path, found in changes.items() if found)
+    described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
+    mark = TWIN + symbol.old
+    found = package.found
+    for path in (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees):
+        data = read_bytes(path)
+        if symbol.old.encode() not in data or os.path.realpath(path) in after:
+            continue
+        try:
+            made = marked_file(data, TWIN, symbol.naming, described, path)
+        except MultibotError:
+            continue
+        text = made.decode()
+        if text.replace(TWIN, "").encode() == data and mark in text:
+            yield (
+                os.path.realpath(path),
+                (text.replace(mark, symbol.new).encode(), text.count(mark)),
+            )
+
+
+def _mentions(package: Package, old: str, after: Mapping[str, bytes]) -> Iterator[str]:
+    """Lines that have the name, of files that do not change."""
+    word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
+    for folder in package.found.folders:
+        for above, folders, names in os.walk(folder):
+            folders[:] = sorted(it for it in folders if it[0] != ".")
+            for name in sorted(names):
+                path = os.path.normpath(os.path.join(above, name))
+                if (
+                    name.endswith(_TEXTS)
+                    and os.path.isfile(path)
+                    and os.path.realpath(path) not in after
+                ):
+                    data = read_bytes(path)
+                    yield from (
+                        f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data)
+                    )

@@ -1,0 +1,125 @@
+"""Changes of the values of an expansion -> edits of the xacro files that make them.
+
+A value is put together from pieces (``description/sources/pieces.py``). A change can be made where all of
+it is in one piece that stands in a file as it is; what an expression computes is left to its author.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.expand import Expansion
+from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
+from multibot_rewrite.description.steps.document import Document, place_in, value_slot
+
+
+class Change(NamedTuple):
+    """In the value of an attribute of an element, or its text where ``attribute`` is empty: characters
+    ``start`` to ``end`` become ``new``. ``element`` counts in the order of the document."""
+
+    element: int
+    attribute: str
+    value: str
+    start: int
+    end: int
+    new: str
+
+
+class SourceEdit(NamedTuple):
+    """Bytes ``start`` to ``end`` of a file become ``new``."""
+
+    file: str
+    start: int
+    end: int
+    new: bytes
+
+
+class Composed(NamedTuple):
+    """A change that no edit makes: the value, the place of what makes it, and why."""
+
+    value: str
+    place: str
+    why: str
+
+
+def source_edit(read: Expansion, document: Document, change: Change) -> SourceEdit | Composed:
+    """The edit of a source that makes a change."""
+    start, end, new = _trimmed(change)
+    pieces = read.pieces.of(change.element, change.attribute, change.value)
+    at = 0
+    touched = []
+    for piece in pieces:
+        last = at + len(piece.text)
+        if at <= start and end <= last and piece.kind not in (EXPRESSION, GIVEN):
+            first = piece.start + len(piece.text[: start - at].encode())
+            size = len(change.value[start:end].encode())
+            return SourceEdit(piece.file, first, first + size, new.encode())
+        if at < end and start < last:
+            touched.append(piece)
+        at = last
+    return Composed(change.value, _place(read, document, change, touched), _why(touched))
+
+
+def _trimmed(change: Change) -> tuple[int, int, str]:
+    """What of a change is different: from, to, and the new characters."""
+    _, _, value, start, end, new = change
+    while start < end and new and value[start] == new[0]:
+        start, new = start + 1, new[1:]
+    while start < end and new and value[end - 1] == new[-1]:
+        end, new = end - 1, new[:-1]
+    return start, end, new
+
+
+def _place(read: Expansion, document: Document, change: Change, touched: list[Piece]) -> str:
+    known = [it for it in touched if it.file in read.sources]
+    if known:
+        file, at = known[0].file, known[0].start
+        return ":".join(map(str, (file, *locate(read.sources[file], at))))
+    origin = read.origins.of(change.element)
+    if origin:
+        return ":".join(map(str, (origin.file, *locate(read.sources[origin.file], origin.start))))
+    return document.file
+
+
+def _why(touched: list[Piece]) -> str:
+    if len(touched) > 1:
+        return "it is put together from " + " and ".join(repr(it.text) for it in touched)
+    made = touched[0].kind if touched else EXPRESSION
+    return f"an {made} makes it" if made == EXPRESSION else f"it is a {made}"
+
+
+def expected(document: Document, changes: Iterable[Change]) -> bytes | None:
+    """The text of a document with the changes made in it; None where escapes hide one of them."""
+    found = list(spans(document, changes))
+    if None in found:
+        return None
+    source, last, parts = document.source, 0, []
+    for start, end, new in sorted(it for it in found if it):
+        parts += (source[last:start], new)
+        last = end
+    return b"".join(parts) + source[last:]
+
+
+def spans(document: Document, changes: Iterable[Change]) -> Iterator[tuple[int, int, bytes] | None]:
+    """Where in the bytes of a document each change is, and its new bytes; None where that is hidden."""
+    for element, attribute, value, start, end, new in changes:
+        slot = value_slot(document.source, document.starts[element], attribute, value)
+        begin, last = (slot and place_in(document.source, slot, value, at) for at in (start, end))
+        yield None if begin is None or last is None else (begin, last, new.encode())
+
+
+def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[str, bytes]:
+    """The files that change, with their new bytes; raises ValueError where two edits meet."""
+    made: dict[str, bytes] = {}
+    every = sorted(set(edits))
+    for file in dict.fromkeys(it.file for it in every):
+        source, last, parts = sources[file], 0, []
+        for _, start, end, new in (it for it in every if it.file == file):
+            if start < last:
+                raise ValueError(file, start)
+            parts += (source[last:start], new)
+            last = end
+        made[file] = b"".join(parts) + source[last:]
+    return made
