@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
-import sys
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import detail, diff, is_coloured, note, print_bytes
+from multibot_rewrite.cli.changed import deliver_changed
+from multibot_rewrite.cli.output import detail, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
 
@@ -25,19 +23,9 @@ def run(options: argparse.Namespace) -> int:
         trust=options.trust,
         distro=options.distro or "",
     )
-    if options.diff:
-        _print(options, made)
-    else:
-        write_all(made.after.items())
+    deliver_changed(options, made.before, made.after, write=not options.diff)
     _tell(options, made)
     return DONE
-
-
-def _print(options: argparse.Namespace, made: Renaming) -> None:
-    colour = is_coloured(options.color, sys.stdout)
-    for path, data in made.after.items():
-        name = os.path.relpath(path)
-        print_bytes(diff(made.before[path], data, f"a/{name}", f"b/{name}", colour))
 
 
 def _tell(options: argparse.Namespace, made: Renaming) -> None:

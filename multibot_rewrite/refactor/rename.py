@@ -1,9 +1,8 @@
 """One name of a package's descriptions changed everywhere: where it is made, and where it is used.
 
 Which values hold the name is what a rewrite asks, too: the rewriters find it, the map of renames has
-nothing but this one name. It is changed in the source of each xacro, and proved by expanding all of them
-again: nothing else may have changed.
-"""
+nothing but this one name. It is changed in the source of each xacro, and proved by expanding all of
+them again: nothing else may have changed."""
 
 from __future__ import annotations
 
@@ -98,9 +97,8 @@ def rename_symbol(
     """Rename a link, joint, frame or topic in every description of ``folder``, in the xacro files that
     make its name, in SRDFs, parameters, RViz configs, bridges, MoveIt's files and behavior trees.
 
-    Writes nothing. Raises UsageError for names that cannot be, InputError where the name is put together
-    so that no edit changes it alone.
-    """
+    Writes nothing. Raises UsageError for names that cannot be, InputError where the name is put
+    together so that no edit changes it alone."""
     symbol = _Symbol(old, new, kind)
     _check(symbol)
     tree = builtin_tree(tuple(vocabulary), release_here(distro))

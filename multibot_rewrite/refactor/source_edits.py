@@ -1,7 +1,7 @@
 """Changes of the values of an expansion -> edits of the xacro files that make them.
 
-A value is put together from pieces (``description/sources/pieces.py``). A change can be made where all of
-it is in one piece that stands in a file as it is; what an expression computes is left to its author.
+A value is put together from pieces (``description/sources/pieces.py``). A change can be made where all
+of it is in one piece that stands in a file as it is; what an expression computes is left to its author.
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ def expected(document: Document, changes: Iterable[Change]) -> bytes | None:
     found = list(spans(document, changes))
     if None in found:
         return None
-    source, last, parts = document.source, 0, []
+    source, last = document.source, 0
+    parts: list[bytes] = []
     for start, end, new in sorted(it for it in found if it):
         parts += (source[last:start], new)
         last = end
@@ -115,7 +116,8 @@ def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[st
     made: dict[str, bytes] = {}
     every = sorted(set(edits))
     for file in dict.fromkeys(it.file for it in every):
-        source, last, parts = sources[file], 0, []
+        source, last = sources[file], 0
+        parts: list[bytes] = []
         for _, start, end, new in (it for it in every if it.file == file):
             if start < last:
                 raise ValueError(file, start)

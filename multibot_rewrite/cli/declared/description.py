@@ -212,6 +212,33 @@ RENAME = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, a name that is not there or taken, or one that cannot be changed alone",
-    more="Changed are the xacro files that make the name, plain descriptions, SRDFs, parameters, RViz configs,"
-    " bridges, MoveIt's files and behavior trees, all or none.",
+    more="Changed are the xacro files that make the name, plain descriptions, SRDFs, parameters,"
+    " RViz configs, bridges, MoveIt's files and behavior trees, all or none.",
+)
+ADOPT = Command(
+    "adopt",
+    "adopt",
+    "%(prog)s FOLDER [options]",
+    "Give a description package for one robot an argument for a prefix.",
+    (
+        Example("multibot adopt my_robot_description", "print the patch"),
+        Example("multibot adopt my_robot_description --in-place"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument("folder", "FOLDER", "the package, or a folder of packages"),
+                VOCABULARY,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        OptionGroup("output", (switch("--in-place", about="change the files"),)),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use, or no place for the prefix that changes nothing else",
+    more="Proved for each description: with an empty prefix the result is what it was, with"
+    " prefix:=robot1_ every name of a link, joint, frame, sensor and of ros2_control has it."
+    " Launch files are left.",
 )

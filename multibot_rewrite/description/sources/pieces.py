@@ -1,8 +1,7 @@
 """Where in the xacro files each piece of a value was written.
 
-A child tells numbers (``child/pieces.py``); they are looked up in the files as they were read here, and a
-piece counts as written there only where the bytes read back as it.
-"""
+A child tells numbers (``child/pieces.py``); they are looked up in the files as they were read here, and
+a piece counts as written there only where the bytes read back as it."""
 
 from __future__ import annotations
 
@@ -21,9 +20,9 @@ _KINDS = {"xacro:property": "property", "xacro:arg": "argument", "xacro:macro": 
 
 
 class Piece(NamedTuple):
-    """``text`` is a part of a value. It stands in ``file`` from byte ``start`` to ``end``, or what makes it
-    does: an expression. ``kind`` says what wrote it: literal, property, argument, default, parameter, YAML,
-    expression, given argument (no file)."""
+    """``text`` is a part of a value. It stands in ``file`` from byte ``start`` to ``end``, or what
+    makes it does: an expression. ``kind`` says what wrote it: literal, property, argument, default,
+    parameter, YAML, expression, given argument (no file)."""
 
     text: str
     kind: str

@@ -1,8 +1,8 @@
 """Texts that know where they were written: what xacro makes of them, piece by piece.
 
-A value of an expansion is put together from what stands in an element, a property, the call of a macro, an
-argument or a YAML file. While xacro runs, each of these is a ``Written``: a str with its pieces. What an
-expression makes in any other way is a piece that has only the place of the expression.
+A value of an expansion is put together from what stands in an element, a property, the call of a macro,
+an argument or a YAML file. While xacro runs, each of these is a ``Written``: a str with its pieces.
+What an expression makes in any other way is a piece that has only the place of the expression.
 
 Source: xacro 2.1.1 __init__.py (``eval_text``, ``grab_macro``, ``load_yaml``), substitution_args.py.
 """
@@ -23,9 +23,10 @@ TEXT_NODE = "#"
 
 
 class Place(NamedTuple):
-    """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the element's;
-    the attribute, ``#0`` for the first text in it; the offset there, in characters. ``length`` is that of
-    an expression whose result the piece is, 0 for a piece that stands there as it is."""
+    """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the
+    element's; the attribute, ``#0`` for the first text in it; the offset there, in characters.
+    ``length`` is that of an expression whose result the piece is, 0 for a piece that stands there as it
+    is."""
 
     file: int
     element: int
@@ -122,8 +123,8 @@ def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
 def tracking(
     xacro: Any, arguments: Mapping[str, str], number: Callable[[str], int]
 ) -> dict[str, str]:
-    """From now on ``xacro`` keeps pieces; the ``arguments`` of the caller, with theirs. ``number`` gives
-    one to a file that was read and is no XML."""
+    """From now on ``xacro`` keeps pieces; the ``arguments`` of the caller, with theirs. ``number``
+    gives one to a file that was read and is no XML."""
     import yaml
 
     xacro.eval_text = _evaluator(xacro)
@@ -164,7 +165,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
         found = xacro.eval_extension(f"$({said})")
         words = said.split()
         known = xacro.substitution_args_context["arg"].get(words[-1]) if words else None
-        return known if words[:1] == ["arg"] and known == found else found
+        return str(known if words[:1] == ["arg"] and known == found else found)
 
     def result(kind: int, part: str, symbols: Any) -> Any:
         if kind == lexer.EXPR:
@@ -195,8 +196,8 @@ def _as_text(value: object, part: str) -> str:
 
 
 def _known(value: Any, part: str) -> Any:
-    """A result of the expression that is ``part`` of a text: what has no place has that of the whole, or
-    of the word in quotes that it is."""
+    """A result of the expression that is ``part`` of a text: what has no place has that of the whole,
+    or of the word in quotes that it is."""
     if not isinstance(value, str):
         return value
     pieces, at = [], 0
@@ -245,7 +246,8 @@ def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
 
 def numbers(document: Any, words: list[str]) -> array[int]:
     """The pieces of all values of an expanded document, eight numbers each: element, attribute, length,
-    file, element, attribute, offset, length of an expression; attributes by their number in ``words``."""
+    file, element, attribute, offset, length of an expression; attributes by their number in
+    ``words``."""
     known: dict[str, int] = {}
 
     def number(word: str) -> int:

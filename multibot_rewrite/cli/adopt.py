@@ -1,0 +1,30 @@
+"""``multibot adopt``: a description package gets an argument that puts a prefix before its names."""
+
+from __future__ import annotations
+
+import argparse
+
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli.changed import deliver_changed
+from multibot_rewrite.cli.output import note
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.refactor.adopt import adopt
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print a patch, or change the files; returns the exit code."""
+    made = adopt(
+        options.folder,
+        vocabulary=(*configured_vocabulary(options.folder), *options.vocabulary),
+        trust=options.trust,
+        distro=options.distro or "",
+    )
+    deliver_changed(options, made.before, made.after, write=options.in_place)
+    many = plural(len(made.proved), "description")
+    note(options, f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved")
+    for it in made.left:
+        note(options, f"{it.place}: left as it is: {it.why}")
+    for path, why in made.unread.items():
+        note(options, f"not looked at: {why or path}")
+    return DONE

@@ -1,0 +1,180 @@
+"""A description package for one robot gets an argument that puts a prefix before its names.
+
+Which values hold names of the robot is what a rewrite with ``--affix prefix`` asks, too. ``${prefix}``
+goes where a name is used, into the xacro sources; where one place makes names of the robot and others,
+it goes where the name is made. Proved by expansion: with an empty prefix nothing changes, with
+``robot1_`` the result is what the rewrite makes. The name of the robot itself stays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import chain
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.insert import insertions
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
+from multibot_rewrite.description.steps.document import read_document, tag_end
+from multibot_rewrite.description.steps.renames import make_renames
+from multibot_rewrite.refactor.package import Description, inventory_of, read_package, read_text
+from multibot_rewrite.refactor.placing import Left, placed
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, edited, expected
+
+# What carries the robot's name where its topics have a namespace; the model's name is its spawner's.
+_KINDS = (
+    "link", "joint", "frame", "sensor", "light", "transmission", "actuator", "hardware", "gpio",
+    "shape",
+)  # fmt: skip
+NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
+TRIED = "robot1_"
+_SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+_TAKEN = ("arg", "property", "macro")
+
+
+class Adopted(NamedTuple):
+    """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
+    by path, empty for a new one; ``proved`` are the descriptions that take it, ``left`` is what could
+    not be changed, ``unread`` are descriptions that could not be read, with the reason."""
+
+    argument: str
+    before: Mapping[str, bytes]
+    after: Mapping[str, bytes]
+    proved: tuple[str, ...]
+    left: tuple[Left, ...]
+    unread: Mapping[str, str]
+
+
+@checked
+def adopt(
+    folder: str, *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+) -> Adopted:
+    """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
+    becomes a xacro. Writes nothing. Raises UsageError where there is no description."""
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    reach = TRUSTED if trust else BOUNDED
+    package = read_package(folder, tree, reach)
+    found = [_as_xacro(it, tree, reach) for it in package.descriptions if _is_meant(it)]
+    if not found:
+        raise UsageError(f"{folder}: there is no description of a robot in it that can be expanded")
+    argument = _free_name(found)
+    texts = _texts(found)
+    edits: set[SourceEdit] = set()
+    left: list[Left] = []
+    wanted: dict[str, list[Change]] = {}
+    for it in found:
+        made = placed(it, list(_changes(it)), argument)
+        edits |= {one._replace(file=os.path.realpath(one.file)) for one in made.edits}
+        edits.add(_declared(it, texts, argument))
+        wanted[it.path] = made.changes
+        left += [*made.left, *_not_written(it)]
+    after = edited(texts, edits)
+    proved = [it.path for it in found if _is_proved(it, wanted[it.path], after, argument, reach)]
+    if len(proved) < len(found):
+        other = next(it.path for it in found if it.path not in proved)
+        raise InputError(f"{other}: no place for the prefix was found that changes nothing else")
+    there = {path: data if os.path.exists(path) else b"" for path, data in texts.items()}
+    before = {path: there[path] for path in after}
+    return Adopted(
+        argument, before, after, tuple(proved), tuple(dict.fromkeys(left)), package.unread
+    )
+
+
+def _is_meant(it: Description) -> bool:
+    """A URDF, or an SRDF that is a xacro: a plain one is loaded by its name."""
+    return it.inventory.format == "robot" or (
+        it.read is not None and it.inventory.format == "srdf.robot"
+    )
+
+
+def _as_xacro(it: Description, tree: Tree, reach: Reach) -> Description:
+    """A plain description as the xacro that it becomes."""
+    if it.read is not None:
+        return it
+    source = it.inventory.document.source
+    at = source.index(b"robot", it.inventory.document.starts[0]) + len(b"robot")
+    text = source if b"xmlns:xacro" in source else source[:at] + _SPACE + source[at:]
+    path = f"{it.path}.xacro"
+    data, read = read_text(path, reach, {os.path.realpath(path): text})
+    return Description(path, inventory_of(data, path, tree), read)
+
+
+def _free_name(found: Iterable[Description]) -> str:
+    """A name that no argument, property or parameter of a macro has."""
+    taken: set[str] = set()
+    for it in found:
+        for file, data in (it.read.sources if it.read else {}).items():
+            for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
+                words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
+                taken |= {element.get("name", ""), *words}
+    free = next((name for name in NAMES if name not in taken), None)
+    if free is None:
+        raise UsageError(f"{', '.join(NAMES)} are all names of its arguments or properties")
+    return free
+
+
+def _texts(found: Iterable[Description]) -> dict[str, bytes]:
+    """The files that make the descriptions, by real path."""
+    read = chain.from_iterable(it.read.sources.items() for it in found if it.read)
+    return {os.path.realpath(path): data for path, data in read}
+
+
+def _naming() -> Naming:
+    named = make_naming("frames-per-robot", PREFIX)
+    return named._replace(separators=dict.fromkeys(_KINDS, ""))
+
+
+def _changes(it: Description) -> Iterator[Change]:
+    """Where the prefix goes in the values of a description."""
+    document, claims, *_ = it.inventory
+    numbers = {start: at for at, start in enumerate(document.starts)}
+    renames = make_renames(it.inventory, _naming())
+    for claim, spelling in zip(claims, renames.values, strict=True):
+        _, _, start, attribute, value = claim
+        for found in spelling:
+            at = found.affix.at
+            yield Change(numbers[start], attribute, value, at, at, TRIED)
+
+
+def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> SourceEdit:
+    """The argument and its property, first in the root element of the description's own file."""
+    path = os.path.realpath(it.path)
+    source = texts[path]
+    at = tag_end(source, read_document(source, it.path).starts[0])
+    text = (
+        f'\n  <xacro:arg name="{argument}" default=""/>'
+        f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
+    )
+    return SourceEdit(path, at, at, text.encode())
+
+
+def _not_written(it: Description) -> Iterator[Left]:
+    """Names that a plugin takes where none is written: they need an element of their own."""
+    document, _, _, declared, *_ = it.inventory
+    for one in insertions(it.inventory.served, declared, _naming()):
+        if one.kind in _KINDS and it.read:
+            origin = it.read.origins.of(document.elements.index(one.parent))
+            source = it.read.sources[origin.file] if origin else b""
+            where = (origin.file, *locate(source, origin.start)) if origin else (it.path,)
+            yield Left(
+                ":".join(map(str, where)), f"its {one.kind} is {one.old!r}, which no element says"
+            )
+
+
+def _is_proved(
+    it: Description,
+    changes: Collection[Change],
+    after: Mapping[str, bytes],
+    argument: str,
+    reach: Reach,
+) -> bool:
+    document = it.inventory.document
+    plain, _ = read_text(it.path, reach, after)
+    named, _ = read_text(it.path, reach, after, {argument: TRIED})
+    return plain == document.source and named == expected(document, changes)

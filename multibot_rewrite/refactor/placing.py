@@ -1,0 +1,173 @@
+"""Where ``${prefix}`` goes in the sources, so that the names of a description get it and nothing else.
+
+A name is used in an attribute or a text of a xacro element. There the prefix goes, whatever makes the
+name: ``<parent link="${prefix}${parent}"/>``. Where the same place is also that of a name that all
+robots share, as ``world``, it goes where the name is made: ``parent="${prefix}base_link"`` in the call
+of the macro. Then every other place that uses this piece has to take it from there as well."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.expand import Expansion
+from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
+from multibot_rewrite.description.steps.document import attribute_slots, tag_end
+from multibot_rewrite.refactor.package import Description
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit
+
+# A file and an offset in it.
+Spot = tuple[str, int]
+
+
+class Left(NamedTuple):
+    """What could not be changed: its place, and why."""
+
+    place: str
+    why: str
+
+
+class Placed(NamedTuple):
+    """The edits, the changes that they make, and what is left."""
+
+    edits: list[SourceEdit]
+    changes: list[Change]
+    left: list[Left]
+
+
+class _Name(NamedTuple):
+    """A place for a prefix in a value: the spot where the value is used, that where the piece is made
+    that begins here, the spots of its ``other`` pieces, and the change of it, if there is one."""
+
+    used: Spot | None
+    made: Spot | None
+    other: frozenset[Spot]
+    change: Change | None
+
+
+def placed(it: Description, changes: Sequence[Change], argument: str) -> Placed:
+    """The edits of the sources for the changes of one description."""
+    assert it.read is not None
+    names = list(_names(it, it.read, changes))
+    deep = _made_elsewhere(names)
+    edits: list[SourceEdit] = []
+    kept: list[Change] = []
+    left: list[Left] = []
+    for name in names:
+        if name.change is None:
+            continue
+        spot = name.made if name.used is None or name.used in deep else name.used
+        if spot is None or (spot == name.made and not _is_alone(spot, names)):
+            left.append(
+                Left(_place(it, it.read, name.change), f"{name.change.value!r} is put together")
+            )
+            continue
+        edits.append(SourceEdit(*spot, spot[1], b"${%s}" % argument.encode()))
+        kept.append(name.change)
+    return Placed(edits, kept, left)
+
+
+def _names(it: Description, read: Expansion, changes: Iterable[Change]) -> Iterator[_Name]:
+    """Each change, and each value that is made at the same places and does not change."""
+    wanted: dict[tuple[int, str], dict[int, Change]] = defaultdict(dict)
+    for change in changes:
+        wanted[change.element, change.attribute][change.start] = change
+    for number, element in enumerate(it.inventory.document.elements):
+        for attribute, value in _values(element):
+            mine = wanted.get((number, attribute), {})
+            pieces = _with_ends(read.pieces.of(number, attribute, value))
+            for at in mine or [len(value) - len(value.lstrip())]:
+                used = _used(read, number, attribute, pieces, at)
+                yield _Name(used, *_made(read, pieces, at), mine.get(at))
+
+
+def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
+    """The attributes of an element, and its text under the name "" if it has nothing else."""
+    yield from ((str(name), str(value)) for name, value in element.attrib.items())
+    if element.text and not len(element):
+        yield "", element.text
+
+
+def _with_ends(pieces: Iterable[Piece]) -> list[tuple[int, Piece]]:
+    """Each piece with the offset in the value at which it ends."""
+    end, found = 0, []
+    for it in pieces:
+        end += len(it.text)
+        found.append((end, it))
+    return found
+
+
+def _used(
+    read: Expansion, number: int, attribute: str, pieces: Sequence[tuple[int, Piece]], at: int
+) -> Spot | None:
+    """Where a prefix before character ``at`` goes in the element that has the value."""
+    origin = read.origins.of(number)
+    slot = origin and _slot(read.sources[origin.file], origin.start, attribute)
+    if not origin or not slot:
+        return None
+    begin, end = slot
+    if not at:
+        return origin.file, begin
+    for last, it in pieces:
+        here = it.file == origin.file and begin <= it.start and it.end <= end
+        if here and last == at:
+            return it.file, it.end
+        if here and it.kind not in (EXPRESSION, GIVEN) and last - len(it.text) <= at < last:
+            return it.file, it.start + len(it.text[: at - last].encode())
+    return None
+
+
+def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
+    if attribute:
+        return attribute_slots(source, start).get(attribute.encode())
+    begin = tag_end(source, start)
+    return begin, source.find(b"<", begin)
+
+
+def _made(
+    read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
+) -> tuple[Spot | None, frozenset[Spot]]:
+    """Where the piece at ``at`` stands as it is, outside of an expression; and the other pieces."""
+    spots = {(it.file, it.start): last for last, it in pieces if it.kind not in (EXPRESSION, GIVEN)}
+    for last, it in pieces:
+        spot = it.file, it.start
+        if spot in spots and last - len(it.text) <= at < last:
+            inside = read.sources[it.file][: it.start]
+            free = inside.rfind(b"${") <= inside.rfind(b"}")
+            begins = last - len(it.text) == at
+            return (spot if free and begins else None), frozenset(spots.keys() - {spot})
+    return None, frozenset(spots)
+
+
+def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
+    """The spots of use at which no prefix can go: it comes from where the names are made."""
+    groups: dict[Spot | None, list[_Name]] = defaultdict(list)
+    for it in names:
+        groups[it.used].append(it)
+    deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
+    while True:
+        made = {it.made for it in names if it.change and it.used in deep}
+        more = {
+            it.used for it in names if it.change and it.made in made and it.made != it.used
+        } - deep
+        if not more:
+            return deep
+        deep |= more
+
+
+def _is_alone(spot: Spot, names: Iterable[_Name]) -> bool:
+    """Does a piece make nothing but names that get the prefix, each at its beginning?"""
+    return all(it.change is not None for it in names if it.made == spot) and not any(
+        spot in it.other for it in names
+    )
+
+
+def _place(it: Description, read: Expansion, change: Change) -> str:
+    origin = read.origins.of(change.element)
+    if origin is None:
+        return it.path
+    return ":".join(map(str, (origin.file, *locate(read.sources[origin.file], origin.start))))
