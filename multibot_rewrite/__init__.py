@@ -33,9 +33,12 @@ if TYPE_CHECKING:
     from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_file, rewrite_files
     from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
     from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
+    from multibot_rewrite.refactor.adopt import Adopted, adopt
+    from multibot_rewrite.refactor.rename import Renaming, rename_symbol
     from multibot_rewrite.system.records import System
 
 __all__ = [
+    "Adopted",
     "Change",
     "Finding",
     "InputError",
@@ -43,6 +46,7 @@ __all__ = [
     "LoadedRobot",
     "MultibotError",
     "ProofError",
+    "Renaming",
     "Rewrite",
     "RewriteRefused",
     "RewrittenFile",
@@ -50,10 +54,12 @@ __all__ = [
     "Unusable",
     "UsageError",
     "VocabularyError",
+    "adopt",
     "compare",
     "explain",
     "judge",
     "load_fleet",
+    "rename_symbol",
     "rewrite",
     "rewrite_all",
     "rewrite_file",
@@ -74,6 +80,8 @@ _HOMES = {
     **dict.fromkeys(("Finding", "RewriteRefused"), "base.findings.finding"),
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
     **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
+    **dict.fromkeys(("Adopted", "adopt"), "refactor.adopt"),
+    **dict.fromkeys(("Renaming", "rename_symbol"), "refactor.rename"),
     "LoadedRobot": "fleet.robots.loaded_robot",
     "System": "system.records",
     **dict.fromkeys(("compare", "judge"), "fleet.file.system_sources"),

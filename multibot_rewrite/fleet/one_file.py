@@ -17,6 +17,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.companions.alone import kind_alone, rewrite_alone
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import read_named
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
@@ -117,11 +118,11 @@ def rewrite_files(
     return _rewritten(source, tuple(robots), naming, *given)
 
 
-def marked_file(data: bytes, word: str, naming: Naming, urdf: bytes, file: str) -> bytes:
-    """A file beside the description ``urdf`` with a word put where the naming says. Raises what
-    ``rewrite_file`` does."""
-    given = (urdf, None, (), file, False, release_here(""))
-    return next(_rewritten(data, (word,), naming, *given)).data
+def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
+    """The names in a file beside the description ``urdf``. Raises what ``rewrite_file`` does."""
+    naming, release = make_naming(), release_here("")
+    job = read_jobs(["r"], urdf, naming, None, None, (), "", False, release)["r"]
+    return read_named(kind_alone(data, file), data, file, _context(job, naming, release))
 
 
 def _rewritten(

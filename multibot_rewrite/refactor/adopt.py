@@ -25,7 +25,7 @@ from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.refactor.package import Description, inventory_of, read_package, read_text
 from multibot_rewrite.refactor.placing import Left, placed
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, edited, expected
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of, edited, expected
 
 # What carries the robot's name where its topics have a namespace; the model's name is its spawner's.
 _KINDS = (
@@ -60,7 +60,8 @@ def adopt(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     reach = TRUSTED if trust else BOUNDED
     package = read_package(folder, tree, reach)
-    found = [_as_xacro(it, tree, reach) for it in package.descriptions if _is_meant(it)]
+    unread = dict(package.unread)
+    found = list(_as_xacros(package.descriptions, tree, reach, unread))
     if not found:
         raise UsageError(f"{folder}: there is no description of a robot in it that can be expanded")
     argument = _free_name(found)
@@ -81,9 +82,7 @@ def adopt(
         raise InputError(f"{other}: no place for the prefix was found that changes nothing else")
     there = {path: data if os.path.exists(path) else b"" for path, data in texts.items()}
     before = {path: there[path] for path in after}
-    return Adopted(
-        argument, before, after, tuple(proved), tuple(dict.fromkeys(left)), package.unread
-    )
+    return Adopted(argument, before, after, tuple(proved), tuple(dict.fromkeys(left)), unread)
 
 
 def _is_meant(it: Description) -> bool:
@@ -93,13 +92,24 @@ def _is_meant(it: Description) -> bool:
     )
 
 
+def _as_xacros(
+    descriptions: Iterable[Description], tree: Tree, reach: Reach, unread: dict[str, str]
+) -> Iterator[Description]:
+    """Each description as a xacro; those that cannot be one are noted in ``unread``."""
+    for it in filter(_is_meant, descriptions):
+        try:
+            yield it if it.read else _as_xacro(it, tree, reach)
+        except InputError as error:
+            unread[it.path] = str(error)
+
+
 def _as_xacro(it: Description, tree: Tree, reach: Reach) -> Description:
     """A plain description as the xacro that it becomes."""
-    if it.read is not None:
-        return it
-    source = it.inventory.document.source
-    at = source.index(b"robot", it.inventory.document.starts[0]) + len(b"robot")
-    text = source if b"xmlns:xacro" in source else source[:at] + _SPACE + source[at:]
+    source, start = it.inventory.document.source, it.inventory.document.starts[0]
+    end = tag_end(source, start)
+    at = start + len(b"<robot")
+    declared = b"xmlns:xacro" in source[start:end]
+    text = source if declared else source[:at] + _SPACE + source[at:]
     path = f"{it.path}.xacro"
     data, read = read_text(path, reach, {os.path.realpath(path): text})
     return Description(path, inventory_of(data, path, tree), read)
@@ -133,13 +143,10 @@ def _naming() -> Naming:
 def _changes(it: Description) -> Iterator[Change]:
     """Where the prefix goes in the values of a description."""
     document, claims, *_ = it.inventory
-    numbers = {start: at for at, start in enumerate(document.starts)}
     renames = make_renames(it.inventory, _naming())
     for claim, spelling in zip(claims, renames.values, strict=True):
-        _, _, start, attribute, value = claim
         for found in spelling:
-            at = found.affix.at
-            yield Change(numbers[start], attribute, value, at, at, TRIED)
+            yield change_of(document, claim, found.affix.at, found.affix.at, TRIED)
 
 
 def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> SourceEdit:

@@ -9,22 +9,25 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import chain
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
-from multibot_rewrite.base.naming import TWIN, Affix, Naming, make_naming
+from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.rename_map import KINDS as DECLARED
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
 from multibot_rewrite.description.steps.renames import make_renames
-from multibot_rewrite.fleet.one_file import marked_file
+from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.refactor.package import (
     Description,
     Package,
@@ -36,6 +39,7 @@ from multibot_rewrite.refactor.source_edits import (
     Change,
     Composed,
     SourceEdit,
+    change_of,
     edited,
     expected,
     source_edit,
@@ -153,17 +157,13 @@ def _check_free(symbol: _Symbol, package: Package) -> None:
 
 def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
     document, claims, _, declared, *_ = it.inventory
-    numbers = {start: at for at, start in enumerate(document.starts)}
     renames = make_renames(it.inventory, symbol.naming)
     for claim, spelling in zip(claims, renames.values, strict=True):
-        _, _, start, attribute, value = claim
         for found in spelling:
             at = found.affix.at
-            end = at + len(symbol.old)
-            yield Change(numbers[start], attribute, value, at, end, symbol.new)
+            yield change_of(document, claim, at, at + len(symbol.old), symbol.new)
     for claim, text in respell_collisions(document.root, claims, declared, symbol.respelled):
-        _, _, start, attribute, value = claim
-        yield Change(numbers[start], attribute, value, 0, len(value), text)
+        yield change_of(document, claim, 0, len(claim.value), text)
 
 
 def _edits(it: Description, changes: Sequence[Change]) -> Iterator[SourceEdit]:
@@ -236,22 +236,36 @@ def _beside(
     """The files beside the descriptions that change, with their bytes and in how many places."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
-    mark = TWIN + symbol.old
     found = package.found
     for path in (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees):
         data = read_bytes(path)
         if symbol.old.encode() not in data or os.path.realpath(path) in after:
             continue
-        try:
-            made = marked_file(data, TWIN, symbol.naming, described, path)
-        except MultibotError:
-            continue
-        text = made.decode()
-        if text.replace(TWIN, "").encode() == data and mark in text:
-            yield (
-                os.path.realpath(path),
-                (text.replace(mark, symbol.new).encode(), text.count(mark)),
-            )
+        with suppress(MultibotError):
+            starts = set(_starts(names_in_file(data, path, described), symbol))
+            if starts:
+                yield (
+                    os.path.realpath(path),
+                    (_replaced(data.decode(), starts, symbol), len(starts)),
+                )
+
+
+def _starts(file: NamedFile, symbol: _Symbol) -> Iterator[int]:
+    """Where in the text of a file the name is."""
+    for site in file.names:
+        if site.text == symbol.old and {*KINDS[symbol.kind]} & {
+            site.kind,
+            *DECLARED.get(site.kind, ()),
+        }:
+            start = file.text.find(symbol.old, site.slot.start + site.at, site.slot.end)
+            if start >= 0:
+                yield start
+
+
+def _replaced(text: str, starts: Iterable[int], symbol: _Symbol) -> bytes:
+    for start in sorted(starts, reverse=True):
+        text = text[:start] + symbol.new + text[start + len(symbol.old) :]
+    return text.encode()
 
 
 def _mentions(package: Package, old: str, after: Mapping[str, bytes]) -> Iterator[str]:

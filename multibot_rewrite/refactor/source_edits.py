@@ -6,9 +6,11 @@ of it is in one piece that stands in a file as it is; what an expression compute
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
@@ -25,6 +27,14 @@ class Change(NamedTuple):
     start: int
     end: int
     new: str
+
+
+def change_of(document: Document, claim: Claim, start: int, end: int, new: str) -> Change:
+    """The change of a claimed value; a claim has a text without the white space around it."""
+    number = bisect_left(document.starts, claim.start)
+    value = claim.value if claim.attribute else claim.element.text or ""
+    by = value.find(claim.value)
+    return Change(number, claim.attribute, value, by + start, by + end, new)
 
 
 class SourceEdit(NamedTuple):

@@ -32,6 +32,7 @@ FLOORS = (
     ("rules",),
     ("lint", "live"),
     ("fleet",),
+    ("refactor",),
     ("__init__", "launch", "pages"),
     ("cli",),
     ("__main__",),

@@ -1,0 +1,162 @@
+"""A package for one robot takes a prefix: what its sources become, written by hand, and what is left."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import InputError, UsageError, adopt
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.description.sources.expand import expand
+
+SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+ARGUMENT = """
+  <xacro:arg name="prefix" default=""/>
+  <xacro:property name="prefix" value="$(arg prefix)"/>"""
+# What stands in the robot -> what it becomes.
+CASES = {
+    "literals": (
+        '<link name="base"/><link name="arm"/>\n'
+        '<joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint>',
+        '<link name="${prefix}base"/><link name="${prefix}arm"/>\n'
+        '<joint name="${prefix}j" type="fixed"><parent link="${prefix}base"/>'
+        '<child link="${prefix}arm"/></joint>',
+    ),
+    "a macro's names get it where they are used": (
+        '<link name="base"/><xacro:macro name="wheel" params="side">'
+        '<link name="${side}_wheel"/></xacro:macro><xacro:wheel side="left"/>',
+        '<link name="${prefix}base"/><xacro:macro name="wheel" params="side">'
+        '<link name="${prefix}${side}_wheel"/></xacro:macro><xacro:wheel side="left"/>',
+    ),
+    "where the world is a parent too, the name gets it in the call": (
+        '<link name="world"/><link name="a"/><link name="b"/>'
+        '<xacro:macro name="m" params="up down"><joint name="to_${down}" type="fixed">'
+        '<parent link="${up}"/><child link="${down}"/></joint></xacro:macro>'
+        '<xacro:m up="world" down="a"/><xacro:m up="a" down="b"/>',
+        '<link name="world"/><link name="${prefix}a"/><link name="${prefix}b"/>'
+        '<xacro:macro name="m" params="up down"><joint name="${prefix}to_${down}" type="fixed">'
+        '<parent link="${up}"/><child link="${prefix}${down}"/></joint></xacro:macro>'
+        '<xacro:m up="world" down="a"/><xacro:m up="${prefix}a" down="b"/>',
+    ),
+    "frames, sensors and texts of plugins": (
+        '<link name="base"/><gazebo reference="base"><sensor name="lidar" type="gpu_lidar">'
+        "<gz_frame_id> base </gz_frame_id></sensor></gazebo>",
+        '<link name="${prefix}base"/><gazebo reference="${prefix}base">'
+        '<sensor name="${prefix}lidar" type="gpu_lidar">'
+        "<gz_frame_id> ${prefix}base </gz_frame_id></sensor></gazebo>",
+    ),
+    "ros2_control and its joints": (
+        '<link name="base"/><link name="a"/><joint name="j" type="revolute"><parent link="base"/>'
+        '<child link="a"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
+        '<ros2_control name="hw" type="system"><hardware><plugin>mock_components/GenericSystem'
+        '</plugin></hardware><joint name="j"/></ros2_control>',
+        '<link name="${prefix}base"/><link name="${prefix}a"/><joint name="${prefix}j" type="revolute">'
+        '<parent link="${prefix}base"/><child link="${prefix}a"/>'
+        '<limit effort="1" velocity="1" lower="0" upper="1"/></joint>'
+        '<ros2_control name="${prefix}hw" type="system"><hardware><plugin>'
+        'mock_components/GenericSystem</plugin></hardware><joint name="${prefix}j"/></ros2_control>',
+    ),
+}
+
+
+def robot(inside: str, more: str = "") -> str:
+    return f'<robot name="r" {SPACE}>{more}\n  {inside}\n</robot>\n'
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_sources_take_the_prefix(case: str, tmp_path: Path) -> None:
+    inside, wanted = CASES[case]
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    assert {name: data.decode() for name, data in made.after.items()} == {
+        str(path): robot(wanted, ARGUMENT)
+    }
+    assert (made.argument, made.proved, made.left) == ("prefix", (str(path),), ())
+    assert made.before == {str(path): path.read_bytes()}
+
+
+def test_an_included_file_is_changed_once_for_all_that_include_it(tmp_path: Path) -> None:
+    part = tmp_path / "part.xacro"
+    part.write_text(
+        f'<robot {SPACE}><xacro:macro name="p" params="n"><link name="${{n}}_p"/></xacro:macro></robot>'
+    )
+    for name in ("one", "two"):
+        include = '<xacro:include filename="part.xacro"/><xacro:p n="x"/>'
+        (tmp_path / f"{name}.urdf.xacro").write_text(robot(include))
+    made = adopt(str(tmp_path))
+    assert len(made.proved) == 2
+    assert made.after[str(part)].count(b"${prefix}") == 1
+    assert b'<link name="${prefix}${n}_p"/>' in made.after[str(part)]
+
+
+def test_a_taken_name_is_not_used_for_the_argument(tmp_path: Path) -> None:
+    inside = (
+        '<xacro:macro name="w" params="prefix"><link name="${prefix}_wheel"/></xacro:macro>'
+        '<xacro:w prefix="left"/>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    assert made.argument == "robot_prefix"
+    assert b'<link name="${robot_prefix}${prefix}_wheel"/>' in next(iter(made.after.values()))
+
+
+def test_a_plain_urdf_becomes_a_xacro_beside_it(tmp_path: Path) -> None:
+    plain = tmp_path / "r.urdf"
+    plain.write_text('<robot name="r"><!-- kept --><link name="base"/></robot>')
+    made = adopt(str(tmp_path))
+    ((path, data),) = made.after.items()
+    assert path == f"{plain}.xacro"
+    assert made.before == {path: b""}
+    assert b'<!-- kept --><link name="${prefix}base"/>' in data
+    Path(path).write_bytes(data)
+    assert b'<link name="left_base"/>' in expand(path, {"prefix": "left_"})
+    assert b'<link name="base"/>' in expand(path, {})
+
+
+def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
+    """The condition compares the name: with a prefix in it, another part of the robot is there."""
+    inside = (
+        '<link name="world"/><xacro:property name="names" value="${[\'world\', \'a\']}"/>'
+        '<link name="a"/><xacro:macro name="m" params="n"><gazebo reference="${names[n]}">'
+        '<material>Gazebo/Red</material></gazebo></xacro:macro><xacro:m n="0"/><xacro:m n="1"/>'
+    )
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    assert [(it.place.partition(":")[2], it.why) for it in made.left] == [
+        (f"2:{robot(inside).splitlines()[1].index('<gazebo') + 1}", "'a' is put together")
+    ]
+
+
+def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
+    inside = (
+        '<link name="a"/><link name="world"/><xacro:macro name="m" params="n">'
+        '<gazebo reference="${n}"/><xacro:if value="${n == \'a\'}"><link name="more"/></xacro:if>'
+        '</xacro:macro><xacro:m n="a"/><xacro:m n="world"/>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    with pytest.raises(InputError, match="no place for the prefix"):
+        adopt(str(tmp_path))
+
+
+def test_a_folder_without_a_robot_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="there is no description"):
+        adopt(str(tmp_path))
+
+
+def test_the_command_prints_a_patch_or_changes_the_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot('<link name="base"/>'))
+    monkeypatch.chdir(tmp_path)
+    assert main(["adopt", ".", "--color", "never"]) == 0
+    shown = capsys.readouterr()
+    assert "--- a/r.urdf.xacro\n+++ b/r.urdf.xacro\n" in shown.out
+    assert '+  <link name="${prefix}base"/>\n' in shown.out
+    assert shown.err == "multibot: argument prefix: 1 description in 1 file; proved\n"
+    assert path.read_text() == robot('<link name="base"/>')
+    assert main(["adopt", ".", "--in-place"]) == 0
+    assert path.read_text() == robot('<link name="${prefix}base"/>', ARGUMENT)

@@ -1,0 +1,134 @@
+"""A name of a package is another one everywhere: the files that change, written by hand, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import InputError, UsageError, rename_symbol
+from multibot_rewrite.cli.multibot import main
+
+SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+ROBOT = f"""<robot name="r" {SPACE}>
+  <!-- base_link is the root -->
+  <xacro:property name="root" value="base_link"/>
+  <link name="${{root}}"/>
+  <xacro:macro name="wheel" params="side parent">
+    <link name="${{side}}_wheel"/>
+    <joint name="${{side}}_joint" type="continuous">
+      <parent link="${{parent}}"/>
+      <child link="${{side}}_wheel"/>
+    </joint>
+  </xacro:macro>
+  <xacro:wheel side="left" parent="base_link"/>
+  <xacro:wheel side="right" parent="${{root}}"/>
+</robot>
+"""
+CONTROLLERS = """drive:
+  ros__parameters:
+    type: diff_drive_controller/DiffDriveController
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    base_frame_id: base_link  # the root
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    (tmp_path / "r.urdf.xacro").write_text(ROBOT)
+    (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
+    (tmp_path / "node.py").write_text('FRAME = "base_link"\nOTHER = "base_link_2"\n')
+    return tmp_path
+
+
+def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(package: Path) -> None:
+    made = rename_symbol("base_link", "chassis", str(package))
+    robot = ROBOT.replace('value="base_link"', 'value="chassis"').replace(
+        'parent="base_link"', 'parent="chassis"'
+    )
+    assert {Path(path).name: data.decode() for path, data in made.after.items()} == {
+        "r.urdf.xacro": robot,
+        "controllers.yaml": CONTROLLERS.replace(
+            "base_frame_id: base_link", "base_frame_id: chassis"
+        ),
+    }
+    assert made.places == 3
+    assert made.mentions == (f"{package}/node.py:1",)
+
+
+def test_what_is_the_same_in_old_and_new_stays(package: Path) -> None:
+    """Only ``left`` of ``left_wheel`` is in the call; it makes the joint, too."""
+    with pytest.raises(InputError, match=r"makes others, too: .*name=\"front_joint\""):
+        rename_symbol("left_wheel", "front_wheel", str(package))
+
+
+def test_a_name_that_pieces_make_is_refused_with_its_place(package: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"r.urdf.xacro:12:\d+: 'left_wheel' .* from 'left' and '_wheel'"
+    ):
+        rename_symbol("left_wheel", "drive", str(package))
+
+
+def test_a_joint_is_none_of_the_links_that_are_called_so(tmp_path: Path) -> None:
+    text = (
+        '<robot name="r"><link name="arm"/><link name="a"/><joint name="arm" type="fixed">'
+        '<parent link="arm"/><child link="a"/></joint></robot>'
+    )
+    (tmp_path / "r.urdf").write_text(text)
+    made = rename_symbol("arm", "elbow", str(tmp_path), kind="joint")
+    assert next(iter(made.after.values())).decode() == text.replace(
+        'joint name="arm"', 'joint name="elbow"'
+    )
+
+
+def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    srdf = '<robot name="r"><group name="a"><link name="a"/></group></robot>'
+    (tmp_path / "r.srdf").write_text(srdf)
+    made = rename_symbol("a", "b", str(tmp_path))
+    assert made.after[str(tmp_path / "r.srdf")].decode() == srdf.replace(
+        '<link name="a"', '<link name="b"'
+    )
+
+
+def test_a_topic_is_renamed(tmp_path: Path) -> None:
+    text = (
+        f'<robot name="r" {SPACE}><link name="base"/><gazebo reference="base">'
+        '<sensor name="s" type="gpu_lidar"><topic>scan</topic></sensor></gazebo></robot>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(text)
+    made = rename_symbol("scan", "front_scan", str(tmp_path), kind="topic")
+    assert next(iter(made.after.values())).decode() == text.replace(">scan<", ">front_scan<")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kind", "said"),
+    [
+        ("base_lin", "x", "link", "has a link 'base_lin'; did you mean 'base_link'?"),
+        ("base_link", "left_wheel", "link", "has a link 'left_wheel' already"),
+        ("base_link", "base_link", "link", "is called so already"),
+        ("base_link", "a b", "link", "'a b' is no name of a link"),
+        ("base_link", "x", "wheel", "kind 'wheel' is not known"),
+    ],
+)
+def test_wrong_names_are_refused(package: Path, old: str, new: str, kind: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        rename_symbol(old, new, str(package), kind=kind)
+
+
+def test_the_command_writes_all_or_shows_it(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(package)
+    words = ["rename", "base_link", "chassis", "."]
+    assert main([*words, "--diff", "--color", "never", "-v"]) == 0
+    shown = capsys.readouterr()
+    assert '-  <xacro:property name="root" value="base_link"/>' in shown.out
+    assert "link base_link -> chassis: 3 places in 2 files; proved" in shown.err
+    assert "left as they are: 1 line with 'base_link'" in shown.err
+    assert "  node.py:1\n" in shown.err
+    assert (package / "r.urdf.xacro").read_text() == ROBOT
+    assert main(words) == 0
+    assert "base_frame_id: chassis" in (package / "controllers.yaml").read_text()
+    assert 'value="chassis"' in (package / "r.urdf.xacro").read_text()
