@@ -14,7 +14,7 @@ from itertools import chain
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
+from multibot_rewrite.base.naming import PREFIX, Naming, affix, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
@@ -25,13 +25,21 @@ from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.refactor.package import Description, inventory_of, read_package, read_text
 from multibot_rewrite.refactor.placing import Left, placed
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of, edited, expected
+from multibot_rewrite.refactor.source_edits import (
+    Change,
+    SourceEdit,
+    change_of,
+    edited,
+    expected,
+    first_difference,
+)
 
 # What carries the robot's name where its topics have a namespace; the model's name is its spawner's.
 _KINDS = (
     "link", "joint", "frame", "sensor", "light", "transmission", "actuator", "hardware", "gpio",
     "shape",
 )  # fmt: skip
+_PARTS = ("link", "joint")
 NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
 TRIED = "robot1_"
 _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -72,17 +80,17 @@ def adopt(
     for it in found:
         made = placed(it, list(_changes(it)), argument)
         edits |= {one._replace(file=os.path.realpath(one.file)) for one in made.edits}
-        edits.add(_declared(it, texts, argument))
+        edits |= set(_declared(it, texts, argument))
         wanted[it.path] = made.changes
         left += [*made.left, *_not_written(it)]
     after = edited(texts, edits)
-    proved = [it.path for it in found if _is_proved(it, wanted[it.path], after, argument, reach)]
-    if len(proved) < len(found):
-        other = next(it.path for it in found if it.path not in proved)
-        raise InputError(f"{other}: no place for the prefix was found that changes nothing else")
+    for it in found:
+        _prove(it, wanted[it.path], after, argument, reach)
     there = {path: data if os.path.exists(path) else b"" for path, data in texts.items()}
     before = {path: there[path] for path in after}
-    return Adopted(argument, before, after, tuple(proved), tuple(dict.fromkeys(left)), unread)
+    return Adopted(
+        argument, before, after, tuple(it.path for it in found), tuple(dict.fromkeys(left)), unread
+    )
 
 
 def _is_meant(it: Description) -> bool:
@@ -97,6 +105,9 @@ def _as_xacros(
 ) -> Iterator[Description]:
     """Each description as a xacro; those that cannot be one are noted in ``unread``."""
     for it in filter(_is_meant, descriptions):
+        if it.read is None and os.path.exists(f"{it.path}.xacro"):
+            unread[it.path] = f"{it.path}: its xacro is beside it; make it anew from that"
+            continue
         try:
             yield it if it.read else _as_xacro(it, tree, reach)
         except InputError as error:
@@ -105,13 +116,8 @@ def _as_xacros(
 
 def _as_xacro(it: Description, tree: Tree, reach: Reach) -> Description:
     """A plain description as the xacro that it becomes."""
-    source, start = it.inventory.document.source, it.inventory.document.starts[0]
-    end = tag_end(source, start)
-    at = start + len(b"<robot")
-    declared = b"xmlns:xacro" in source[start:end]
-    text = source if declared else source[:at] + _SPACE + source[at:]
     path = f"{it.path}.xacro"
-    data, read = read_text(path, reach, {os.path.realpath(path): text})
+    data, read = read_text(path, reach, {os.path.realpath(path): it.inventory.document.source})
     return Description(path, inventory_of(data, path, tree), read)
 
 
@@ -141,24 +147,35 @@ def _naming() -> Naming:
 
 
 def _changes(it: Description) -> Iterator[Change]:
-    """Where the prefix goes in the values of a description."""
+    """Where the prefix goes in the values of a description. A link or joint that it does not have is
+    one of another description that includes the same file."""
     document, claims, *_ = it.inventory
-    renames = make_renames(it.inventory, _naming())
-    for claim, spelling in zip(claims, renames.values, strict=True):
-        for found in spelling:
-            yield change_of(document, claim, found.affix.at, found.affix.at, TRIED)
+    naming = _naming()
+    spellings = make_renames(it.inventory, naming).values
+    for claim, names, spelling in zip(claims, it.inventory.names, spellings, strict=True):
+        places = [found.affix.at for found in spelling]
+        for name in names:
+            kind = "" if name.kind else next((it for it in name.kinds if it in _PARTS), "")
+            there = affix(naming, kind, name.text) if kind else None
+            places += [name.at + there.at] if there else []
+        for at in places:
+            yield change_of(document, claim, at, at, TRIED)
 
 
-def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> SourceEdit:
+def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> Iterator[SourceEdit]:
     """The argument and its property, first in the root element of the description's own file."""
     path = os.path.realpath(it.path)
     source = texts[path]
-    at = tag_end(source, read_document(source, it.path).starts[0])
+    start = read_document(source, it.path).starts[0]
+    end = tag_end(source, start)
+    if b"xmlns:xacro" not in source[start:end]:
+        at = start + len(b"<robot")
+        yield SourceEdit(path, at, at, _SPACE)
     text = (
         f'\n  <xacro:arg name="{argument}" default=""/>'
         f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
     )
-    return SourceEdit(path, at, at, text.encode())
+    yield SourceEdit(path, end, end, text.encode())
 
 
 def _not_written(it: Description) -> Iterator[Left]:
@@ -174,14 +191,19 @@ def _not_written(it: Description) -> Iterator[Left]:
             )
 
 
-def _is_proved(
+def _prove(
     it: Description,
     changes: Collection[Change],
     after: Mapping[str, bytes],
     argument: str,
     reach: Reach,
-) -> bool:
+) -> None:
+    """Nothing changes without a prefix, and with one the names alone; raises InputError."""
     document = it.inventory.document
-    plain, _ = read_text(it.path, reach, after)
-    named, _ = read_text(it.path, reach, after, {argument: TRIED})
-    return plain == document.source and named == expected(document, changes)
+    given = {"": document.source, TRIED: expected(document, changes)}
+    for prefix, wanted in given.items():
+        made, _ = read_text(it.path, reach, after, {argument: prefix} if prefix else {})
+        if made != wanted:
+            what = "no place for the prefix changes names alone"
+            line = first_difference(made, wanted)
+            raise InputError(f"{it.path}: {what}; with {argument}:={prefix} it has {line}")

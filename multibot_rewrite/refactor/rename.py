@@ -24,14 +24,12 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS as DECLARED
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
-from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.refactor.package import (
     Description,
     Package,
-    inventory_of,
     read_package,
     read_text,
 )
@@ -42,6 +40,7 @@ from multibot_rewrite.refactor.source_edits import (
     change_of,
     edited,
     expected,
+    first_difference,
     source_edit,
     spans,
 )
@@ -115,7 +114,7 @@ def rename_symbol(
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     sources = _sources(edits, package)
     after = edited(sources, edits)
-    _prove(package, changes, after, tree, reach)
+    _prove(package, changes, after, reach)
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
@@ -207,7 +206,6 @@ def _prove(
     package: Package,
     changes: Mapping[str, Sequence[Change]],
     after: Mapping[str, bytes],
-    tree: Tree,
     reach: Reach,
 ) -> None:
     """Every description is what it was but for the name; raises InputError for one that is not."""
@@ -216,13 +214,11 @@ def _prove(
         data, _ = read_text(it.path, reach, after)
         if data == wanted:
             continue
-        other = inventory_of(data, it.path, tree).document
-        raise InputError(f"{it.path}: {_difference(it, other.source, wanted)}")
+        raise InputError(f"{it.path}: {_difference(data, wanted)}")
 
 
-def _difference(it: Description, made: bytes, wanted: bytes | None) -> str:
-    lines = zip(made.splitlines(), (wanted or b"").splitlines(), strict=False)
-    line = next((one for one, other in lines if one != other), b"").strip().decode(errors="replace")
+def _difference(made: bytes, wanted: bytes | None) -> str:
+    line = first_difference(made, wanted)
     what = "what makes the name makes others, too" if line else "the name cannot be changed alone"
     return f"{what}: then there would be {line}; change what makes it by hand"
 

@@ -135,3 +135,10 @@ def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[st
             last = end
         made[file] = b"".join(parts) + source[last:]
     return made
+
+
+def first_difference(made: bytes, wanted: bytes | None) -> str:
+    """The first line of a text that is not the wanted one; "" where there is none."""
+    lines = zip(made.splitlines(), (wanted or b"").splitlines(), strict=False)
+    line = next((one for one, other in lines if one != other), b"")
+    return line.strip().decode(errors="replace")

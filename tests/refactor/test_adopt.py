@@ -1,4 +1,4 @@
-"""A package for one robot takes a prefix: what its sources become, written by hand, and what is left."""
+"""A package for one robot takes a prefix: its sources afterwards, written by hand; what is left."""
 
 from __future__ import annotations
 
@@ -115,6 +115,30 @@ def test_a_plain_urdf_becomes_a_xacro_beside_it(tmp_path: Path) -> None:
     assert b'<link name="base"/>' in expand(path, {})
 
 
+def test_a_urdf_beside_its_xacro_is_left(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="base"/></robot>')
+    (tmp_path / "r.urdf.xacro").write_text(robot('<link name="base"/>'))
+    made = adopt(str(tmp_path))
+    assert made.proved == (str(tmp_path / "r.urdf.xacro"),)
+    assert list(made.unread) == [str(tmp_path / "r.urdf")]
+
+
+def test_a_link_of_another_description_has_the_prefix_too(tmp_path: Path) -> None:
+    (tmp_path / "part.xacro").write_text(f'<robot {SPACE}><gazebo reference="top"/></robot>')
+    include = '<xacro:include filename="part.xacro"/><link name="base"/>'
+    (tmp_path / "small.urdf.xacro").write_text(robot(include))
+    (tmp_path / "tall.urdf.xacro").write_text(robot(f'{include}<link name="top"/>'))
+    made = adopt(str(tmp_path))
+    assert b'<gazebo reference="${prefix}top"/>' in made.after[str(tmp_path / "part.xacro")]
+
+
+def test_a_xacro_without_the_namespace_gets_it(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text('<robot name="r"><link name="base"/></robot>')
+    made = adopt(str(tmp_path))
+    assert made.after[str(path)].startswith(f'<robot {SPACE} name="r">'.encode())
+
+
 def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
     """The condition compares the name: with a prefix in it, another part of the robot is there."""
     inside = (
@@ -137,7 +161,7 @@ def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
         '</xacro:macro><xacro:m n="a"/><xacro:m n="world"/>'
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
-    with pytest.raises(InputError, match="no place for the prefix"):
+    with pytest.raises(InputError, match="no place for the prefix changes"):
         adopt(str(tmp_path))
 
 

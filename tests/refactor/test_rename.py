@@ -1,4 +1,4 @@
-"""A name of a package is another one everywhere: the files that change, written by hand, and what is refused."""
+"""A name of a package is another one everywhere: files written by hand, and what is refused."""
 
 from __future__ import annotations
 

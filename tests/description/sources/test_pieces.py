@@ -1,4 +1,5 @@
-"""Every piece of a value knows where it was written: read off the files by hand, and proved by changing them."""
+"""Every piece of a value knows where it was written: read off the files by hand, and proved by changing
+them."""
 
 from __future__ import annotations
 
@@ -153,7 +154,8 @@ def test_a_name_behind_an_escape_is_what_an_expression_makes(tmp_path: Path) -> 
     "file", ["fixtures/xacros/arm.urdf.xacro", "examples/namespace_and_prefix/hexbase.urdf.xacro"]
 )
 def test_a_mark_in_a_piece_comes_out_in_each_value_that_has_it(file: str) -> None:
-    """The text is what xacro makes without a look at pieces; and each piece, changed, changes these values."""
+    """The text is what xacro makes without a look at pieces; and each piece, changed, changes these
+    values."""
     path = Path(file)
     read = expanded(path)
     assert read.data == expand_whole(file, {}).data
