@@ -125,7 +125,9 @@ def _free_name(found: Iterable[Description]) -> str:
     """A name that no argument, property or parameter of a macro has."""
     taken: set[str] = set()
     for it in found:
-        for file, data in (it.read.sources if it.read else {}).items():
+        sources = it.read.sources if it.read else {}
+        # YAML that an expression loads is among them.
+        for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
             for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
                 words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
                 taken |= {element.get("name", ""), *words}

@@ -1,0 +1,104 @@
+"""Launch files as people write them, and what they are with the argument; read back by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.refactor.launch_argument import with_argument
+
+HEAD = """from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+"""
+DECLARED = 'DeclareLaunchArgument("prefix", default_value=""),'
+MORE = """
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+"""
+GIVEN = ', " prefix:=", LaunchConfiguration("prefix")'
+PYTHON = {
+    "one line": (
+        '\ntext = Command(["xacro ", "r.urdf.xacro"])\n'
+        "def generate_launch_description():\n    return LaunchDescription([Node()])\n",
+        f'\ntext = Command(["xacro ", "r.urdf.xacro"{GIVEN}])\n'
+        "def generate_launch_description():\n"
+        f"    return LaunchDescription([{DECLARED} Node()])\n",
+    ),
+    "an action on each line, and a comma at the end": (
+        '\ntext = Command([\n    FindExecutable(name="xacro"),\n    " ",\n    "r.urdf.xacro",\n])\n'
+        "def generate_launch_description():\n    return LaunchDescription([\n        Node(),\n    ])\n",
+        '\ntext = Command([\n    FindExecutable(name="xacro"),\n    " ",\n'
+        f'    "r.urdf.xacro"{GIVEN},\n])\n'
+        "def generate_launch_description():\n"
+        f"    return LaunchDescription([\n        {DECLARED}\n        Node(),\n    ])\n",
+    ),
+    "names of a module": (
+        '\ntext = launch.substitutions.Command(["xacro", " ", "r.urdf.xacro"])\n'
+        "x = launch.LaunchDescription([Node()])\n",
+        f'\ntext = launch.substitutions.Command(["xacro", " ", "r.urdf.xacro"{GIVEN}])\n'
+        f"x = launch.LaunchDescription([{DECLARED} Node()])\n",
+    ),
+}
+LEFT = {
+    "a program of its own": 'text = xacro.process_file("r.urdf.xacro").toxml()\n',
+    "no literal list": 'ld.add_action(Node())\nt = Command(["xacro ", "r.urdf.xacro"])\n',
+    "words in one text": 't = Command("xacro r.urdf.xacro")\nx = LaunchDescription([Node()])\n',
+}
+
+
+def changed(source: str, path: str = "a.launch.py") -> str | None:
+    data = with_argument(path, source.encode(), "prefix", ["r.urdf.xacro"]).data
+    return None if data is None else data.decode()
+
+
+@pytest.mark.parametrize("case", PYTHON)
+def test_a_python_launch_file_takes_it(case: str) -> None:
+    before, after = PYTHON[case]
+    assert changed(HEAD + before) == HEAD[:-1] + MORE + after
+
+
+def test_what_is_imported_is_not_again() -> None:
+    head = f"{HEAD}from launch.actions import DeclareLaunchArgument\n"
+    before, after = PYTHON["one line"]
+    more = "from launch.substitutions import LaunchConfiguration\n"
+    assert changed(head + before) == head + more + after
+
+
+@pytest.mark.parametrize("case", LEFT)
+def test_what_runs_xacro_otherwise_is_left_with_its_line(case: str) -> None:
+    made = with_argument("a.launch.py", f"{HEAD}{LEFT[case]}".encode(), "prefix", ["r.urdf.xacro"])
+    line = 4 + (case == "no literal list")
+    assert made.data is None
+    assert [(it.place, it.why) for it in made.left] == [
+        (f"a.launch.py:{line}", "give its xacro the argument by hand")
+    ]
+
+
+def test_another_robots_launch_file_is_nothing_of_ours() -> None:
+    source = f'{HEAD}text = Command(["xacro ", "other.xacro"])\n'
+    assert with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"]) == (None, ())
+
+
+def test_a_file_that_is_no_python_is_left() -> None:
+    made = with_argument("a.launch.py", b"def (: r.urdf.xacro", "prefix", ["r.urdf.xacro"])
+    assert (made.data, made.left[0].why) == (None, "it is no Python")
+
+
+XML = """<launch>
+  <node pkg="robot_state_publisher" exec="robot_state_publisher">
+    <param name="robot_description" value="$(command 'xacro $(find-pkg-share p)/r.urdf.xacro')"/>
+  </node>
+</launch>
+"""
+
+
+def test_an_xml_launch_file_takes_it() -> None:
+    wanted = XML.replace("<launch>", '<launch>\n  <arg name="prefix" default=""/>').replace(
+        "r.urdf.xacro'", "r.urdf.xacro prefix:=$(var prefix)'"
+    )
+    assert changed(XML, "a.launch.xml") == wanted
+
+
+def test_an_xml_launch_file_with_such_an_argument_is_left() -> None:
+    source = XML.replace("<launch>", '<launch>\n  <arg name="prefix" default="x"/>')
+    assert changed(source, "a.launch.xml") is None
