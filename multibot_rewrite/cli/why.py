@@ -43,6 +43,8 @@ def _place(text: str) -> tuple[str, int]:
 def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
     yield f"{path}:{item.line}:{item.column}: {item.path}"
     yield from _facts(item, robot)
+    if item.made_of:
+        yield f"  made of: {' + '.join(item.made_of)}"
     if item.source:
         yield f"  source: {item.source}"
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.arguments import checked
@@ -20,7 +21,8 @@ from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.reports.changes import list_changes
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
-from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import Source, is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import read_document
@@ -233,7 +235,8 @@ def explain(
     trust: bool = False,
     distro: str = "",
 ) -> list[Explanation]:
-    """What is known about the values that start on ``line``, and what they become for ``robot``.
+    """What is known about the values that start on ``line``, and what they become for ``robot``; of a
+    xacro, about those that the element on this line of the file makes, and of which pieces.
 
     The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
     the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
@@ -252,7 +255,13 @@ def explain(
     document = read_document(job.data, job.file)
     inventory = collect(document, job.tree, urdf_declarations, naming.layout)
     pipeline.check_urdf(inventory, urdf_declarations)
-    return explain_line(inventory, job.naming, job.tree, robot, line)
+    on_line = partial(explain_line, inventory, job.naming, job.tree, robot)
+    if isinstance(source, bytes) or not is_xacro(os.fspath(source)):
+        return on_line(line)
+    from multibot_rewrite.description.reports.explain_xacro import explain_source
+
+    given = filled(xacro_args or {}, robot)
+    return explain_source(os.fspath(source), given, trust, document, line, on_line)
 
 
 @checked

@@ -23,7 +23,13 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
 from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.renames import make_renames
-from multibot_rewrite.refactor.package import Description, inventory_of, read_package, read_text
+from multibot_rewrite.refactor.package import (
+    Description,
+    as_named,
+    inventory_of,
+    read_package,
+    read_text,
+)
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     Change,
@@ -86,8 +92,9 @@ def adopt(
     after = edited(texts, edits)
     for it in found:
         _prove(it, wanted[it.path], after, argument, reach)
-    there = {path: data if os.path.exists(path) else b"" for path, data in texts.items()}
-    before = {path: there[path] for path in after}
+    after = as_named(after, found)
+    before = {path: data for path, data in as_named(texts, found).items() if path in after}
+    before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
     return Adopted(
         argument, before, after, tuple(it.path for it in found), tuple(dict.fromkeys(left)), unread
     )

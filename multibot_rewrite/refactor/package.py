@@ -90,3 +90,12 @@ def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] 
 
 def _lacks(pair: Inventory) -> int:
     return sum(not name.kind for names in pair.names for name in names)
+
+
+def as_named(files: Mapping[str, bytes], descriptions: Iterable[Description]) -> dict[str, bytes]:
+    """Files by the paths that they were read under, in place of their real ones."""
+    read = (
+        name for it in descriptions for name in (it.path, *(it.read.sources if it.read else ()))
+    )
+    named = {os.path.realpath(name): name for name in read}
+    return {named.get(path, path): data for path, data in files.items()}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 
@@ -30,6 +30,7 @@ from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.refactor.package import (
     Description,
     Package,
+    as_named,
     read_package,
     read_text,
 )
@@ -118,8 +119,9 @@ def rename_symbol(
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
-    before = {path: sources.get(path) or read_bytes(path) for path in after}
-    found = tuple(_mentions(package, symbol.old, after))
+    found = tuple(_mentions(package, symbol.old, {os.path.realpath(it) for it in after}))
+    after = as_named(after, package.descriptions)
+    before = {path: read_bytes(path) for path in after}
     return Renaming(before, after, places, found, package.unread)
 
 
@@ -241,7 +243,7 @@ def _beside(
             starts = set(_starts(names_in_file(data, path, described), symbol))
             if starts:
                 yield (
-                    os.path.realpath(path),
+                    path,
                     (_replaced(data.decode(), starts, symbol), len(starts)),
                 )
 
@@ -264,7 +266,7 @@ def _replaced(text: str, starts: Iterable[int], symbol: _Symbol) -> bytes:
     return text.encode()
 
 
-def _mentions(package: Package, old: str, after: Mapping[str, bytes]) -> Iterator[str]:
+def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
     """Lines that have the name, of files that do not change."""
     word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
     for folder in package.found.folders:
@@ -275,7 +277,7 @@ def _mentions(package: Package, old: str, after: Mapping[str, bytes]) -> Iterato
                 if (
                     name.endswith(_TEXTS)
                     and os.path.isfile(path)
-                    and os.path.realpath(path) not in after
+                    and os.path.realpath(path) not in changed
                 ):
                     data = read_bytes(path)
                     yield from (

@@ -24,7 +24,8 @@ class Explanation(NamedTuple):
     """One value: its place, the site that claims or keeps it if any, and in words what follows.
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
-    ``source`` is where the vocabulary has it from, empty where it does not say.
+    ``source`` is where the vocabulary has it from, empty where it does not say. ``made_of`` are the
+    pieces that a xacro makes the value of, in words.
     """
 
     line: int
@@ -36,6 +37,7 @@ class Explanation(NamedTuple):
     new: str
     inserted: tuple[str, ...] = ()
     source: str = ""
+    made_of: tuple[str, ...] = ()
 
 
 def explain_line(

@@ -154,3 +154,28 @@ def test_bad_places_are_one_line(
 def test_a_robot_name_is_checked() -> None:
     with pytest.raises(UsageError):
         explain(ROBOT, 2, "1st")
+
+
+def test_a_line_of_a_xacro_says_which_pieces_make_its_names(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '<xacro:arg name="p" default=""/>\n'
+        '<xacro:macro name="wheel" params="side">\n'
+        '<link name="$(arg p)${side}_wheel${1 + 1}"/>\n'
+        "</xacro:macro>\n"
+        '<xacro:wheel side="left"/><xacro:wheel side="right"/>\n'
+        "</robot>"
+    )
+    found = explain(str(path), 4, xacro_args={"p": "my_"})
+    assert [(it.line, it.column, it.value, it.new) for it in found] == [
+        (4, 1, "my_left_wheel2", "my_left_wheel2/robot1"),
+        (4, 1, "my_right_wheel2", "my_right_wheel2/robot1"),
+    ]
+    assert found[1].made_of == (
+        "'my_' (argument p that was given)",
+        f"'right' (parameter, {path}:6:46)",
+        f"'_wheel' (literal, {path}:4:28)",
+        f"'2' (${{1 + 1}}, {path}:4:34)",
+    )
+    assert explain(str(path), 6) == []
