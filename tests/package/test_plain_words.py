@@ -1,4 +1,4 @@
-"""Help, messages and pages for users are in the words of ROS: terms that only this package uses stay out."""
+"""Help, messages and pages for users are in the words of ROS, without terms of this package alone."""
 
 from __future__ import annotations
 
