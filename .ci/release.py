@@ -27,7 +27,7 @@ PLACES = {
     "package.xml": rf"(<version>){VERSION}(</version>)",
     "CITATION.cff": rf"(?m)^(version: ){VERSION}()$",
     "multibot_rewrite/version.py": rf'(?m)^(__version__ = "){VERSION}(")$',
-    "docs/lint-ci.md": rf"([@ `]v){VERSION}()",
+    "docs/lint.md": rf"([@ `]v){VERSION}()",
 }
 
 

@@ -1,7 +1,7 @@
 """Do the tests notice? Plants bugs in a copy of the repository, one at a time, and runs the fast tests.
 
 python benchmarks/planted_bugs.py                     6 bugs in each room, and the table
-python benchmarks/planted_bugs.py --write             and put it into docs/planted-bugs.md
+python benchmarks/planted_bugs.py --write             and put it into docs/measurements.md
 python benchmarks/planted_bugs.py steps remap -n 20   more of them in some rooms
 python benchmarks/planted_bugs.py --seed 2            other ones
 python benchmarks/planted_bugs.py producers --tests tests/producers    do these tests alone notice?
@@ -30,9 +30,9 @@ from queue import Queue
 from typing import NamedTuple
 
 from bugs import Bug, bugs_in, planted
+from one_page import write_section
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "planted-bugs.md"
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
 # "." are the modules that are in no room.
@@ -81,7 +81,7 @@ def main(arguments: Sequence[str]) -> int:
     lines = list(_page(outcomes, options))
     print("\n".join(lines))
     if options.write:
-        PAGE.write_text("\n".join(lines) + "\n")
+        write_section("\n".join(lines))
     alive = _alive(outcomes)
     return int(len(alive) * 10 > len(outcomes))
 

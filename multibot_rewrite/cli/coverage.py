@@ -124,7 +124,7 @@ def _percentage(count: int, known: int) -> float:
 
 
 def as_json(report: CoverageReport) -> dict[str, object]:
-    """The report as ``--form json`` writes it; docs/inspect.md describes it."""
+    """The report as ``--form json`` writes it; docs/stacks.md describes it."""
     return {
         "distro": report.release,
         "files": {

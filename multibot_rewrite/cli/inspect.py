@@ -116,7 +116,7 @@ def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """A section as ``--form json`` writes it; docs/inspect.md describes it."""
+    """A section as ``--form json`` writes it; docs/stacks.md describes it."""
     return {
         "type": section.type,
         "names": section.names,

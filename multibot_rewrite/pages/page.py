@@ -122,6 +122,13 @@ def _look(scene: Scene) -> str:
     return LOOKS[Verdict.INCONCLUSIVE if verdict == Verdict.PLANNED and doubtful else verdict]
 
 
+def _count(scene: Scene) -> str:
+    """The count that the command prints, and in how many rows it is shown."""
+    levels = Counter(finding.level for finding in scene.findings)
+    rows = f" in {plural(len(scene.rows), 'row')}" if len(scene.rows) < len(scene.findings) else ""
+    return f"{summarize(levels)}{rows}" if summarize(levels) else "no findings"
+
+
 def _header(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
@@ -129,7 +136,7 @@ def _header(
     nodes = {n.name for g in scene.groups for n in g.nodes if not n.is_robot and n.state != MISSING}
     layout = "layout" if scene.outcome.planned else "looks like layout"
     facts = (
-        summarize(Counter(finding.level for finding in scene.findings)) or "no findings",
+        _count(scene),
         f"{plural(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
         plural(len(nodes), "node"),
         f"{layout} {scene.layout}{f': {about}' if about else ''}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.selection import with_members
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import WORDS, Outcome, judge
@@ -39,6 +39,8 @@ from multibot_rewrite.system.records import (
 )
 from multibot_rewrite.system.tool_nodes import is_tool
 
+# Of findings: errors first, what is not certain last.
+_ORDER = (ERROR, WARNING, NOTE, INCONCLUSIVE)
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
 COMMON_PACKAGES = (
@@ -180,7 +182,8 @@ def make_scene(
 
 
 def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    for finding, members in with_members(targets, robot_words(plan.system)):
+    each = with_members(targets, robot_words(plan.system))
+    for finding, members in sorted(each, key=lambda it: _ORDER.index(it[0].level)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
         robots = tuple(robot for robot in plan.declared if robot in concerned)
         written = f"{finding.file}:{finding.line}" if finding.line else finding.file

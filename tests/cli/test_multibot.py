@@ -26,7 +26,7 @@ from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabu
 from tools import unclaimed
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
-PAGE = ROOT / "docs" / "inspect.md"
+PAGE = ROOT / "docs" / "stacks.md"
 UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
 PATIENCE = 60
 # Percent of the occurrences over the corpus.

@@ -865,14 +865,14 @@ def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str)
 
 
 def test_the_page_has_codes_that_exist() -> None:
-    text = (ROOT / "docs" / "params.md").read_text()
+    text = (ROOT / "docs" / "companions.md").read_text()
     codes_named = set(re.findall(r"MF1\d\d", text))
     assert codes_named
     assert codes_named <= set(catalogue.rules())
 
 
 def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
-    text = (ROOT / "docs" / "params.md").read_text()
+    text = (ROOT / "docs" / "companions.md").read_text()
     path = tmp_path / "more.yaml"
     path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
     source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")

@@ -1,6 +1,6 @@
 """Two arms of vendors, from their own files, against what the vendors' own prefix arguments make.
 
-The recipes are docs/robots/*.md. With MULTIBOT_SOURCES=FOLDER, which holds the checkouts that
+The recipes are in docs/arms.md. With MULTIBOT_SOURCES=FOLDER, which holds the checkouts that
 ``tests/support/vendors/arms.yaml`` names; skipped without. The judge is xacro with the vendor's
 arguments, or the vendor's xacro for two arms; what differs from it is listed here, and why.
 """
@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 from lxml import etree
-from paths import ROOT
+from vendor_arm_pages import text_of
 from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -407,7 +407,7 @@ def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
 
 
 def _fleet_of(page: str) -> str:
-    text = (ROOT / "docs" / "robots" / f"{page}.md").read_text()
+    text = text_of(page)
     return re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0]
 
 
@@ -444,7 +444,7 @@ def test_another_layout_and_three_robots_have_no_false_findings(
 @pytest.mark.slow
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) -> None:
-    text = (ROOT / "docs" / "robots" / f"{page}.md").read_text()
+    text = text_of(page)
     fleet = _fleet_of(page)
     path = tmp_path / "fleet.yaml"
     path.write_text(re.sub(r"\bsrc/", f"{sources}/", fleet))

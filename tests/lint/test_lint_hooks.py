@@ -26,7 +26,7 @@ from multibot_rewrite.cli.urdf_lint import main
 pytestmark = pytest.mark.slow
 
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
-PAGE = (ROOT / "docs" / "lint-ci.md").read_text()
+PAGE = (ROOT / "docs" / "lint.md").read_text()
 HOME = "https://github.com/OWNER/multibot_rewrite"
 REVISION = "v0.1.0"
 BASH = ("bash", "-e", "-o", "pipefail", "-c")

@@ -38,7 +38,7 @@ def test_enough_was_judged_and_enough_is_true(row: Precision) -> None:
 @pytest.mark.slow
 def test_the_page_is_up_to_date() -> None:
     """It has the planted defects and healthy oddities as the lint finds them now."""
-    assert (ROOT / "docs/lint-precision.md").read_text() == precision_page()
+    assert f"#{precision_page().strip()}\n" in (ROOT / "docs" / "measurements.md").read_text()
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
 from multibot_rewrite.rules.subject import Subject
 
-PAGE = (ROOT / "docs" / "lint-config.md").read_text()
+PAGE = (ROOT / "docs" / "lint.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
 QUIET = ("MB502", "MB503", "MB504")
 ON = ("MB501", *QUIET, "MB0")

@@ -1,4 +1,4 @@
-"""Help and messages are in the words of ROS: terms that only this package uses so stay out of them."""
+"""Help, messages and pages for users are in the words of ROS, without terms of this package alone."""
 
 from __future__ import annotations
 
@@ -16,6 +16,15 @@ from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.multibot import overview
 from multibot_rewrite.cli.parser import make_parser
 
+# Pages for users; those of measurements and for contributors name the code's own terms.
+PAGES = (
+    *(ROOT / it for it in ("README.md", "SECURITY.md")),
+    *sorted(ROOT.glob("examples/*/README.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+)
+NOT_FOR_USERS = {"architecture.md", "contributing.md", "release.md", "measurements.md", "robots.md"}
+NOT_FOR_USERS |= {"strangers.md", "vendors.md"}
+CODE = re.compile(r"^( *)(`{3,}).*?^\1\2`*$|`[^`]*`", re.MULTILINE | re.DOTALL)
 TERMS = Path(__file__).parents[1] / "support" / "private_terms.tsv"
 
 
@@ -85,6 +94,13 @@ def test_a_help_has_no_private_term(name: str) -> None:
     parser = make_parser(command)
     assert list(found_in(parser.format_help())) == []
     assert list(found_in(parser.short)) == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda it: str(it.relative_to(ROOT)))
+def test_a_page_for_users_has_no_private_term(page: Path) -> None:
+    parts = re.split(r"\n\s*\n|\n- |\n\|", CODE.sub("", page.read_text()))
+    found = [it for part in parts for it in found_in(part)]
+    assert page.name in NOT_FOR_USERS or found == []
 
 
 def test_the_overview_has_no_private_term() -> None:

@@ -161,7 +161,7 @@ def workflow(name: str) -> dict[str, Any]:
     return loaded
 
 
-OURS = ("ci.yml", "docs.yml", "release.yml")
+OURS = ("ci.yml", "container.yml", "docs.yml", "release.yml")
 
 
 @pytest.mark.slow

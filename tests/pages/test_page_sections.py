@@ -1,11 +1,14 @@
-"""Where the line of a finding leads on a page."""
+"""Where the line of a finding leads on a page, and in which order findings stand."""
 
 from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
+from multibot_rewrite.pages.page import to_html
 from multibot_rewrite.pages.page_sections import link_to
+from multibot_rewrite.pages.scene import make_scene
+from multibot_rewrite.system.records import Robot, System
 
 SECTIONS = {"": ("all", {"n1"}), "robot1": ("one", {"n1", "n2"}), "robot2": ("two", {"n1", "n3"})}
 
@@ -23,3 +26,17 @@ SECTIONS = {"": ("all", {"n1"}), "robot1": ("one", {"n1", "n2"}), "robot2": ("tw
 def test_a_finding_leads_to_its_robot(robot: str, targets: list[str], link: str) -> None:
     finding = Finding("MG301", "error", "it", robot=robot)
     assert link_to(finding, targets, SECTIONS) == link
+
+
+def test_errors_are_above_what_is_not_certain_and_the_head_says_the_count_and_the_rows() -> None:
+    """Codes are sorted the other way round: MG101 is inconclusive, MG301 an error."""
+    robots = tuple(Robot(it, (), f"/{it}/tf") for it in ("robot1", "robot2"))
+    plan = System(robots=robots, layout="tf-per-robot")
+    found = [
+        Finding("MG101", INCONCLUSIVE, "missing", node=f"/{it.name}/amcl", robot=it.name)
+        for it in robots
+    ]
+    found.append(Finding("MG301", ERROR, "twice", robot="robot1"))
+    scene = make_scene(plan, System(), found)
+    assert [it.finding.level for it in scene.rows] == [ERROR, INCONCLUSIVE]
+    assert "<li>1 error, 2 inconclusive in 2 rows</li>" in to_html(scene).decode()

@@ -145,4 +145,5 @@ def test_the_command_ends_with_the_level_of_the_fault(
 
 @pytest.mark.slow
 def test_the_page_is_that_of_today() -> None:
-    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())
+    page = (ROOT / "docs" / "measurements.md").read_text()
+    assert "#" + "\n".join(lines()).strip() in page

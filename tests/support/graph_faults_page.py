@@ -1,10 +1,11 @@
-"""The page of seeded faults: ``python tests/support/graph_faults_page.py > docs/graph-faults.md``."""
+"""The page of seeded faults: ``python tests/support/graph_faults_page.py --write``."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from pathlib import Path
 from typing import NamedTuple
 
 from built_faults import BUILT, in_a_build, why_not
@@ -22,7 +23,7 @@ from multibot_rewrite.system.records import System
 HEAD = """\
 # Seeded faults
 
-Made by `python tests/support/graph_faults_page.py > docs/graph-faults.md`. Each row is a fault that was
+Made by `python tests/support/graph_faults_page.py --write`. Each row is a fault that was
 put into a system in which nothing was wrong (`tests/support/graph_faults.py`), each column a command
 and what it reads the system from (`tests/support/fault_sources.py`). A fault has one code in all of
 them; where a source cannot show it, the cell says what is not in the source.
@@ -136,4 +137,10 @@ def _words(fault: Fault, cells: Mapping[str, Cell]) -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write("".join(f"{line}\n" for line in lines()))
+    text = "".join(f"{line}\n" for line in lines())
+    sys.stdout.write(text)
+    if sys.argv[1:] == ["--write"]:
+        sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
+        from one_page import write_section
+
+        write_section(text)

@@ -1,6 +1,6 @@
 """How often the newest rules of the lint are right, and what they find of planted defects, as a page.
 
-python tests/support/lint_precision.py > docs/lint-precision.md
+python tests/support/lint_precision.py --write
 python tests/support/lint_precision.py counts: the column ``hits`` of fixtures/lint_precision.tsv anew
 """
 
@@ -33,7 +33,7 @@ BESIDE = (".yaml", ".yml", ".rviz")
 _HEAD = """\
 # How often the newest rules of urdf-lint are right
 
-Made by `python tests/support/lint_precision.py > docs/lint-precision.md` from
+Made by `python tests/support/lint_precision.py --write` from
 `fixtures/lint_precision.tsv`.
 
 Each rule was run over the public files and those of Python packages that [the page of
@@ -43,7 +43,7 @@ reading what consumes the value. A rule with less than 95 % true findings is a n
 {in_packages} need what lies beside a file, and were run over checkouts of public packages.
 
 Of defects planted in `tests/lint/`, one a file, so many gave a finding that the healthy file does not
-have: with all rules but those of this page, and with all. Of files that are odd and healthy none may
+have: with all rules but those of this table, and with all. Of files that are odd and healthy none may
 have one of these rules. The tests count all of it anew:
 
 | what | defects | found without these rules | found | odd and healthy |
@@ -168,3 +168,8 @@ if __name__ == "__main__":
         PRECISION.write_text(counted())
     else:
         sys.stdout.write(precision_page())
+    if sys.argv[1:] == ["--write"]:
+        sys.path.append(str(ROOT / "benchmarks"))
+        from one_page import write_section
+
+        write_section(precision_page())

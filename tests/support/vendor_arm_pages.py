@@ -22,6 +22,13 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ARMS = {"ur": "UR5e", "franka": "FR3", "xarm": "xArm 6", "kinova": "Gen3"}
+# Their sections of docs/arms.md.
+TITLES = {
+    "ur": "Two UR arms",
+    "franka": "Two Franka FR3",
+    "xarm": "Two xArm 6",
+    "kinova": "Two Kinova Gen3",
+}
 OTHER_LAYOUT = "frames-per-robot"
 # They say that each arm has an RViz of its own, or that its frame and view are others now.
 EVERYWHERE = {"MF201", "MF203", "MF213"}
@@ -52,7 +59,7 @@ def _told_of_arm(page: str, sources: Path, work: Path) -> Iterator[Told]:
 
 def fleets(page: str, sources: Path) -> Iterator[Mapping[str, Any]]:
     """The fleets of a page."""
-    text = re.sub(r"\bsrc/", f"{sources}/", _text(page))
+    text = re.sub(r"\bsrc/", f"{sources}/", text_of(page))
     (fleet,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
     data = yaml.safe_load(fleet)
     for layout in (data["layout"], OTHER_LAYOUT):
@@ -62,7 +69,7 @@ def fleets(page: str, sources: Path) -> Iterator[Mapping[str, Any]]:
 
 def true_codes(page: str) -> set[str]:
     """The codes that the page explains."""
-    return set(_CODE.findall(_text(page))) | EVERYWHERE
+    return set(_CODE.findall(text_of(page))) | EVERYWHERE
 
 
 def _third(robot: Mapping[str, Any]) -> dict[str, Any]:
@@ -78,5 +85,7 @@ def _next(name: str, value: str) -> str:
     return f"{head}.{int(last) + 1}" if dot and last.isdigit() else value
 
 
-def _text(page: str) -> str:
-    return (ROOT / "docs" / "robots" / f"{page}.md").read_text()
+def text_of(page: str) -> str:
+    """The section of docs/arms.md."""
+    text = (ROOT / "docs" / "arms.md").read_text()
+    return text.partition(f"\n## {TITLES[page]}\n")[2].partition("\n## ")[0]

@@ -1,7 +1,7 @@
-"""The pages of vendors' robots, docs/robots/.
+"""The page of vendors' robots, docs/robots.md.
 
-    python tests/support/vendor_pages.py [ROBOT ...]      print the pages
-    python tests/support/vendor_pages.py --write          write all of them
+    python tests/support/vendor_pages.py [ROBOT ...]      print the sections of some robots
+    python tests/support/vendor_pages.py --write          write the page
 
 MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch, launch_ros and rclpy.
 """
@@ -29,27 +29,27 @@ from vendor_recipes import (
 from vendor_sources import WITHOUT, sources_folder
 from vendor_systems import read_vendors
 
-PAGES = Path(__file__).parent.parent.parent / "docs" / "robots"
+PAGE = Path(__file__).parent.parent.parent / "docs" / "robots.md"
 _WIDE = 60
 # Where packages are for a comparison.
 _INSTALLED = re.compile(r"/tmp/\w+/prefix")
-MADE = "Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`."
-COMMANDS = """\
-In a workspace that has the vendor's packages:
-
-    multibot build fleet.yaml -o fleet/
-    multibot rehearse fleet.yaml
-    multibot check fleet/plan.yaml"""
-HEAD = f"""\
+HEAD = """\
 # Vendors' robots as they ship
 
-{MADE} Each robot is built from its vendor's own files, in the vendor's
+Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`.
+Each robot is built from its vendor's own files, in the vendor's
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
 topics, services and actions lead, bridges, static transforms, and RViz by displays and tools, with
-topics as they are called in the graph. *Better* is a difference that the page of the robot gives a
+topics as they are called in the graph. *Better* is a difference that the section of the robot gives a
 reason for, *wrong* any other. *False* are warnings and errors of the build that are not true of the
-vendor's files. Which nodes are known is in [vendors](../vendors.md).
+vendor's files. Which nodes are known is in [vendors](vendors.md).
+
+In a workspace that has the vendor's packages, with the fleet file of a robot:
+
+    multibot build fleet.yaml -o fleet/
+    multibot rehearse fleet.yaml
+    multibot check fleet/plan.yaml
 
 *Before* is what was false in the vendor's layout before the package knew these robots.
 
@@ -61,23 +61,37 @@ SAID = """
 
 Warnings and errors of `build`, of `rehearse`, which starts a stand-in for every node on a real graph,
 and of `check` of that graph against the plan that was built: of two robots and of three, each once for
-all robots. The page of a robot says why they are true; *false* is how many are not. Of [arms](arms.md)
-another page says what is equal.
+all robots. The section of a robot says why they are true; *false* is how many are not.
+What is equal of [arms](arms.md) is on their page.
 
 | robot | layout | build 2 | 3 | rehearse 2 | 3 | check 2 | 3 | false |
 |---|---|--:|--:|--:|--:|--:|--:|--:|\
 """
 
 
-def page(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
-    """The page of a robot."""
+def section(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
+    """The section of a robot."""
     it = found.recipe
-    lines = [f"# {it.title}", "", MADE, "", it.about.strip(), "", "## The fleet file", ""]
-    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", "", commands(it), ""]
-    lines += ["Sources: " + ", ".join(revisions[use] for use in uses) + ".", ""]
-    lines += ["## Against the vendor's two robots", "", verdict(found), ""]
+    lines = [
+        "",
+        f"## {it.title}",
+        "",
+        it.about.strip(),
+        "",
+        "```yaml",
+        plain_paths(found.text).rstrip(),
+        "```",
+        "",
+    ]
+    lines += [sources(it, [revisions[use] for use in uses]), "", verdict(found), ""]
     lines += [*_reasons(found), *_findings(found)]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def sources(it: Recipe, revisions: Sequence[str]) -> str:
+    """What it was built from, and the shape of the outputs if the vendor has one."""
+    option = f" Build it with `--shape {it.shape}`." if it.shape else ""
+    return f"Sources: {', '.join(revisions)}.{option}"
 
 
 def plain_paths(text: str) -> str:
@@ -85,17 +99,12 @@ def plain_paths(text: str) -> str:
     return text.replace("{sources}/", "src/").replace("{work}/", "")
 
 
-def commands(it: Recipe) -> str:
-    """What to run; outputs are in the shape of the vendor, if there is one."""
-    option = f" --shape {it.shape}" if it.shape else ""
-    return COMMANDS.replace("-o fleet/", f"-o fleet/{option}")
-
-
 def verdict(found: Outcome) -> str:
     """The figures of a comparison in a line."""
     better = [it for it in found.compared.differences if it.reason]
     wrong = [it for it in found.compared.differences if not it.reason]
-    return f"{found.compared.equal} values are equal, {len(better)} better, {len(wrong)} wrong."
+    counts = f"{found.compared.equal} values are equal, {len(better)} better, {len(wrong)} wrong"
+    return f"Against the vendor's two robots {counts}."
 
 
 def _reasons(found: Outcome) -> Iterator[str]:
@@ -122,13 +131,13 @@ def _findings(found: Outcome) -> Iterator[str]:
     told = {it.code for built in found.built for it in built.findings}
     told |= {it.code for look in found.looked for it in (*look.rehearsed, *look.checked)}
     said = {it["code"]: it["reason"] for it in found.recipe.right if it["code"] in told}
-    yield from ("## What is said of the vendor's files, and is right", "") if said else ()
+    yield from ("What is said of the vendor's files, and is right:", "") if said else ()
     yield from (f"- {code}: {reason}" for code, reason in said.items())
 
 
-def readme(found: Mapping[str, Outcome], arms: Mapping[str, Sequence[Told]]) -> str:
-    """The tables of all robots."""
-    rows = [HEAD, *(_row(name, it) for name, it in found.items()), SAID]
+def tables(found: Mapping[str, Outcome], arms: Mapping[str, Sequence[Told]]) -> str:
+    """The head of the page: the tables of all robots."""
+    rows = [HEAD, *(_row(it) for it in found.values()), SAID]
     rows += [line for it in found.values() for line in said_rows(it.recipe.title, told_of(it))]
     rows += [line for name, it in arms.items() for line in said_rows(ARMS[name], it)]
     return "\n".join([*rows, ""])
@@ -151,13 +160,17 @@ def said_rows(title: str, every: Sequence[Told]) -> Iterator[str]:
         yield f"| {' | '.join(map(str, (title, two.layout, *both, false)))} |"
 
 
-def _row(name: str, it: Outcome) -> str:
+def _anchor(title: str) -> str:
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+def _row(it: Outcome) -> str:
     better = sum(bool(row.reason) for row in it.compared.differences)
     wrong = len(it.compared.differences) - better
     builds = [_built(it.recipe, one) for one in it.built]
     vendor, other = it.recipe.layouts
     cells = [
-        f"[{it.recipe.title}]({name}.md)",
+        f"[{it.recipe.title}](#{_anchor(it.recipe.title)})",
         it.recipe.before,
         vendor,
         builds[0],
@@ -176,7 +189,7 @@ def _built(recipe: Recipe, it: Built) -> str:
 
 
 def main(words: list[str]) -> int:
-    """Print the pages of some robots, or write those of all."""
+    """Print the sections of some robots, or the page of all; or write that."""
     folder = sources_folder()
     if folder is None:
         print(WITHOUT, file=sys.stderr)
@@ -184,18 +197,14 @@ def main(words: list[str]) -> int:
     vendors, recipes = read_vendors(), read_recipes()
     names = [it for it in words if not it.startswith("--")] or list(recipes)
     found = {it: outcome(recipes[it], vendors, folder, live=True) for it in names}
-    pages = {
-        name: page(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
-        for name, it in found.items()
-    }
-    if len(found) == len(recipes):
-        pages |= {"README": readme(found, told_of_arms(folder))}
-    for name, text in pages.items():
-        if "--write" in words:
-            PAGES.mkdir(exist_ok=True)
-            (PAGES / f"{name}.md").write_text(text)
-        else:
-            print(text)
+    whole = len(found) == len(recipes)
+    text = tables(found, told_of_arms(folder)) if whole else ""
+    for it in found.values():
+        text += section(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
+    if whole and "--write" in words:
+        PAGE.write_text(text)
+    else:
+        print(text)
     return 0
 
 

@@ -119,8 +119,8 @@ FIRST_ROBOT_VIEW = declare(
     "one.",
     why="A window has one current view with one Target Frame. The other robots drive out of the "
     "picture.",
-    fix="Nothing has to be done: the Views panel has a saved view for each robot. To see all "
-    "robots, write Target Frame: map.",
+    fix="Choose the saved view of a robot in the Views panel. To see all robots, write Target "
+    "Frame: map.",
     bad="""\
 Visualization Manager:
   Views:
@@ -154,14 +154,14 @@ LEFT_OUT = declare(
     "MF202",
     "rviz-panel-left-out",
     WARNING,
-    what="A display, tool or panel is left out: the panel of slam_toolbox, whose names are absolute, "
-    "and without namespaces the panels of Nav2 and the displays of MoveIt, which work only for the "
-    "robot whose rviz2 process it is.",
+    what="A display, tool or panel is left out. The panel of slam_toolbox has absolute names. "
+    "Without namespaces the panels of Nav2 and the displays of MoveIt work for one robot "
+    "only.",
     why="These plugins use the relative names or the parameters of the rviz2 node, or absolute "
     "names. In a window for all robots, goals would go to no robot or to the wrong one.",
-    fix="In a layout with namespaces each robot gets a config with them, see commands.md; without "
-    "namespaces name the stack rviz_moveit or rviz_nav2, whose rviz2 has the robot's remap rules. "
-    "Remap absolute names there.",
+    fix="In a layout with namespaces each robot gets a config with them, see commands.md. "
+    "Without namespaces name the stack rviz_moveit or rviz_nav2: its rviz2 has the robot's "
+    "remap rules. Remap absolute names there.",
     bad="""\
 Panels:
   - Class: slam_toolbox::SlamToolboxPlugin

@@ -19,12 +19,12 @@ strip_other_robot = declare(
     "MB107",
     "strip-other-robot",
     ERROR,
-    what="`--strip` is to remove a robot's name from the file, but a name in it, or in the URDF of an "
-    "SRDF, does not have that robot's name.",
+    what="`--strip` should remove a robot's name, but a name in the file, or in the URDF of an "
+    "SRDF, does not have it.",
     why="The file was made for another robot or with other options. Removing the name from some "
     "names only would leave a description that is neither the source nor the robot's.",
-    fix="Use the robot and the options with which the file was made; for names that an argument of a "
-    "xacro made, name that file with `--xacro`, and give the argument.",
+    fix="Use the robot and the options with which the file was made. If a xacro argument made "
+    "the names, name that file with `--xacro` and give the argument.",
     bad='<robot name="r_robot1">\n  <link name="base_link/robot2"/>\n</robot>\n',
     good='<robot name="r_robot1">\n  <link name="base_link/robot1"/>\n</robot>\n',
     line=2,

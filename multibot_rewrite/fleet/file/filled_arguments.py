@@ -47,10 +47,10 @@ OWN_ARGUMENT = declare(
     "MF840",
     "own-argument",
     NOTE,
-    what="A xacro has an argument for a robot's names, such as `namespace` or `tf_prefix`, and the "
-    "fleet file has no value for it: it is filled where names become what the layout makes of them.",
-    why="What the argument reaches has the robot's name from the xacro's author, also in places that "
-    "no other file knows.",
+    what="A xacro has an argument for a robot's names, such as `namespace` or `tf_prefix`, and "
+    "the fleet file has no value for it. It is filled if the names then are those of the "
+    "layout.",
+    why="The xacro's author put this argument into names, also in places that no other file shows.",
     fix="Nothing. Give a value under `arguments` if you want another one, '' for none; "
     "`fill_arguments: false` fills no argument.",
     bad=_FLEET.format(""),

@@ -41,8 +41,8 @@ OTHER_PREFIX = declare(
     "frames without it.",
     why="The frames of the description get the prefix besides, and every lookup of the planned frames "
     "fails: there are two trees.",
-    fix="Leave frame_prefix out of the launch file, start the robots with the built launch file, or "
-    "use layout frame-prefix, in which the description keeps its links.",
+    fix="Leave frame_prefix out of the launch file, or start the robots with the built launch "
+    "file. Or use layout frame-prefix: there the description keeps its links.",
     bad=f"layout: both\n{_FLEET}",
     good=f"layout: frame-prefix\n{_FLEET}",
     line=3,

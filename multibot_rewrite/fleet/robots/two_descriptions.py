@@ -34,10 +34,10 @@ DIFFERENT = declare(
     "MF711",
     "model-differs-from-description",
     WARNING,
-    what="The model that the simulator gets (`simulated`) lacks a moving joint of the description, or "
-    "a sensor or plugin of it sends in a frame that the description does not have.",
-    why="Joint states of one name do not move the joint of another: its links are missing in tf. Data "
-    "in an unknown frame is dropped by whoever looks the frame up.",
+    what="The model for the simulator (`simulated`) lacks a moving joint of the description. Or "
+    "its sensor or plugin sends data in a frame that the description lacks.",
+    why="The joint's state never arrives, so its links are missing in tf. Data in an unknown "
+    "frame is dropped.",
     fix="Give both the same names, or name another file under `simulated`.",
     bad="""\
 description: rover.urdf

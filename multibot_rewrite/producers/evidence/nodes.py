@@ -50,8 +50,8 @@ UNKNOWN_TYPE = declare(
     "MF802",
     "controller-type-not-known",
     WARNING,
-    what="A controller is of a type that is not known, or that the release lacks, so its topics, "
-    "frames and interfaces are not in the plan.",
+    what="The type of a controller is not known, or the release lacks it. Its topics, frames "
+    "and interfaces are not in the plan.",
     why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
     fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
     bad="""\

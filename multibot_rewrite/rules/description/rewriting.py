@@ -30,15 +30,15 @@ from multibot_rewrite.rules.subject import Subject
     "MB901",
     "name-of-unknown-use",
     WARNING,
-    what="The name of a link, joint, light, frame or topic of the robot is at a value, key, parameter "
-    "or port that is not known to hold names, or /tf where each robot has a tf topic of its own. Of a "
-    "file it is a note where it is not sure which robot it is for.",
+    what="A value, key, parameter or port that is not known to hold names has the name of a "
+    "link, joint, light, frame or topic of the robot. Or it has /tf, while each robot has "
+    "its own tf topic. Of a file it is a note where it is not sure which robot it is for.",
     why="It stays as it is when the file is written for several robots. If it is a name, a plugin or "
     "node looks for a link, frame or joint that no longer has that name, or two robots use the same "
     "topic.",
-    fix="Say that it is a name, or that it stays: of a description in a vocabulary file, of a "
-    "parameter in a file under `nodes:` of the fleet file; in other files rename it by hand for "
-    "each robot.",
+    fix="Say whether it is a name: for a description in a vocabulary file, for a parameter in "
+    "a file under `nodes:` of the fleet file. In other files rename it by hand for each "
+    "robot.",
     bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
     formats=(URDF, SRDF, *EVERY),
@@ -71,9 +71,8 @@ unknown_plugin = rule(
     NOTE,
     what="A plugin or a type of sensor is not in the vocabulary, or its section does not say what it "
     "opens: topics, services, files, network addresses.",
-    why="Its parameters that name links, joints, frames or topics stay as they are for every "
-    "robot, unless other plugins have parameters with the same names; and what it opens may be the "
-    "same for all robots.",
+    why="Its parameters for links, joints, frames or topics stay the same for every robot, "
+    "unless other plugins have parameters of these names. Its own topics may collide, too.",
     fix="Add a section for it to a vocabulary file, with a line for each topic and service; where it "
     "opens none, `opens: nothing`.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',

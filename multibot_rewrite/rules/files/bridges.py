@@ -122,8 +122,8 @@ def _of_models(one: str, other: str) -> str:
     WARNING,
     what="A bridge file has topics of two models. The first model is the robot; topics of the other "
     "are bridged once for all robots.",
-    why="If the other model is a robot too, its topics stay as they are, and the copies of it that "
-    "are spawned for the fleet are not bridged.",
+    why="If the other model is a robot too, its topics stay as they are. Its copies for the "
+    "fleet are not bridged.",
     fix="Nothing, if it is a part of the world such as a door. Otherwise write the robot's model, or "
     "give the other robot its own bridge file.",
     bad=_of_models("rover", "rover_v2"),
@@ -185,9 +185,10 @@ class GzTopic(NamedTuple):
     "MB879",
     "bridge-row-without-gz-topic",
     WARNING,
-    what="A row of a bridge reads a gz topic that nothing in the description sends, while a sensor or "
-    "plugin sends another one of the type; or the description has the topic, of another type or in the "
-    "other direction. Asked by `build` and `plan`, which know the robot and how it is spawned.",
+    what="A bridge row reads a gz topic that no sensor or plugin of the description sends, "
+    "while one sends another topic of that type. Or the description has the topic with "
+    "another type or direction. Asked by `build` and `plan`, which know the robot and how "
+    "it is spawned.",
     why="The bridge waits for data that never comes.",
     fix="Give the row the topic, the type and the direction of the sensor.",
     bad=a_row("direction: GZ_TO_ROS").replace("gz_topic_name: scan", "gz_topic_name: lidar/scan"),

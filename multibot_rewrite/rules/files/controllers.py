@@ -49,9 +49,10 @@ def _moved_by(name: str) -> str:
     "MB857",
     "undeclared-controller-beside",
     WARNING,
-    what="MoveIt sends trajectories to a controller that no parameter file of the robot declares, for "
-    "a joint that the controller does not move, or to an action that it does not serve. Of a file "
-    "alone the parameter files in its folder count. An error where the rewrite has made it so.",
+    what="MoveIt sends trajectories to a controller that no parameter file of the robot "
+    "declares. Or the controller does not move that joint, or does not serve that action. "
+    "Of a file alone the parameter files in its folder count. An error where the rewrite "
+    "has made it so.",
     why="MoveIt waits for the action, and rejects every plan to execute: 'Action client not "
     "connected to action server'.",
     fix="Use the controller's name, its joints and its action.",

@@ -54,8 +54,9 @@ def _costmap(lines: str) -> str:
     what="The robot_radius or footprint of a costmap does not fit the rest: the inflation is smaller "
     "than the robot, a radius stands beside a footprint of another size, or is more than three times "
     "what the description reaches.",
-    why="With an inflation below the robot's radius its planner leads the robot into obstacles; with a "
-    "footprint the radius has no effect; a robot that is too large finds no path.",
+    why="With an inflation below the robot's radius the planner drives the robot into "
+    "obstacles. Beside a footprint the radius has no effect. A robot that is too large "
+    "finds no path.",
     fix="Write metres. The inflation has to be larger than the distance from the robot's middle to its "
     "edge; leave the radius out where there is a footprint.",
     bad=_costmap("robot_radius: 0.6"),

@@ -47,8 +47,8 @@ TO_DO = {
     drawn="missing",
     what="A running node does not have a topic, service or action that the plan has for it.",
     why="The other side waits for ever, without an error message.",
-    fix="The hint has the name that the node uses in its place, and the remap rule that is not"
-    " applied or the line of the description that lacks it: pass that rule.",
+    fix="See the hint: it has the name that the node uses instead, and the remap rule that is "
+    "missing. Pass that rule to the node, or add it at the line of the description.",
     bad="""\
 planned: /robot1/driver subscribes /robot1/cmd_vel
 running: /robot1/driver subscribes /cmd_vel

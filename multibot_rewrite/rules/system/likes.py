@@ -38,10 +38,10 @@ class _Made(NamedTuple):
     "lacks-what-its-likes-have",
     WARNING,
     absence=True,
-    what="A robot lacks a node, or a node of it a topic or service, that other robots of the same nodes"
-    " have. Of two robots it is said where the nodes of the one wait for it in vain.",
+    what="A robot lacks a node, topic or service that the other robots with the same nodes "
+    "have. For two robots it is reported if a node waits for it in vain.",
     why="A process that died, a launch argument that is set for one robot and not for the other.",
-    fix="Start what is missing, or nothing where the robots are meant to differ.",
+    fix="Start the missing node. Do nothing if the robots are meant to differ.",
     bad="""\
 running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
 running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry

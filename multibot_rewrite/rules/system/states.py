@@ -79,8 +79,8 @@ def _manager(seen: Index, node: str) -> str:
     what="Active controllers of two controller managers of one robot command the same interface (asked"
     " for by `--state`), or launch files start two controllers of one manager that do.",
     why="Both drive the joint: it jerks between two set points. One manager refuses the second.",
-    fix="Run one controller manager for a piece of hardware; a simulator has its own. Spawn one of two"
-    " controllers with --inactive.",
+    fix="Run one controller manager for each hardware; a simulator starts its own. Spawn the "
+    "second controller with --inactive.",
     bad="""\
 running: /robot1/controller_manager controls joint1/position by arm_controller
 running: /robot1/gz/controller_manager controls joint1/position by arm_controller

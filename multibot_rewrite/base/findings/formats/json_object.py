@@ -1,4 +1,4 @@
-"""One JSON object, the same from release to release: see docs/lint-ci.md."""
+"""One JSON object, the same from release to release: see docs/lint.md."""
 
 from __future__ import annotations
 

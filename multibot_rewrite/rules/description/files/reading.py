@@ -66,8 +66,8 @@ needs_argument = declare(
     what="A xacro file has an argument without a default, and none was given: the file was not "
     "expanded and not checked.",
     why="Where the launch file does not give the argument either, xacro stops and nothing starts.",
-    fix="Give it, as NAME:=VALUE or in the configuration, or give the <xacro:arg> a default; where the "
-    "file has to expand without arguments, set the level to error.",
+    fix="Give it as NAME:=VALUE or in the configuration, or give the <xacro:arg> a default. "
+    "Set the level to error if the file has to expand without arguments.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <link name="$(arg side)_arm"/>\n'
     "</robot>\n",
@@ -82,12 +82,12 @@ package_not_found = declare(
     "MB119",
     "not-expanded",
     NOTE,
-    what="A package that the xacro file reads from with $(find PACKAGE) was not found in the searched "
-    "folders, so the file was not expanded and not checked.",
+    what="The xacro file reads a package with $(find PACKAGE) that was not found. The file was "
+    "not expanded and not checked.",
     why="It is looked up in the packages of the sourced workspace at run time; a checkout of one "
     "repository need not have it.",
-    fix="Give the source folder of the workspace as a root (--roots), or source the workspace; where "
-    "it has to be there, set its level to error.",
+    fix="Give the source folder of the workspace as a root (--roots), or source the workspace. "
+    "Set the level of MB119 to error if the package has to be there.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <xacro:include filename="$(find no_such_package)/a.xacro"/>\n'
     '  <link name="a"/>\n'
@@ -107,9 +107,10 @@ package_not_found = declare(
     why="A program that loads it as it is does not expand it: urdfdom rejects the joint, and with it "
     "the robot, where ${...} is in place of a number; in a file no node has the section, and what a "
     "launch file puts there does not get the robot's name from the build.",
-    fix="Name a description .urdf.xacro and load it through xacro. In a file call what stands for the "
-    "robot <robot_namespace>, <robot_name>, $(var namespace) and the like, which are filled in; else "
-    "let the launch file replace it (ParameterFile, allow_substs).",
+    fix="Name a description .urdf.xacro and load it through xacro. In a file write "
+    "<robot_namespace>, <robot_name>, $(var namespace) or the like for the robot: these "
+    "are filled in. Let the launch file replace any other placeholder (ParameterFile, "
+    "allow_substs).",
     bad='<link name="a"/><link name="${prefix}b"/>',
     good='<link name="a"/><link name="b"/>',
     formats=(URDF, *EVERY),

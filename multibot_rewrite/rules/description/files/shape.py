@@ -136,8 +136,8 @@ of_another_release = rule(
     "MB157",
     "of-another-release",
     NOTE,
-    what="An element below <gazebo> came with a later version of SDF than Gazebo of this release "
-    "reads, or a plugin reads a parameter in another release than this one.",
+    what="An element below <gazebo> is newer than the SDF that Gazebo of this release reads, or "
+    "a plugin reads the parameter in another release only.",
     why="It has no effect in this release, as if the line were not there: a sensor with <frame_id> "
     "publishes in the frame that it has without.",
     fix="Leave it out, or name the release that the description is for: --distro.",
@@ -157,8 +157,8 @@ of_another_simulator = rule(
     "MB163",
     "parameter-of-other-simulator",
     WARNING,
-    what="A plugin of Gazebo has a parameter that only the plugin of Gazebo Classic with the same task "
-    "reads, or the reverse; or one of ROS 2 has a parameter of ROS 1's, or the reverse.",
+    what="A plugin has a parameter that only its counterpart reads: that of Gazebo Classic for "
+    "one of Gazebo, that of ROS 1 for one of ROS 2, or the reverse.",
     why="It has no effect: what a file was migrated for is at its default. Classic's wheel_diameter "
     "is no wheel_radius; commandTopic of ROS 1 leaves the robot of ROS 2 at cmd_vel.",
     fix="Use the parameter of this simulator and ROS, if it has one.",

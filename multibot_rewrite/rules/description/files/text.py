@@ -27,8 +27,8 @@ _ROOT = lazy_compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
     "xml-declaration",
     WARNING,
     what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
-    why="urdfdom and Gazebo read the file as UTF-8 whatever the declaration; expat (xacro, Python "
-    "launch files) rejects multi-byte encodings such as gb2312, and decodes letters differently.",
+    why="urdfdom and Gazebo read the file as UTF-8, whatever it declares. expat (xacro, Python "
+    "launch files) rejects encodings such as gb2312 and decodes letters differently.",
     fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
     bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
     good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',

@@ -61,9 +61,10 @@ unknown_word = rule(
     "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property, the class "
     "of a plugin or controller in parameters. It is a warning for a parameter of a plugin, where it is "
     "nearly such a word, and for a class that another release has.",
-    why="urdfdom rejects the file ('has no known type'), the sensor or the hardware does not exist, "
-    "srdfdom takes a virtual joint for fixed, and a plugin takes its default. pluginlib throws for a "
-    "class that no package registers: a server of Nav2 does not start, a controller is not loaded.",
+    why="urdfdom rejects the file ('has no known type'), or the sensor or hardware does not "
+    "exist. srdfdom takes a virtual joint for fixed, and a plugin takes its default. "
+    "pluginlib throws for a class that no package registers: a server of Nav2 does not "
+    "start, a controller is not loaded.",
     fix="Use one of the words in the message or hint; case counts.",
     bad='<ros2_control name="c" type="System">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"

@@ -87,7 +87,7 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     "mesh-missing",
     ERROR,
     what="A mesh or texture file does not exist, though its package does.",
-    why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
+    why="RViz shows the link without a shape and marks the robot as faulty. Gazebo spawns it "
     "without that visual or collision, so a wheel falls through the ground.",
     fix="Correct the path, or add the file to the package and to its install rules.",
     bad=MESH % "package://arm_description/meshes/base.stl",

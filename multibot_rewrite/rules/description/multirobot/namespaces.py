@@ -151,9 +151,9 @@ def ignored_model_namespace(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="Plugins put the namespace of their model in front of their relative topics, in some builds "
     "of Gazebo.",
-    why="For DiffDrive it is gz-sim's pull request 3878, which no release has. urdf-postfix gives each "
-    "robot's name to the namespace and leaves relative topics, which would have it twice; a Gazebo "
-    "without the change takes them as they are, and all robots have the same.",
+    why="For DiffDrive it is gz-sim's pull request 3878, which no release has. urdf-postfix "
+    "puts the robot's name into the namespace and leaves relative topics. A Gazebo without "
+    "the change ignores the namespace, so all robots have the same topics.",
     fix="Write absolute topics, which all builds take as they are; for the Gazebo of packages name "
     "another release than rolling with --distro.",
     bad=_MODEL.format(' namespace="robot"'),

@@ -38,8 +38,8 @@ _BUILTIN = frozenset(
     "prefix-forgotten",
     WARNING,
     what="A name lacks the prefix that the other names of its macro or file have.",
-    why="With an empty prefix there is no problem; with the second robot's prefix the name exists "
-    "twice, or refers to a link or joint that has another name, and urdfdom rejects the robot.",
+    why="An empty prefix works. With the second robot's prefix the name exists twice, or "
+    "refers to a link or joint of another name. Then urdfdom rejects the robot.",
     fix="Put the prefix in front of the name.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <xacro:macro name="arm" params="prefix">\n'

@@ -88,8 +88,8 @@ def _target(claim: Claim) -> str:
     why="gz topics are global in their partition and a ROS namespace does not move them: one "
     "command drives both robots, both lidars publish on one topic and ros_gz_bridge cannot "
     "separate them.",
-    fix="Leave the element out, then gz puts the model's name into the topic, or give each robot "
-    "its own topic through a xacro argument or urdf-postfix.",
+    fix="Leave the element out: then gz puts the model's name into the topic. Or give each "
+    "robot its own topic with a xacro argument or urdf-postfix.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a">\n'
     '  <sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor>\n'

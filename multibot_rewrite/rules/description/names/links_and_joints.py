@@ -60,9 +60,9 @@ def space_in_name(subject: Subject) -> Iterator[Problem]:
     "double-colon",
     ERROR,
     what="The name of the robot, a link or a joint contains '::'.",
-    why="SDF reserves '::' for names inside of models: sdformat 13 and later convert the URDF to "
-    "SDF 1.11 and reject the whole model, older ones look for a model with the first part as its "
-    "name.",
+    why="SDF reserves '::' for names inside of models: From version 13 on sdformat converts "
+    "the URDF to SDF 1.11 and rejects the whole model. Older versions look for a model "
+    "with the first part as its name.",
     fix="Use an underscore.",
     bad='<link name="arm::hand"/>',
     good='<link name="arm_hand"/>',

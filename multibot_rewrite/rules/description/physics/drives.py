@@ -77,8 +77,9 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
     "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way. Or "
     "the axes of the left and the right wheel point in opposite directions, or the two do not roll: an "
     "upright axis, a cylinder that lies flat, wheels at two heights.",
-    why="A command to turn left turns the robot right, and its odometry says left; with opposite "
-    "axes it turns on the spot when it is to drive straight on. Localization is lost at once.",
+    why="A command to turn left turns the robot right, and its odometry says left. With "
+    "opposite axes it turns on the spot on a command to drive straight. Localization is "
+    "lost at once.",
     fix="Swap the joints, or turn axes around: with x forward both are 0 1 0 in the frame of the base.",
     bad=a_rover(a_wheel("left", "-0.2"), a_wheel("right", "0.2")),
     good=a_rover(),

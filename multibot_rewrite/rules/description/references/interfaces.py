@@ -96,9 +96,9 @@ def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
     "commanded-joint-without-state",
     NOTE,
     what="A joint of a <ros2_control> has command interfaces and no state interface.",
-    why="joint_state_broadcaster has nothing to publish for it, so robot_state_publisher sends no "
-    "transform for the links below; joint_trajectory_controller and diff_drive_controller need its "
-    "position or velocity unless they run open loop.",
+    why="joint_state_broadcaster publishes nothing for it, so robot_state_publisher sends no "
+    "transform for the links below. joint_trajectory_controller and diff_drive_controller "
+    "need its position or velocity unless they run open loop.",
     fix="Add state interfaces, position at least.",
     bad=ARM + hardware_system("p/P", driven()),
     good=ARM

@@ -106,8 +106,8 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     "floating-or-planar",
     WARNING,
     what="A joint is floating or planar.",
-    why="robot_state_publisher sends no transform for a floating joint and a fixed one for a "
-    "planar joint; sdformat creates neither and then rejects the link below it.",
+    why="robot_state_publisher sends no transform for a floating joint, and a fixed one for a "
+    "planar joint. sdformat makes neither joint and rejects the link below.",
     fix="Make the link below it the root: its pose comes from odometry or, in MoveIt, from a "
     "<virtual_joint> of the SRDF.",
     bad=one_joint("floating"),

@@ -40,9 +40,9 @@ STRICT = KNOWN[2]
     "MB509",
     "limit-missing",
     ERROR,
-    what="A revolute or prismatic joint has no <limit>, or one without lower or upper; or, before "
-    "URDF 1.2, a <limit> has no effort or no velocity. Without lower or upper it is a warning "
-    "before URDF 1.2.",
+    what="A revolute or prismatic joint has no <limit>, or its <limit> lacks lower or upper. "
+    "Before URDF 1.2 effort and velocity are needed, too. Without lower or upper it is a "
+    "warning before URDF 1.2.",
     why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits', 'joint "
     "limit: no effort'). Before URDF 1.2 it reads a missing bound as 0, and joint_state_publisher "
     "publishes no joint at all.",
@@ -97,8 +97,8 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
     "limits-zero-range",
     NOTE,
     what="A joint's limits leave it no range.",
-    why="robot_state_publisher still waits for its position in joint_states and sends no transform "
-    "without it; MuJoCo treats equal limits as none and lets the joint turn freely.",
+    why="robot_state_publisher still needs its position in joint_states and sends no transform "
+    "without it. MuJoCo takes equal limits for none, and the joint turns freely.",
     fix="Write the real limits, or make the joint fixed (<preserveFixedJoint> keeps its link in "
     "Gazebo).",
     bad=one_joint("revolute", '<limit lower="0" upper="0" effort="1" velocity="1"/>'),
