@@ -9,6 +9,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.changed import deliver_changed
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.adopt import adopt
 
 
@@ -16,6 +17,7 @@ def run(options: argparse.Namespace) -> int:
     """Print a patch, or change the files; returns the exit code."""
     made = adopt(
         options.folder,
+        xacro_args=arguments_alone(options),
         vocabulary=(*configured_vocabulary(options.folder), *options.vocabulary),
         trust=options.trust,
         distro=options.distro or "",

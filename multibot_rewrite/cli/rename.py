@@ -9,6 +9,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.changed import deliver_changed
 from multibot_rewrite.cli.output import detail, note
 from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
 
 
@@ -19,6 +20,7 @@ def run(options: argparse.Namespace) -> int:
         options.new,
         options.folder,
         kind=options.kind,
+        xacro_args=arguments_alone(options),
         vocabulary=(*configured_vocabulary(options.folder), *options.vocabulary),
         trust=options.trust,
         distro=options.distro or "",

@@ -70,6 +70,14 @@ def xacro_args(options: argparse.Namespace) -> dict[str, str]:
     return {name: value for name, _, value in pairs}
 
 
+def arguments_alone(options: argparse.Namespace) -> dict[str, str]:
+    """The xacro arguments, of a command that takes no other words; raises UsageError for these."""
+    others = plain_words(options)
+    if others:
+        raise UsageError(f"{others[0]!r} is one word too many; xacro arguments are NAME:=VALUE")
+    return xacro_args(options)
+
+
 def check_xacro(options: argparse.Namespace, paths: Sequence[str]) -> None:
     """Raise UsageError for xacro arguments that none of the files takes."""
     if xacro_args(options) and not any(is_xacro(path) for path in paths):

@@ -20,11 +20,12 @@ from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
+from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.refactor.package import (
     Description,
+    Expanding,
     as_named,
     inventory_of,
     read_package,
@@ -67,15 +68,21 @@ class Adopted(NamedTuple):
 
 @checked
 def adopt(
-    folder: str, *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+    folder: str,
+    *,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
+    trust: bool = False,
+    distro: str = "",
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
-    becomes a xacro. Writes nothing. Raises UsageError where there is no description."""
+    becomes a xacro. Writes nothing. Raises UsageError where there is no description, InputError where
+    no place for the prefix changes names alone."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
-    reach = TRUSTED if trust else BOUNDED
-    package = read_package(folder, tree, reach)
+    how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
+    package = read_package(folder, tree, how)
     unread = dict(package.unread)
-    found = list(_as_xacros(package.descriptions, tree, reach, unread))
+    found = list(_as_xacros(package.descriptions, tree, how, unread))
     if not found:
         raise UsageError(f"{folder}: there is no description of a robot in it that can be expanded")
     argument = _free_name(found)
@@ -91,7 +98,7 @@ def adopt(
         left += [*made.left, *_not_written(it)]
     after = edited(texts, edits)
     for it in found:
-        _prove(it, wanted[it.path], after, argument, reach)
+        _prove(it, wanted[it.path], after, argument, how)
     after = as_named(after, found)
     before = {path: data for path, data in as_named(texts, found).items() if path in after}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
@@ -108,7 +115,7 @@ def _is_meant(it: Description) -> bool:
 
 
 def _as_xacros(
-    descriptions: Iterable[Description], tree: Tree, reach: Reach, unread: dict[str, str]
+    descriptions: Iterable[Description], tree: Tree, how: Expanding, unread: dict[str, str]
 ) -> Iterator[Description]:
     """Each description as a xacro; those that cannot be one are noted in ``unread``."""
     for it in filter(_is_meant, descriptions):
@@ -116,15 +123,15 @@ def _as_xacros(
             unread[it.path] = f"{it.path}: its xacro is beside it; make it anew from that"
             continue
         try:
-            yield it if it.read else _as_xacro(it, tree, reach)
+            yield it if it.read else _as_xacro(it, tree, how)
         except InputError as error:
             unread[it.path] = str(error)
 
 
-def _as_xacro(it: Description, tree: Tree, reach: Reach) -> Description:
+def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
     """A plain description as the xacro that it becomes."""
     path = f"{it.path}.xacro"
-    data, read = read_text(path, reach, {os.path.realpath(path): it.inventory.document.source})
+    data, read = read_text(path, how, {os.path.realpath(path): it.inventory.document.source})
     return Description(path, inventory_of(data, path, tree), read)
 
 
@@ -205,13 +212,14 @@ def _prove(
     changes: Collection[Change],
     after: Mapping[str, bytes],
     argument: str,
-    reach: Reach,
+    how: Expanding,
 ) -> None:
     """Nothing changes without a prefix, and with one the names alone; raises InputError."""
     document = it.inventory.document
     given = {"": document.source, TRIED: expected(document, changes)}
     for prefix, wanted in given.items():
-        made, _ = read_text(it.path, reach, after, {argument: prefix} if prefix else {})
+        more = {argument: prefix} if prefix else {}
+        made, _ = read_text(it.path, Expanding(how.reach, {**how.arguments, **more}), after)
         if made != wanted:
             what = "no place for the prefix changes names alone"
             line = first_difference(made, wanted)

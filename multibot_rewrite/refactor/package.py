@@ -23,6 +23,13 @@ from multibot_rewrite.fleet.proposal.searching import Found, search
 _NO_URDF: Declared = {"link": {}}
 
 
+class Expanding(NamedTuple):
+    """How xacros are expanded: how far they may reach, and the arguments that are given."""
+
+    reach: Reach
+    arguments: Mapping[str, str]
+
+
 class Description(NamedTuple):
     """A description file, what is in it, and, of a xacro, how it was expanded."""
 
@@ -40,14 +47,14 @@ class Package(NamedTuple):
     unread: Mapping[str, str]
 
 
-def read_package(folder: str, tree: Tree, reach: Reach) -> Package:
+def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
     """Read every description in a folder; raises UsageError for one that is not there."""
     found = search([folder])
     texts: dict[str, tuple[bytes, Expansion | None]] = {}
     unread: dict[str, str] = {}
     for path in (*found.descriptions, *found.srdf):
         try:
-            texts[path] = read_text(path, reach)
+            texts[path] = read_text(path, how)
         except InputError as error:
             unread[path] = str(error)
     made: list[Description] = []
@@ -62,9 +69,8 @@ def read_package(folder: str, tree: Tree, reach: Reach) -> Package:
 
 def read_text(
     path: str,
-    reach: Reach,
+    how: Expanding,
     texts: Mapping[str, bytes] | None = None,
-    arguments: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Expansion | None]:
     """The text of a description; ``texts`` are the bytes of files that are not as on the disk, by their
     real paths. Raises InputError."""
@@ -74,7 +80,7 @@ def read_text(
         return data, None
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        read = expand_traced(path, data, arguments or {}, None, reach, True, known)
+        read = expand_traced(path, data, how.arguments, None, how.reach, True, known)
     return read.data, read
 
 

@@ -24,11 +24,12 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS as DECLARED
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
-from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED, Reach
+from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.refactor.package import (
     Description,
+    Expanding,
     Package,
     as_named,
     read_package,
@@ -94,6 +95,7 @@ def rename_symbol(
     folder: str,
     *,
     kind: str = "link",
+    xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     trust: bool = False,
     distro: str = "",
@@ -106,8 +108,8 @@ def rename_symbol(
     symbol = _Symbol(old, new, kind)
     _check(symbol)
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
-    reach = TRUSTED if trust else BOUNDED
-    package = read_package(folder, tree, reach)
+    how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
+    package = read_package(folder, tree, how)
     changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
@@ -115,7 +117,7 @@ def rename_symbol(
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     sources = _sources(edits, package)
     after = edited(sources, edits)
-    _prove(package, changes, after, reach)
+    _prove(package, changes, after, how)
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
@@ -208,12 +210,12 @@ def _prove(
     package: Package,
     changes: Mapping[str, Sequence[Change]],
     after: Mapping[str, bytes],
-    reach: Reach,
+    how: Expanding,
 ) -> None:
     """Every description is what it was but for the name; raises InputError for one that is not."""
     for it in package.descriptions:
         wanted = expected(it.inventory.document, changes[it.path])
-        data, _ = read_text(it.path, reach, after)
+        data, _ = read_text(it.path, how, after)
         if data == wanted:
             continue
         raise InputError(f"{it.path}: {_difference(data, wanted)}")

@@ -183,7 +183,7 @@ LINT = Command(
 RENAME = Command(
     "rename",
     "rename",
-    "%(prog)s OLD NEW FOLDER --kind KIND [options]",
+    "%(prog)s OLD NEW FOLDER [NAME:=VALUE...] [options]",
     "Rename a link, joint, frame or topic in a package's own files.",
     (
         Example("multibot rename base_footprint base_ground my_robot_description --kind link"),
@@ -196,6 +196,7 @@ RENAME = Command(
                 argument("old", "OLD", "the name as it is in the expanded description"),
                 argument("new", "NEW", "the name that it gets"),
                 argument("folder", "FOLDER", "the package, or a folder of packages"),
+                argument("words", "NAME:=VALUE", "arguments that its xacros need", "*"),
                 choice(
                     "--kind",
                     "KIND",
@@ -218,7 +219,7 @@ RENAME = Command(
 ADOPT = Command(
     "adopt",
     "adopt",
-    "%(prog)s FOLDER [options]",
+    "%(prog)s FOLDER [NAME:=VALUE...] [options]",
     "Give a description package for one robot an argument for a prefix.",
     (
         Example("multibot adopt my_robot_description", "print the patch"),
@@ -229,6 +230,7 @@ ADOPT = Command(
             "input",
             (
                 argument("folder", "FOLDER", "the package, or a folder of packages"),
+                argument("words", "NAME:=VALUE", "arguments that its xacros need", "*"),
                 VOCABULARY,
                 DISTRO,
                 TRUST,
