@@ -22,7 +22,6 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "rewrite": "urdf-postfix INPUT ROBOT...",
         "postfix": "urdf-postfix INPUT ROBOT...",
         "prefix": "urdf-postfix INPUT ROBOT... --affix prefix",
-        "rename": "urdf-postfix INPUT ROBOT...",
         "strip": "urdf-postfix FILE ROBOT --strip",
         "undo": "multibot build FLEET --undo, or urdf-postfix FILE ROBOT --strip",
         "clean": "multibot build FLEET --undo",

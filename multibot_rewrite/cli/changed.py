@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from collections.abc import Mapping
 
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import diff, is_coloured, print_bytes
+from multibot_rewrite.cli.output import deliver, diff, prints_colour
 
 
 def deliver_changed(
@@ -17,11 +16,14 @@ def deliver_changed(
     after: Mapping[str, bytes],
     write: bool,
 ) -> None:
-    """Write the files, or print what ``git apply`` takes in this folder."""
+    """Write the files, or what ``git apply`` takes in this folder: to ``-o``, or printed."""
     if write:
         write_all(after.items())
         return
-    colour = is_coloured(options.color, sys.stdout)
-    for path, data in after.items():
-        name = os.path.relpath(path)
-        print_bytes(diff(before[path], data, f"a/{name}", f"b/{name}", colour))
+    colour = prints_colour(options)
+    names = {path: os.path.relpath(path) for path in after}
+    patches = (
+        diff(before[path], data, f"a/{names[path]}", f"b/{names[path]}", colour)
+        for path, data in after.items()
+    )
+    deliver(options, b"".join(patches))

@@ -62,13 +62,11 @@ def overview(colour: str) -> str:
             "examples:",
             "  multibot init rover.urdf",
             "  multibot build fleet.yaml",
-            "  multibot plan rover.urdf robot1 robot2 --stack nav2 --form table",
             "",
             "commands:",
             *rows,
             "",
-            "multibot COMMAND -h shows each in short, --help all of it; urdf-postfix and",
-            "urdf-lint are commands of their own.",
+            "multibot COMMAND -h shows more. Also: urdf-postfix, urdf-lint.",
             "",
         )
     )

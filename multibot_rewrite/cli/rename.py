@@ -25,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
         trust=options.trust,
         distro=options.distro or "",
     )
-    deliver_changed(options, made.before, made.after, write=not options.diff)
+    deliver_changed(options, made.before, made.after, write=not (options.diff or options.output))
     _tell(options, made)
     return DONE
 

@@ -107,7 +107,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ((), "multibot: no COMMAND given, use one of build, check"),
+        ((), "multibot: no COMMAND given, use one of adopt, build"),
         (("dance",), "multibot: unknown command 'dance'; see multibot --help"),
         (("chek",), "multibot: unknown command 'chek'; did you mean 'check'?"),
         (("--quiet", "check"), "write the command first, for example: multibot check --quiet"),

@@ -133,6 +133,8 @@ LINES = (
     *(["init", ".", "-o", "-"], ["init", f"{EVIL}.xacro", f"a:={EVIL}", "-o", f"{EVIL}f.yaml"]),
     *(["check-launch", f"{EVIL}.launch.py"], ["check-launch", EVIL, "x.launch.py"]),
     *(["view", FILE, "-o", f"{EVIL}.html"], ["view", f"{EVIL}.yaml"], ["view", FILE, EVIL]),
+    *(["adopt", "."], ["adopt", EVIL], ["adopt", ".", EVIL], ["rename", EVIL, "b", "."]),
+    *(["rename", "a", EVIL, "."], ["rename", "a", "b", EVIL]),
     *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
 )
 

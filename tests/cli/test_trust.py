@@ -35,6 +35,8 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "plan --form": (multibot.main, ["plan", "--form=table", PATH, "robot1", "--stack", "nav2"], 2),
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
+    "adopt": (multibot.main, ["adopt", "."], 2),
+    "rename": (multibot.main, ["rename", "a", "b", "."], 2),
     "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }
 # Those that read no description.

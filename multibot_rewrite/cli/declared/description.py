@@ -30,6 +30,7 @@ from multibot_rewrite.cli.options import (
     value,
 )
 
+IN_PLACE = switch("--in-place", about="write the result over the input")
 POSTFIX = Command(
     "urdf-postfix",
     "rewrite",
@@ -78,7 +79,7 @@ POSTFIX = Command(
             "output",
             (
                 output("write the result there; {robot} stands for the robot's name"),
-                switch("--in-place", about="write the result over the input file"),
+                IN_PLACE,
                 switch("--diff", about="print a unified diff instead of the result"),
                 path_option("--changes", "write every change as JSON"),
             ),
@@ -209,7 +210,13 @@ RENAME = Command(
                 TRUST,
             ),
         ),
-        OptionGroup("output", (switch("--diff", about="print a unified diff and change nothing"),)),
+        OptionGroup(
+            "output",
+            (
+                switch("--diff", about="print a patch and change nothing"),
+                output("write the patch there"),
+            ),
+        ),
         GENERAL,
     ),
     "0 done; 2 wrong use, a name that is not there or taken, or one that cannot be changed alone",
@@ -236,7 +243,7 @@ ADOPT = Command(
                 TRUST,
             ),
         ),
-        OptionGroup("output", (switch("--in-place", about="change the files"),)),
+        OptionGroup("output", (output("write the patch there"), IN_PLACE)),
         GENERAL,
     ),
     "0 done; 2 wrong use, or no place for the prefix that changes nothing else",
