@@ -90,7 +90,10 @@ def scene(
     )  # fmt: skip
 
 
-def row(*robots: str, level: str = "error", targets: Targets = Targets((), (), ())) -> FindingRow:
+NOTHING = Targets((), (), ())
+
+
+def row(*robots: str, level: str = "error", targets: Targets = NOTHING) -> FindingRow:
     return FindingRow(Finding("MG301", level, "it"), targets, robots, "")
 
 
@@ -178,7 +181,8 @@ def test_everything_drawn_has_a_short_id_and_what_is_found_an_anchor() -> None:
 def test_a_section_for_each_robot_and_one_for_the_rest() -> None:
     made = scene(
         group(edge("/a/x", "/a/t"), robot="a"), group(edge("/b/x", "/t", state=LEAK), robot="b"),
-        group(edge("/c", "/t")), rows=(row("a"), row("a", level="warning"), row("a", level="note"), row()),
+        group(edge("/c", "/t")),
+        rows=(row("a"), row("a", level="warning"), row("a", level="note"), row()),
     )  # fmt: skip
     first, second, rest = make_sections(made)
     assert (first.id, second.id, rest.id) == ("g0", "g1", "shared")

@@ -1,4 +1,4 @@
-"""The pictures as text: where a box, a line and a word are, which class they have, how long a name is cut."""
+"""The pictures as text: where boxes, lines and words are, their class, how a long name is cut."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def test_a_long_text_is_cut_in_its_middle(text: str, room: int, shown: str) -> N
 
 
 def test_east_asian_letters_are_two_columns() -> None:
-    assert [columns(it) for it in ("ab", "機", "a機b", "Ａ", "é", "")] == [2, 2, 4, 2, 1, 0]
+    assert [columns(it) for it in ("ab", "機", "a機b", "\uff21", "é", "")] == [2, 2, 4, 2, 1, 0]
 
 
 def test_text_is_safe_between_tags_and_in_quotes() -> None:
