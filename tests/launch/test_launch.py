@@ -639,7 +639,10 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
     ("text", "made", "known"),
     [
         ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "name": "a"}),
-        ('<n node="a" use_sim_time="false"/>', "lifecycle_node", {"name": "a", "use_sim_time": "false"}),
+        (
+            '<n node="a" use_sim_time="false"/>', "lifecycle_node",
+            {"name": "a", "use_sim_time": "false"},
+        ),
         (
             '<n simulator="gz" robot="r" output="screen"/>', "spawn",
             {"simulator": "gz", "robot": "r", "output": "screen"},

@@ -78,6 +78,11 @@ def test_several_names_are_counted_and_a_long_one_is_cut() -> None:
     assert f">{'x' * 19}…{'x' * 20}</text>" in overview([R1, R2], [long], [])
 
 
+def test_a_label_between_two_rows_is_in_their_middle() -> None:
+    drawing = overview(tiles(7), [TALK._replace(source="r0", target="r6")], [])
+    assert '<text class="reach-note" x="98.3333" y="128">/r1/scan</text>' in drawing
+
+
 def test_more_than_twelve_arrows_have_no_labels() -> None:
     assert overview([R1, R2], [TALK] * 12, []).count("reach-note") == 12
     assert overview([R1, R2], [TALK] * 13, []).count("reach-note") == 0
@@ -97,6 +102,7 @@ def test_rows_are_as_wide_as_the_fleet_is_large() -> None:
     """Four in a row of wide boxes, then six of smaller ones, then ten."""
     assert corners(overview(tiles(1), [], [])) == [(475, 44)]
     assert corners(overview(tiles(4), [], []))[3] == (917.5, 44)
+    assert 'class="overview few"' in overview(tiles(4), [], [])
     five = overview(tiles(5), [], [])
     assert 'width="160" height="54"' in five and 'class="overview"' in five
     assert corners(five)[:2] == [(38, 44), (274, 44)]

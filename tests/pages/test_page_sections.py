@@ -133,7 +133,9 @@ def served(node: str, *names: str, **more: str) -> list[DrawnEdge]:
 
 
 def test_three_services_without_a_client_are_one() -> None:
-    light = without_common(group(edge("a", "t"), *served("a", "x", "y", "z"), robot="r"))
+    ends = [it._replace(type=f"x/srv/{it.name}") for it in served("a", "x", "y", "z")]
+    light = without_common(group(edge("a", "t"), *ends, robot="r"))
+    assert light.edges[1].type == "x/srv/x"
     assert light.names[1:] == (DrawnName(SERVICE, "a service", "r", OK, (), ("x", "y", "z")),)
     assert [(it.node, it.name, it.role, it.state) for it in light.edges] == [
         ("a", "t", PUBLISHES, OK), ("a", "a service", SERVES, OK),

@@ -38,7 +38,7 @@ RULES = {
     )
     for code, name, level in (("MG1", "two-nodes", "error"), ("MG2", "odd-name", "warning"))
 }
-SOURCES = Sources(RULES, {"a.urdf:7": ["6 <a>", "7 <b>", "8 <c>"]})
+SOURCES = Sources(RULES, {"a:b.urdf:7": ["6 <a>", "7 <b> c", "8 <c>"]})
 
 
 def node(name: str, robot: str, state: str = OK, is_robot: bool = False) -> DrawnNode:
@@ -91,7 +91,7 @@ def test_a_finding_with_all_that_is_known_of_it() -> None:
     one = row(
         "r1",
         "r2",
-        place="a.urdf:7",
+        place="a:b.urdf:7",
         hint="do <it>",
         node="/r1/a",
         names=("/t", "/u"),
@@ -108,8 +108,8 @@ def test_a_finding_with_all_that_is_known_of_it() -> None:
         "<div><dt>Robots</dt><dd>r1, r2</dd></div>"
         "<div><dt>Why it matters</dt><dd>Why &lt;it&gt;.</dd></div>"
         "<div><dt>What to do</dt><dd>Fix <code>it</code>.</dd></div>"
-        "<div><dt>Written in</dt><dd><code>a.urdf:7</code></dd></div></dl>"
-        "<pre>6 &lt;a&gt;\n<b>7 &lt;b&gt;</b>\n8 &lt;c&gt;</pre></details>\n</section>\n"
+        "<div><dt>Written in</dt><dd><code>a:b.urdf:7</code></dd></div></dl>"
+        "<pre>6 &lt;a&gt;\n<b>7 &lt;b&gt; c</b>\n8 &lt;c&gt;</pre></details>\n</section>\n"
     )
 
 
@@ -279,6 +279,13 @@ def test_a_graph_without_a_plan_has_a_look_not_a_layout() -> None:
         "<title>so: 1 robot, layout mine</title>"
         in to_html(scene("r1", layout="mine", outcome=outcome)).decode()
     )
+
+
+def test_a_serious_finding_beside_a_note_is_enough() -> None:
+    rows = (row("r1", level="note"), row("r1", level="error"))
+    made = scene("r1", rows=rows)
+    assert head(made).startswith('<header class="unsure">')
+    assert "</div>\n</header>\n<main>\n" in to_html(made, RULES).decode()
 
 
 def environment(**known: object) -> str:

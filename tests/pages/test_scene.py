@@ -109,7 +109,7 @@ def test_a_group_for_each_robot_and_one_for_the_rest() -> None:
         drawn("/r1/a", PUBLISHES, "/rosout", LOG, common=True),
     )
     to_all, heard = drawn("/r2/a", PUBLISHES, "/all"), drawn("/r2/a", SUBSCRIBES, "/r2/t")
-    first, second = DrawnNode("/r1/a", "r1", OK), DrawnNode("/r2/a", "r2", OK)
+    first, second = DrawnNode("/r1/a", "r1", OK, False, False), DrawnNode("/r2/a", "r2", OK)
     every = DrawnName(TOPIC, "/all", "", OK, (A,))
     rosout = DrawnName(TOPIC, "/rosout", "", OK, (LOG,))
     assert made.groups == (
@@ -327,7 +327,9 @@ def test_a_finding_is_about_its_node_and_names() -> None:
 
 def test_a_finding_without_a_node_is_about_its_robot_or_who_has_the_name() -> None:
     assert targets(found("MG109", robot="r1")) == Targets(("/r1/a",), (), ())
-    assert targets(found("MG303", "", "/all")) == Targets(("/r2/a", "/s"), ("/all",), ())
+    heard = more(end("/a", SUBSCRIBES, "/all"))
+    about = targets(found("MG303", "", "/all"), heard)
+    assert about == Targets(("/a", "/r2/a", "/s"), ("/all",), ())
 
 
 def test_a_name_may_be_a_node() -> None:
@@ -408,6 +410,13 @@ def test_targets_of_several_findings_are_each_once() -> None:
 )
 def test_robots_that_a_finding_concerns(finding: Finding, robots: set[str]) -> None:
     assert robots_of(side_by_side(PLAN, GRAPH)[0], finding) == robots
+
+
+def test_a_frame_has_the_word_that_its_robot_has_in_frames() -> None:
+    plan = PLAN._replace(robots=(ROBOTS[0], ROBOTS[1]._replace(frames=("t2/base",), tag="t2")))
+    about = side_by_side(plan, GRAPH)[0]
+    assert robots_of(about, found("MG401", "", "t2/base")) == {"r2"}
+    assert robots_of(about, found("MG301", "", "t2/base")) == set()
 
 
 def test_words_are_without_punctuation() -> None:
