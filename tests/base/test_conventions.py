@@ -170,14 +170,14 @@ def test_words_that_stand_for_a_robot() -> None:
         (
             other_words.OPTIONS,
             """--again --undo --revert --strip --lint --prefix --postfix --suffix --frame-prefix
-            --namespace --out --out-dir --dry-run --overwrite --inplace --description --fleet --plan --number
-            --ros-distro --release --fail --no-color --json --sarif --sros2""",
+            --namespace --out --out-dir --dry-run --overwrite --inplace --description --fleet
+            --plan --number --ros-distro --release --fail --no-color --json --sarif --sros2""",
         ),
         (
             other_words.KEYS,
-            """urdf xacro sdf model robot_description args xacro_args parameters params_file rviz_config
-            position initial_pose start_pose ros_distro release sim gazebo sim_time prefix postfix suffix
-            ns nodes_file stacks""",
+            """urdf xacro sdf model robot_description args xacro_args parameters params_file
+            rviz_config position initial_pose start_pose ros_distro release sim gazebo
+            sim_time prefix postfix suffix ns nodes_file stacks""",
         ),
     ],
 )

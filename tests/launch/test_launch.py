@@ -689,6 +689,51 @@ def test_a_value_alone_has_its_type(fleet: str, context: Any) -> None:
         assert substitutions.as_value(other) is other
 
 
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda **it: launch.node("amcl", **it), "node"),
+        (lambda **it: launch.lifecycle_node("amcl", **it), "node"),
+        (lambda **it: launch.composable_node("amcl", **it), "composable_node"),
+        (launch.place, "place"),
+    ],
+)
+def test_what_the_fleet_decides_is_no_option(
+    make: Callable[..., Any], word: str, frontend: Any
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        make(namespace="/x")
+    said = f"{word}: namespace comes from the fleet file; remove namespace="
+    assert str(caught.value) == said
+
+
+def test_an_action_is_one_before_its_robot_is_known(frontend: Any) -> None:
+    """Event handlers want an action of launch_ros; some of its classes want a name at once."""
+    later = {"executable": "later"}
+    named = {**later, "name": "later", "namespace": ""}
+    assert launch.node("amcl", output="log").options == {**later, "output": "log"}
+    assert launch.lifecycle_node("amcl").options == named
+    assert launch.container("box").options == named
+    assert launch.node("amcl", plugin="p", package="q").options == {**later, "package": "q"}
+    assert launch.spawn("gz", use_sim_time=True, output="log").options == {**later, "output": "log"}
+    assert launch.place(executable="x").options == {"executable": "x"}
+
+
+def test_the_options_of_a_program(fleet: str, context: Any) -> None:
+    of_robot = {"robot": "robot1", "fleet": fleet}
+    (made,) = run(
+        context,
+        launch.spawn("gz", **of_robot, use_sim_time=True, arguments=["-x"], parameters=[{"a": 1}]),
+    )
+    robot = load_fleet(fleet).robot("robot1")
+    assert made.options == {
+        "package": "ros_gz_sim", "executable": "create", "arguments": [*robot.spawn_arguments, "-x"],
+        "parameters": [{"use_sim_time": True}, {"a": 1}],
+    }  # fmt: skip
+    (made,) = run(context, launch.spawn("classic", **of_robot))
+    assert "parameters" not in made.options
+
+
 class Around:
     """A launch context of which only the configurations are asked."""
 
