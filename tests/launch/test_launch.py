@@ -1035,3 +1035,18 @@ def test_a_mistake_is_one_line_of_launch(tmp_path: Path) -> None:
     with pytest.raises(AssertionError) as caught:
         launched(EXAMPLE / "launch" / "gz.launch.xml", tmp_path, "robots:=robt2")
     assert "did you mean 'robot2'" in str(caught.value)
+
+
+def test_other_nodes_of_a_group_have_the_robots_clock(fleet: str, context: Any) -> None:
+    def clocks() -> list[tuple[str, object]]:
+        made = launch.each_robot(fleet, lambda robot: [])
+        return [
+            (it.name, it.value)
+            for group in made.visit(context)
+            for it in group.visit(context)
+            if isinstance(it, Set)
+        ]
+
+    assert clocks() == []
+    context.launch_configurations["use_sim_time"] = "true"
+    assert clocks() == [("use_sim_time", True)] * 2
