@@ -1050,3 +1050,17 @@ def test_other_nodes_of_a_group_have_the_robots_clock(fleet: str, context: Any) 
     assert clocks() == []
     context.launch_configurations["use_sim_time"] = "true"
     assert clocks() == [("use_sim_time", True)] * 2
+
+
+@pytest.mark.parametrize(
+    ("configured", "what"),
+    [({}, "robot"), ({"multibot_fleet": "f"}, "robot"), ({"multibot_robot": "r"}, "fleet")],
+)
+def test_what_no_group_says_has_to_be_set(
+    configured: dict[str, str], what: str, context: Any
+) -> None:
+    context.launch_configurations.update(configured)
+    with pytest.raises(UsageError) as caught:
+        launch.robot_of(context)
+    said = f"no {what} is given; set {what}, or put it into multibot_robots or each_robot"
+    assert str(caught.value) == said
