@@ -107,7 +107,7 @@ def _snippet(place: str, lines: Sequence[str]) -> str:
         return ""
     wanted = place.rpartition(":")[2]
     marked = (
-        f"<b>{safe(line)}</b>" if line.split(maxsplit=1)[0] == wanted else safe(line)
+        f"<b>{safe(line)}</b>" if line.split()[0] == wanted else safe(line)
         for line in lines
     )
     return f"<pre>{chr(10).join(marked)}</pre>"

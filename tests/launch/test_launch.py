@@ -48,6 +48,15 @@ PARAMS = 'amcl:\n  ros__parameters: {base_frame_id: "base_footprint", flag: "n",
 RVIZ = EXAMPLE / "config" / "rover.rviz"
 
 
+class _Untyped:
+    """Stands for the ParameterValue of a value whose type is not said."""
+
+    value_type = None
+
+    def __init__(self, text: str, parser: Any) -> None:
+        self.value = parser.parse_substitution(text)
+
+
 class Started:
     """Stands for classes of launch_ros: keeps what it is given, and whether it ran."""
 
@@ -63,6 +72,11 @@ class Started:
             if text is not None:
                 options[option] = parser.parse_substitution(text)
         return Started, options
+
+    @staticmethod
+    def parse_nested_parameters(params: list[Any], parser: Any) -> list[dict[str, Any]]:
+        """Each element is one parameter; its value is what ParameterValue would keep."""
+        return [{it.get_attr("name"): _Untyped(it.get_attr("value"), parser)} for it in params]
 
     def visit(self, context: Any) -> Any:
         wanted = self.condition is None or self.condition.evaluate(context)
@@ -561,6 +575,256 @@ def test_xml_that_is_wrong(text: str, part: str, context: Any) -> None:
         read(text)
 
 
+COMPOSED = """\
+<multibot_container node="box" pkg="rclcpp_components" exec="isolated" files="a.yaml" robot="r">
+  <multibot_composable_node node="one" pkg="p" plugin="p::One" files="b.yaml" if="false"/>
+  <multibot_composable_node node="two" pkg="q" plugin="q::Two" describe="true" fleet="f.yaml">
+    <param name="robot" value="$(multibot name robot:=$(var which))"/>
+    <param name="rate" value="5"/>
+    <remap from="scan" to="front"/>
+    <remap from="a" to="b"/>
+  </multibot_composable_node>
+</multibot_container>
+"""
+
+
+def entity(text: str) -> Any:
+    return launch_stand_in.Entity(ET.fromstring(text))
+
+
+@pytest.mark.skipif(REAL, reason="real launch has its own parser")
+def test_xml_for_a_container_with_components(frontend: Any, context: Any) -> None:
+    made, given = frontend.container(entity(COMPOSED), launch_stand_in.Parser())
+    assert made is launch.container and given.pop("describe") is False
+    inside = given.pop("composable_node_descriptions")
+    assert performed(context, given) == {
+        "package": "rclcpp_components", "executable": "isolated", "name": "box",
+        "files": "a.yaml", "robot": "r",
+    }  # fmt: skip
+    first, second = (it.options for it in inside)
+    assert performed(context, first) == {"package": "p", "plugin": "p::One"}
+    assert performed(context, {key: second[key] for key in ("package", "plugin")}) == {
+        "package": "q", "plugin": "q::Two",
+    }  # fmt: skip
+    rules = [tuple(launch.perform(context, one) for one in it) for it in second["remappings"]]
+    assert rules == [("scan", "front"), ("a", "b")]
+    robot, rate = second["parameters"]
+    # A value that is one of ours has its type; any other is launch_ros's.
+    assert isinstance(robot["robot"], substitutions.substitution_class())
+    assert isinstance(rate["rate"], _Untyped)
+    assert inside[0].condition.evaluate(context) is False and inside[1].condition is None
+
+
+@pytest.mark.skipif(REAL, reason="real launch has its own parser")
+def test_xml_for_a_component(frontend: Any, context: Any) -> None:
+    parser = launch_stand_in.Parser()
+    text = '<multibot_composable_node node="one" pkg="p" plugin="p::One" use_sim_time="true"/>'
+    made, given = frontend.composable_node(entity(text), parser)
+    assert made is launch.node and given.pop("describe") is False
+    assert performed(context, given) == {
+        "package": "p", "plugin": "p::One", "name": "one", "use_sim_time": "true",
+    }  # fmt: skip
+    for left in ('pkg="p"', 'plugin="p::One"', 'node="one"'):
+        with pytest.raises(AttributeError, match=left.partition("=")[0]):
+            frontend.composable_node(entity(text.replace(left, "")), parser)
+    # What is not known of a component in a container is not passed over.
+    with pytest.raises(ValueError, match="plugn"):
+        frontend.container(entity(COMPOSED.replace('pkg="p"', 'pkg="p" plugn="x"')), parser)
+    with pytest.raises(ValueError, match="too"):
+        frontend.container(entity(COMPOSED.replace('to="b"', 'to="b" too="c"')), parser)
+
+
+@pytest.mark.skipif(REAL, reason="real launch has its own parser")
+@pytest.mark.parametrize(
+    ("text", "made", "known"),
+    [
+        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "name": "a"}),
+        (
+            '<n node="a" use_sim_time="false"/>', "lifecycle_node",
+            {"name": "a", "use_sim_time": "false"},
+        ),
+        (
+            '<n simulator="gz" robot="r" output="screen"/>', "spawn",
+            {"simulator": "gz", "robot": "r", "output": "screen"},
+        ),
+        ('<n fleet="f" use_sim_time="true"/>', "place", {"fleet": "f", "use_sim_time": "true"}),
+    ],
+)  # fmt: skip
+def test_xml_is_what_the_functions_take(
+    text: str, made: str, known: dict[str, str], frontend: Any, context: Any
+) -> None:
+    found, given = getattr(frontend, made)(entity(text), launch_stand_in.Parser())
+    assert found is getattr(launch, made)
+    assert given.pop("describe", None) in (None, made == "node")
+    assert performed(context, given) == known
+
+
+@pytest.mark.skipif(REAL, reason="real launch has its own table")
+def test_words_of_xml_are_those_of_the_page(frontend: Any) -> None:
+    """docs/launch.md: the names under which launch finds them."""
+    made = {
+        "robots", "node", "lifecycle_node", "container", "composable_node", "spawn", "place"
+    }  # fmt: skip
+    assert {it for it in launch_stand_in.ACTIONS if it.startswith("multibot_")} >= {
+        f"multibot_{it}" for it in made
+    }
+    assert "multibot" in launch_stand_in.SUBSTITUTIONS
+    for it in made:
+        assert f"multibot_{it}" in PAGE
+
+
+def test_a_value_alone_has_its_type(fleet: str, context: Any) -> None:
+    """launch_ros reads every other substitution as YAML."""
+    pose = launch.value("pose", "x", "robot1", fleet)
+    assert pose.evaluate(context) == 1.0
+    name = launch.value("name", "", "robot1", fleet)
+    assert name.evaluate(context) == "robot1"
+
+    class Value:
+        def __init__(self, value: Any, value_type: Any = None) -> None:
+            self.value, self.value_type = value, value_type
+
+    assert substitutions.as_value(Value([pose])) is pose
+    for other in (Value([pose, name]), Value([pose], str), Value(["text"]), Value("text"), 5):
+        assert substitutions.as_value(other) is other
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda **it: launch.node("amcl", **it), "node"),
+        (lambda **it: launch.lifecycle_node("amcl", **it), "node"),
+        (lambda **it: launch.composable_node("amcl", **it), "composable_node"),
+        (launch.place, "place"),
+    ],
+)
+def test_what_the_fleet_decides_is_no_option(
+    make: Callable[..., Any], word: str, frontend: Any
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        make(namespace="/x")
+    said = f"{word}: namespace comes from the fleet file; remove namespace="
+    assert str(caught.value) == said
+
+
+def test_an_action_is_one_before_its_robot_is_known(frontend: Any) -> None:
+    """Event handlers want an action of launch_ros; some of its classes want a name at once."""
+    later = {"executable": "later"}
+    named = {**later, "name": "later", "namespace": ""}
+    assert launch.node("amcl", output="log").options == {**later, "output": "log"}
+    assert launch.lifecycle_node("amcl").options == named
+    assert launch.container("box").options == named
+    assert launch.node("amcl", plugin="p", package="q").options == {**later, "package": "q"}
+    assert launch.spawn("gz", use_sim_time=True, output="log").options == {**later, "output": "log"}
+    assert launch.place(executable="x").options == {"executable": "x"}
+
+
+def test_the_options_of_a_program(fleet: str, context: Any) -> None:
+    of_robot = {"robot": "robot1", "fleet": fleet}
+    (made,) = run(
+        context,
+        launch.spawn("gz", **of_robot, use_sim_time=True, arguments=["-x"], parameters=[{"a": 1}]),
+    )
+    robot = load_fleet(fleet).robot("robot1")
+    assert made.options == {
+        "package": "ros_gz_sim", "executable": "create", "arguments": [*robot.spawn_arguments, "-x"],
+        "parameters": [{"use_sim_time": True}, {"a": 1}],
+    }  # fmt: skip
+    (made,) = run(context, launch.spawn("classic", **of_robot))
+    assert "parameters" not in made.options
+
+
+class Around:
+    """A launch context of which only the configurations are asked."""
+
+    def __init__(self, **configurations: str) -> None:
+        self.launch_configurations = configurations
+
+
+@pytest.mark.parametrize(
+    ("told", "configured", "of_robot", "clock"),
+    [
+        (True, "false", None, True), (False, "true", True, False), (None, "true", False, True),
+        (None, " True ", None, True), (None, "1", None, True), (None, "0", True, False),
+        (None, "false", True, False), (None, "", True, True), (None, " ", False, False),
+        (None, None, True, True), (None, None, None, None),
+    ],
+)  # fmt: skip
+def test_whose_word_on_the_clock_counts(
+    told: Any, configured: str | None, of_robot: bool | None, clock: bool | None
+) -> None:
+    class Robot:
+        use_sim_time = of_robot
+
+    around = Around(**({} if configured is None else {"use_sim_time": configured}))
+    assert launch_context.sim_time(around, Robot(), told) is clock  # type: ignore[arg-type]
+
+
+def test_the_clock_of_a_node_may_be_a_text(context: Any) -> None:
+    context.launch_configurations["sim"] = "TRUE"
+    assert launch_context.sim_time(context, None, of("sim")) is True  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="use_sim_time is 'maybe'; write true or false"):
+        launch_context.sim_time(context, None, "maybe")  # type: ignore[arg-type]
+
+
+def test_a_robot_that_is_not_said_is_that_of_the_enclosing_group() -> None:
+    here, ref = launch_context.reference, launch.RobotRef
+    assert here() == ref(None, None)
+    with launch_context.made_for(ref("r", "f")):
+        assert [here(), here("q"), here(fleet="g"), here("", "")] == [
+            ref("r", "f"), ref("q", "f"), ref("r", "g"), ref("", ""),
+        ]  # fmt: skip
+        with launch_context.made_for(ref("s", "f")):
+            assert here() == ref("s", "f")
+        assert here() == ref("r", "f")
+    assert here() == ref(None, None)
+
+
+def test_words_of_launch_configurations_are_those_of_the_page() -> None:
+    found = (
+        launch_context.FLEET, launch_context.ROBOT, launch_context.TRUST, launch_context.DISTRO,
+        launch_context.ROBOTS, launch_context.COUNT, launch_context.SIM_TIME,
+    )  # fmt: skip
+    words = ("fleet", "robot", "trust", "distro", "robots", "count")
+    assert found == (*(f"multibot_{it}" for it in words), "use_sim_time")
+    assert [launch_context.number_of(it) for it in ("", "0", "20")] == [0, 0, 20]
+
+
+def test_options_of_load_fleet_are_launch_configurations(
+    context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each robots and count is a fleet of its own; release and trust are those of the launch."""
+    asked: list[dict[str, Any]] = []
+
+    class Fleet:
+        findings = ()
+
+    def load(path: str, **more: Any) -> Any:
+        asked.append({"path": path, **more})
+        return Fleet()
+
+    monkeypatch.setattr(launch_context, "load_fleet", load)
+    known = context.launch_configurations
+    known.update(multibot_fleet="f.yaml", multibot_trust="1", multibot_distro="jazzy")
+    first = launch.fleet_of(context)
+    assert launch.fleet_of(context, "f.yaml") is first
+    known["multibot_robots"] = "r={}"
+    assert launch.fleet_of(context) is not first
+    known.update(multibot_robots="", multibot_count="3")
+    assert launch.fleet_of(context) is not first
+    usual = {"path": "f.yaml", "trust": True, "distro": "jazzy", "robots": "", "count": 0}
+    assert asked == [usual, {**usual, "robots": "r={}"}, {**usual, "count": 3}]
+
+
+def test_files_of_robots_and_of_all_are_apart(fleet: str, context: Any) -> None:
+    robot = load_fleet(fleet).robot("robot1")
+    one = Path(launch_context.written(context, robot, "nodes/a.yaml", "é\n"))
+    all_ = Path(launch_context.written(context, None, "a.yaml", "b\n"))
+    assert one.parts[-3:] == ("robot1", "nodes", "a.yaml") and all_.parts[-2:] == ("all", "a.yaml")
+    assert one.parents[2] == all_.parents[1] and one.read_bytes() == "é\n".encode()
+    assert one.parents[2].name.startswith("multibot_launch_")
+
+
 def test_a_substitution_needs_a_word(frontend: Any) -> None:
     with pytest.raises(ValueError, match="needs one of: name"):
         frontend.words([])
@@ -771,3 +1035,32 @@ def test_a_mistake_is_one_line_of_launch(tmp_path: Path) -> None:
     with pytest.raises(AssertionError) as caught:
         launched(EXAMPLE / "launch" / "gz.launch.xml", tmp_path, "robots:=robt2")
     assert "did you mean 'robot2'" in str(caught.value)
+
+
+def test_other_nodes_of_a_group_have_the_robots_clock(fleet: str, context: Any) -> None:
+    def clocks() -> list[tuple[str, object]]:
+        made = launch.each_robot(fleet, lambda robot: [])
+        return [
+            (it.name, it.value)
+            for group in made.visit(context)
+            for it in group.visit(context)
+            if isinstance(it, Set)
+        ]
+
+    assert clocks() == []
+    context.launch_configurations["use_sim_time"] = "true"
+    assert clocks() == [("use_sim_time", True)] * 2
+
+
+@pytest.mark.parametrize(
+    ("configured", "what"),
+    [({}, "robot"), ({"multibot_fleet": "f"}, "robot"), ({"multibot_robot": "r"}, "fleet")],
+)
+def test_what_no_group_says_has_to_be_set(
+    configured: dict[str, str], what: str, context: Any
+) -> None:
+    context.launch_configurations.update(configured)
+    with pytest.raises(UsageError) as caught:
+        launch.robot_of(context)
+    said = f"no {what} is given; set {what}, or put it into multibot_robots or each_robot"
+    assert str(caught.value) == said

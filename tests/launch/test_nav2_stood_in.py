@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ import yaml
 from launched_here import read_here
 from nav2_fleet import FILE, written
 
-from multibot_rewrite.launch import nav2_programs
+from multibot_rewrite.launch import nav2, nav2_programs
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 
@@ -188,3 +189,59 @@ def test_what_cannot_be_started_is_said(
 ) -> None:
     notes = read(tmp_path, *words.items(), **fleet).notes
     assert any(said in it.message for it in notes), notes
+
+
+def test_a_window_needs_a_config(tmp_path: Path) -> None:
+    file = written(tmp_path) / "fleet.yaml"
+    file.write_text(file.read_text().replace(", rviz: one.rviz", ""))
+    with pytest.MonkeyPatch.context() as kept:
+        read_here(kept, tmp_path)
+        words = (("fleet", str(file)), ("rviz", "each"))
+        notes = launch_graph(LaunchOrder(str(FILE), words, trusted=True)).notes
+    assert any(f"rviz:=each: {file} has no rviz: under companions" in it.message for it in notes)
+
+
+def test_arguments_and_their_defaults() -> None:
+    assert [it[:2] for it in nav2.ARGUMENTS] == [
+        ("fleet", None), ("robots", ""), ("map", ""), ("use_sim_time", ""), ("rviz", "none"),
+        ("robot_state_publisher", "false"), ("autostart", "true"), ("use_respawn", "false"),
+        ("log_level", "info"),
+    ]  # fmt: skip
+
+
+def test_a_node_that_nobody_manages_is_brought_up_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """launch_ros OnStateTransition: activate it once it is inactive, and configure it now."""
+    given: dict[str, Any] = {
+        "RegisterEventHandler": lambda it: ("handler", it),
+        "EmitEvent": lambda event: ("emit", event),
+        "matches_action": lambda it: ("of", it),
+        "ChangeState": lambda **it: it,
+        "OnStateTransition": lambda **it: it,
+    }
+    for door in ("of_launch", "of_launch_ros"):
+        monkeypatch.setattr(nav2, door, lambda _: SimpleNamespace(**given))
+
+    def change(number: int) -> tuple[str, object]:
+        return "emit", {"lifecycle_node_matcher": ("of", "slam"), "transition_id": number}
+
+    assert [*nav2._activated("slam")] == [
+        (
+            "handler",
+            {
+                "target_lifecycle_node": "slam",
+                "start_state": "configuring",
+                "goal_state": "inactive",
+                "entities": [change(3)],
+            },
+        ),
+        change(1),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "on"), [("true", True), (" True ", True), ("1", True), ("false", False), ("", False)]
+)
+def test_a_launch_argument_is_on(text: str, on: bool) -> None:
+    around = SimpleNamespace(launch_configurations={"autostart": text})
+    assert nav2._is_on(around, "autostart") is on
+    assert nav2._is_on(around, "other") is False

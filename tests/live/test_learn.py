@@ -21,7 +21,12 @@ from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
+from multibot_rewrite.live.learning.choosing import (
+    choose_nodes,
+    helpers_without_owner,
+    left_out,
+    namespace_prefix,
+)
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
@@ -807,3 +812,86 @@ def test_what_is_no_snapshot_is_one_line(
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith(f"multibot: {shot}")
+
+
+# ---------------------------------------------------------------- the file
+
+
+def test_what_a_node_that_stands_apart_writes_without_a_slash_is_known() -> None:
+    written = (publishes("image"), publishes("/whole"), publishes("~/own"))
+    known = NodeFacts("eye", "eyes", (*written, publishes("<name>/x")), apart=True)
+    library = UNKNOWN._replace(nodes={"eye": known})
+    found = one(graph(node(*written, name="eye")), library=library)
+    assert spelled(found) == [(PUBLISHES, "/whole"), (PUBLISHES, "image"), (PUBLISHES, "~/own")]
+    assert found.remarks == ("known as eye of eyes; as described there",)
+    assert found.facts.apart
+    more = one(graph(node(*written[1:], publishes("/more"), name="eye")), library=library)
+    assert more.remarks == (
+        "known as eye of eyes; additional: publishes /more; not seen: publishes image",
+    )
+
+
+def test_types_are_in_order() -> None:
+    types = [f"a/msg/{it}" for it in "GFEDCBA"]
+    ends = [("/driver", TOPIC, PUBLISHES, "/many", it) for it in types]
+    (end,) = one(with_end(graph(node()), *ends)).own
+    assert (end.type, *end.also) == tuple(sorted(types))
+
+
+@pytest.mark.parametrize(
+    ("namespace", "base"),
+    [("/", ""), ("", ""), ("/old", "/old"), ("/old/", "/old"), ("/a/b", "/a/b")],
+)
+def test_a_namespace_has_no_slash_at_its_end(namespace: str, base: str) -> None:
+    assert namespace_prefix(namespace) == base
+
+
+FILE = """
+nodes:
+  # {remark}
+  #   {rest}
+  lower/driver:
+    note: seen as /r/lower/driver
+    apart: true
+    with: [bond]
+    publishes:
+      odom: nav_msgs/msg/Odometry
+      /two: {{type: std_msgs/msg/String, also: [std_msgs/msg/Empty], note: 'x: y'}}
+    serves:
+      ~/reset: std_srvs/srv/Trigger
+
+  other:
+    note: seen as /other
+
+stacks:
+  mine:
+    about: Learned from a running graph
+    nodes:
+      - lower/driver
+      - other
+"""
+
+
+def test_the_file_of_two_nodes() -> None:
+    own = (
+        publishes("odom", "nav_msgs/msg/Odometry"),
+        publishes("/two", also=("std_msgs/msg/Empty",), note="x: y"),
+        Endpoint(SERVICE, SERVES, "~/reset", TRIGGER),
+    )
+    ends = (*own, *UNKNOWN.parts["bond"])
+    facts = NodeFacts("lower/driver", "", ends, note="seen as /r/lower/driver", apart=True)
+    first = LearnedNode("/r/lower/driver", facts, own, ("bond",), ("word " * 20 + "end",))
+    second = LearnedNode("/other", NodeFacts("other", "", (), note="seen as /other"), (), (), ())
+    text = to_yaml([first, second], "mine", UNKNOWN)
+    head, _, rest = text.partition("# Of: /r/lower/driver /other\n")
+    words = ["word"] * 19
+    assert rest == FILE.format(remark=" ".join(words), rest="word end")
+    assert head.count("\n") == 6 and all(it.startswith("#") for it in head.splitlines())
+    assert head.startswith(
+        "# Nodes as they were seen in a running graph, written by multibot learn"
+    )
+    lost = first._replace(own=own[:1])
+    with pytest.raises(
+        ProofError, match=r"^the learned nodes are read back differently: lower/driver$"
+    ):
+        to_yaml([lost, second], "mine", UNKNOWN)

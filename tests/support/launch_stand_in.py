@@ -1,6 +1,6 @@
 """The package's stand-in for launch, with what ``multibot_rewrite.launch`` uses of its XML frontend.
 
-It runs no process, and its XML knows attributes and children, no type but bool.
+It runs no process, and its XML knows attributes and children, no type but bool and lists of elements.
 """
 
 from __future__ import annotations
@@ -56,12 +56,18 @@ class Entity:
         self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True
     ) -> Any:
         self.read.add(name)
+        if data_type not in (str, bool):
+            return self._nested(name) or None
         if name not in self.element.attrib:
             if optional:
                 return None
             raise AttributeError(f"Attribute '{name}' not found in Entity '{self.type_name}'")
         text = self.element.attrib[name]
         return text.lower() == "true" if data_type is bool else text
+
+    def _nested(self, name: str) -> list[Entity]:
+        self.children_read = True
+        return [Entity(it) for it in self.element if it.tag == name]
 
     def assert_entity_completely_parsed(self) -> None:
         left = set(self.element.attrib) - self.read

@@ -1,0 +1,322 @@
+"""A report in every format, whole: readers of CI services take each word of it."""
+
+from __future__ import annotations
+
+import json
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.findings import codes
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.formats import Report, rendered
+from multibot_rewrite.base.findings.formats import markdown as in_markdown
+from multibot_rewrite.base.findings.formats.shared import by_file, counts, inside, path_below
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import Edit, UsageError
+from multibot_rewrite.version import __version__
+
+
+def rule(code: str, name: str, level: str = ERROR) -> dict[str, object]:
+    return {code: declare(
+        code, name, level, what="It is. Really.", why="It hurts.", fix="Do it.", bad="<a/>", good="<b/>"
+    )}  # fmt: skip
+
+
+RULES = rule("MB101", "bad-name")
+IN_FILE = Finding(
+    "MB101", ERROR, "is 100% bad", "do: it", "a b.urdf", 3, 5, ("m.xacro:7: wheel",), "side:=left",
+    (Edit(0, 1, b"x", b"y"),), others=("r2",), robot="r1",
+)  # fmt: skip
+IN_GRAPH = Finding("MG102", INCONCLUSIVE, "may be lost", robot="r1", node="/r1/a", names=("/r1/t",))
+NOTED = Finding("MB101", NOTE, "is odd", file="c.urdf")
+FOUND = (IN_FILE, IN_GRAPH, NOTED)
+REPORT = Report("multibot lint", ["a b.urdf", "c.urdf"], RULES, "jazzy")  # type: ignore[arg-type]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a b.urdf").write_bytes(b"1234")
+    return tmp_path
+
+
+def identity(code: str, where: str, message: str, arguments: str = "", time: int = 1) -> str:
+    return sha256("\0".join((code, where, message, arguments, str(time))).encode()).hexdigest()
+
+
+def test_text() -> None:
+    lines = [
+        "r1: error: MB101 is 100% bad; the same for r2 (do: it) [with side:=left]",
+        "    via m.xacro:7: wheel",
+        "/r1/a: inconclusive: MG102 may be lost",
+        "c.urdf:0:0: note: MB101 is odd",
+    ]
+    assert rendered("text", FOUND, REPORT) == "".join(f"{it}\n" for it in lines)
+    painted = rendered("text", FOUND, REPORT, colour=True).splitlines()
+    assert painted[0].startswith("r1: \033[31merror: MB101\033[0m is")
+    assert painted[2].startswith("/r1/a: \033[35minconclusive: MG102\033[0m")
+    assert painted[3].startswith("c.urdf:0:0: \033[36mnote: MB101\033[0m is odd")
+    warned = rendered("text", [NOTED._replace(level=WARNING)], REPORT, colour=True)
+    assert warned == "c.urdf:0:0: \033[33mwarning: MB101\033[0m is odd\n"
+
+
+def test_json() -> None:
+    made = json.loads(rendered("json", FOUND, REPORT))
+    first, second, third = made.pop("findings")
+    assert made == {
+        "version": 2, "tool": "multibot lint", "distro": "jazzy", "files": 2,
+        "counts": {"error": 1, "warning": 0, "note": 1, "inconclusive": 1},
+    }  # fmt: skip
+    assert first == {
+        "code": "MB101", "name": "bad-name", "level": "error", "message": "is 100% bad",
+        "hint": "do: it",
+        "file": "a b.urdf", "line": 3, "column": 5,
+        "calls": [{"file": "m.xacro", "line": 7, "macro": "wheel"}], "arguments": "side:=left",
+        "robot": "r1", "node": "", "names": [], "others": ["r2"],
+        "edits": [{"start": 0, "end": 1, "text": "xy"}],
+    }  # fmt: skip
+    assert (second["name"], second["file"], second["line"], second["column"]) == (
+        "",
+        None,
+        None,
+        None,
+    )
+    assert (second["names"], second["node"], third["edits"]) == (["/r1/t"], "/r1/a", [])
+    assert json.loads(rendered("json", [], REPORT._replace(release="")))["distro"] is None
+
+
+def test_github() -> None:
+    """docs.github.com, Workflow commands: % and line ends are escaped, in properties : and , too."""
+    assert rendered("github", FOUND, REPORT) == (
+        "::error file=a b.urdf,line=3,col=5,title=MB101 bad-name::"
+        "r1: is 100%25 bad; the same for r2 (do: it) [with side:=left]%0Avia m.xacro:7: wheel\n"
+        "::warning file=a b.urdf,line=1,col=1,title=MG102::/r1/a: may be lost\n"
+        "::notice file=c.urdf,line=1,col=1,title=MB101 bad-name::is odd\n"
+    )
+    odd = NOTED._replace(file="a,b:c.urdf", level=WARNING, message="50%\r")
+    assert rendered("github", [odd], REPORT) == (
+        "::warning file=a%2Cb%3Ac.urdf,line=1,col=1,title=MB101 bad-name::50%25\\r\n"
+    )
+    nowhere = REPORT._replace(files=())
+    assert rendered("github", [IN_GRAPH], nowhere) == "::warning title=MG102::/r1/a: may be lost\n"
+
+
+def test_gitlab() -> None:
+    made = json.loads(rendered("gitlab", FOUND, REPORT))
+    assert made[0] == {
+        "description": "MB101: r1: is 100% bad; the same for r2 (do: it) [with side:=left]",
+        "check_name": "MB101 bad-name",
+        "fingerprint": identity("MB101", "a b.urdf", "is 100% bad", "side:=left"),
+        "severity": "critical", "location": {"path": "a b.urdf", "lines": {"begin": 3}},
+    }  # fmt: skip
+    assert made[1]["fingerprint"] == identity("MG102", "/r1/a", "may be lost")
+    assert [it["severity"] for it in made] == ["critical", "minor", "info"]
+    assert made[2]["location"] == {"path": "c.urdf", "lines": {"begin": 1}}
+    twice = json.loads(rendered("gitlab", [NOTED, NOTED._replace(line=9, level=WARNING)], REPORT))
+    assert twice[1]["fingerprint"] == identity("MB101", "c.urdf", "is odd", time=2)
+    assert twice[1]["severity"] == "major"
+
+
+def test_junit() -> None:
+    pytest.importorskip("lxml")
+    failed = "is 100% bad; the same for r2 (do: it)"
+    report = REPORT._replace(files=(*REPORT.files, "d.e.urdf"))
+    found = (*FOUND, NOTED._replace(level=WARNING))
+    case = 'classname="multibot lint.{}" time="0"'
+    totals = 'tests="{}" failures="{}" errors="0" skipped="{}" time="0"'
+    assert rendered("junit", found, report) == (
+        "<?xml version='1.0' encoding='utf-8'?>\n"
+        f'<testsuites name="multibot lint" {totals.format(5, 2, 1)}>\n'
+        f'  <testsuite name="a b.urdf" {totals.format(2, 1, 1)}>\n'
+        f'    <testcase name="MB101 is 100% bad" {case.format("a b_urdf")}>\n'
+        f'      <failure message="{failed}" type="error">r1: error: MB101 {failed}'
+        " [with side:=left]\n    via m.xacro:7: wheel</failure>\n    </testcase>\n"
+        f'    <testcase name="MG102 /r1/a: may be lost" {case.format("a b_urdf")}>\n'
+        '      <skipped message="may be lost"/>\n    </testcase>\n  </testsuite>\n'
+        f'  <testsuite name="c.urdf" {totals.format(2, 1, 0)}>\n'
+        f'    <testcase name="MB101 is odd" {case.format("c_urdf")}>\n'
+        "      <system-out>c.urdf:0:0: note: MB101 is odd</system-out>\n    </testcase>\n"
+        f'    <testcase name="MB101 is odd #2" {case.format("c_urdf")}>\n'
+        '      <failure message="is odd" type="warning">c.urdf:0:0: warning: MB101 is odd</failure>\n'
+        "    </testcase>\n  </testsuite>\n"
+        f'  <testsuite name="d.e.urdf" {totals.format(1, 0, 0)}>\n'
+        f'    <testcase name="no findings" {case.format("d_e_urdf")}/>\n  </testsuite>\n</testsuites>\n'
+    )
+    graph = rendered("junit", [IN_GRAPH], REPORT._replace(files=()))
+    assert f'<testsuite name="graph" {totals.format(1, 0, 1)}>' in graph
+
+
+HEAD = "| line | level | code | finding |\n| ---: | --- | --- | --- |\n"
+
+
+def test_markdown(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert rendered("markdown", FOUND, REPORT) == (
+        "**multibot lint**: 1 error, 1 note, 1 inconclusive in 2 files\n"
+        f"\n#### a b.urdf\n\n{HEAD}"
+        "| 3 | error | MB101 bad-name | r1: is 100% bad; the same for r2 (do: it) [with side:=left]"
+        "<br>via m.xacro:7: wheel |\n".replace("[with side:=left]", r"\[with side:=left\]")
+        + "|  | inconclusive | MG102 | /r1/a: may be lost |\n"
+        f"\n#### c.urdf\n\n{HEAD}|  | note | MB101 bad-name | is odd |\n"
+    )
+    assert rendered("markdown", [], REPORT) == "**multibot lint**: no findings in 2 files\n"
+    marked = NOTED._replace(message="a_b|c*<d>")
+    assert r"| a\_b\|c\*\<d\> |" in rendered("markdown", [marked], REPORT)
+    text = rendered("markdown", [NOTED] * 3, REPORT)
+    monkeypatch.setattr(in_markdown, "ROOM", len(text))
+    assert rendered("markdown", [NOTED] * 3, REPORT) == text
+    monkeypatch.setattr(in_markdown, "ROOM", len(text) - 1)
+    cut = rendered("markdown", [NOTED] * 3, REPORT)
+    assert cut.endswith("\n1 more are not shown here.\n") and cut.count("is odd") == 2
+
+
+def test_statistics() -> None:
+    found = [NOTED, NOTED._replace(file="d.urdf"), IN_GRAPH, IN_FILE]
+    assert rendered("statistics", found, REPORT) == (
+        "count  files  fixable  code   level         rule\n"
+        "    2      2           MB101  note          bad-name\n"
+        "    1      1        1  MB101  error         bad-name\n"
+        "    1      1           MG102  inconclusive\n"
+    )
+    assert rendered("statistics", [], REPORT) == ""
+
+
+def test_sarif(folder: Path) -> None:
+    """SARIF 2.1.0; GitHub, SARIF support for code scanning."""
+    made = json.loads(rendered("sarif", FOUND, REPORT))
+    assert made["version"] == "2.1.0" and made["$schema"].endswith("/sarif-schema-2.1.0.json")
+    (run,) = made["runs"]
+    results = run.pop("results")
+    uri = {"uri": "a%20b.urdf", "uriBaseId": "%SRCROOT%"}
+    other = {"uri": "c.urdf", "uriBaseId": "%SRCROOT%"}
+    said = "The folder in which the command was started: the root of the repository."
+    assert run == {
+        "tool": {"driver": {
+            "name": "multibot lint", "version": __version__, "semanticVersion": __version__,
+            "rules": [{
+                "id": "MB101", "name": "bad-name", "shortDescription": {"text": "It is"},
+                "fullDescription": {"text": "It is. Really."},
+                "help": {
+                    "text": "It is. Really.\n\nWhy: It hurts.\n\nFix: Do it.\n\n"
+                    "Bad:\n<a/>\n\nGood:\n<b/>",
+                    "markdown": "It is. Really.\n\n**Why.** It hurts.\n\n**Fix.** Do it.\n\n"
+                    "Bad:\n\n```xml\n<a/>\n```\n\nGood:\n\n```xml\n<b/>\n```",
+                },
+                "defaultConfiguration": {"level": "error"},
+            }],
+        }},
+        "originalUriBaseIds": {"%SRCROOT%": {"description": {"text": said}}},
+        "artifacts": [{"location": uri}, {"location": other}],
+        "columnKind": "unicodeCodePoints", "properties": {"distro": "jazzy"},
+    }  # fmt: skip
+    node = {"fullyQualifiedName": "r1", "kind": "resource"}
+    first = {"startLine": 3, "startColumn": 5}
+    assert results[0] == {
+        "ruleId": "MB101", "ruleIndex": 0, "level": "error",
+        "message": {
+            "text": "r1: is 100% bad; the same for r2 (do: it) [with side:=left] via [wheel](1)"
+        },
+        "locations": [{
+            "physicalLocation": {"artifactLocation": uri, "region": first}, "logicalLocations": [node],
+        }],
+        "partialFingerprints": {
+            "urdfLint/v1": identity("MB101", "a b.urdf", "is 100% bad", "side:=left")
+        },
+        "relatedLocations": [{
+            "id": 1,
+            "physicalLocation": {
+                "artifactLocation": {"uri": "m.xacro", "uriBaseId": "%SRCROOT%"},
+                "region": {"startLine": 7},
+            },
+            "message": {"text": "call of wheel"},
+        }],
+        "fixes": [{
+            "description": {"text": "do: it"},
+            "artifactChanges": [{"artifactLocation": uri, "replacements": [{
+                "deletedRegion": {"startLine": 1, "startColumn": 1, "endLine": 1, "endColumn": 2},
+                "insertedContent": {"text": "xy"},
+            }]}],
+        }],
+    }  # fmt: skip
+    assert (results[1]["level"], "ruleIndex" in results[1]) == ("warning", False)
+    assert results[1]["locations"][0]["logicalLocations"][0]["fullyQualifiedName"] == "/r1/a"
+    assert results[2]["locations"] == [{
+        "physicalLocation": {"artifactLocation": other, "region": {"startLine": 1, "startColumn": 1}}
+    }]  # fmt: skip
+    assert "relatedLocations" not in results[2] and "fixes" not in results[2]
+
+
+def test_sarif_of_a_graph_and_of_files_elsewhere(folder: Path) -> None:
+    nowhere = REPORT._replace(files=(), release="")
+    (run,) = json.loads(rendered("sarif", [IN_GRAPH, NOTED._replace(file="")], nowhere))["runs"]
+    node = {"fullyQualifiedName": "/r1/a", "kind": "resource"}
+    assert [it["locations"] for it in run["results"]] == [[{"logicalLocations": [node]}], []]
+    assert "properties" not in run
+    far = json.loads(rendered("sarif", [], nowhere._replace(files=("/far/a b.urdf",))))
+    assert far["runs"][0]["artifacts"] == [{"location": {"uri": "file:///far/a%20b.urdf"}}]
+    # A file that is another one by now is not mended.
+    gone = IN_FILE._replace(edits=(Edit(0, 5, b"x", None),))
+    assert "fixes" not in json.loads(rendered("sarif", [gone], REPORT))["runs"][0]["results"][0]
+    whole = IN_FILE._replace(edits=(Edit(0, 4, b"x", None),), hint="", calls=("m:1: a[b]\\",))
+    (result,) = json.loads(rendered("sarif", [whole], REPORT))["runs"][0]["results"]
+    assert result["fixes"][0]["description"] == {"text": "is 100% bad"}
+    assert result["message"]["text"].endswith("via [a\\[b\\]\\\\](1)")
+
+
+def test_paths_and_files_of_findings(folder: Path) -> None:
+    assert inside(str(folder / "x" / "a")) == "x/a" and inside("a") == "a"
+    assert inside("/elsewhere/a") is None and inside(f"{folder}x") is None
+    assert path_below("/elsewhere/a") == "/elsewhere/a"
+    assert by_file(FOUND, REPORT) == {"a b.urdf": [IN_FILE, IN_GRAPH], "c.urdf": [NOTED]}
+    assert by_file([NOTED._replace(file="z")], REPORT)["z"]
+    assert list(counts([])) == ["error", "warning", "note"]
+
+
+def test_a_lone_surrogate_is_text() -> None:
+    made = rendered("json", [NOTED._replace(message="\udcff")], REPORT)
+    assert json.loads(made)["findings"][0]["message"] == "\\udcff"
+
+
+# ---------------------------------------------------------------- rules by their codes
+
+
+KNOWN = {**rule("MB101", "bad-name"), **rule("MB102", "odd-name"), **rule("MG201", "lost-topic")}
+
+
+@pytest.mark.parametrize(
+    ("word", "found"),
+    [("MB101", ["MB101"]), ("mb1", ["MB101", "MB102"]), ("odd-name", ["MB102"]),
+     ("M", ["MB101", "MB102", "MG201"]),
+     ("MX", [])],
+)  # fmt: skip
+def test_rules_by_code_or_name(word: str, found: list[str]) -> None:
+    assert [it.code for it in codes.find_rules(word, KNOWN)] == found  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("odd-name", "did you mean 'MB102'?"), ("MB1019", "did you mean 'MB101'?"),
+        ("mb199", "did you mean 'MB1'?"), ("MG21", "did you mean 'MG2'?"),
+        ("lost-topc", "did you mean 'lost-topic'?"),
+        ("xyz", "see multibot explain"),
+    ],
+)  # fmt: skip
+def test_a_code_that_no_rule_has(word: str, hint: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        codes.check_codes(["MB", "MB101", word], "--select", KNOWN)  # type: ignore[arg-type]
+    assert str(caught.value) == (
+        f"--select: no rule has the code {word!r}, and none begins with it; {hint}"
+    )
+    with pytest.raises(UsageError):
+        codes.check_codes(["M"], "--select", KNOWN)  # type: ignore[arg-type]
+
+
+def test_a_rule_for_a_terminal() -> None:
+    it = KNOWN["MB101"]._replace(bad="<a>\n</a>", fixed="<b/>")  # type: ignore[attr-defined]
+    assert codes.explained(it) == (
+        "MB101 bad-name (error)\n\nIt is. Really.\n\nWhy: It hurts.\n\nFix: Do it.\n\n"
+        "Bad:\n\n    <a>\n    </a>\n\nFixed by --fix:\n\n    <b/>\n"
+    )
+    assert codes.examples(it._replace(fixed="")) == [("Bad", "<a>\n</a>"), ("Good", "<b/>")]

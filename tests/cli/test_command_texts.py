@@ -1,0 +1,502 @@
+"""What commands print, from records made by hand: the view of a graph, reports, help, exit codes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import Any
+
+import pytest
+from graph_cases import environment, qos
+
+from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
+from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
+from multibot_rewrite.cli import (
+    coverage,
+    inspect,
+    learn,
+    parser,
+    plan,
+    process,
+    rehearse,
+    snapshot,
+    unplanned,
+)
+from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
+from multibot_rewrite.cli.ros2_verb import MultibotCommand
+from multibot_rewrite.cli.tables import Grid, render
+from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
+from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.live.learning.learn import LearnedNode
+from multibot_rewrite.live.watching import Outcome, Verdict
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Controller,
+    Edge,
+    End,
+    Heard,
+    Node,
+    Parameter,
+    System,
+)
+
+
+def options(**given: Any) -> argparse.Namespace:
+    return argparse.Namespace(**given)
+
+
+def end(kind: str, role: str, node: str = "/a") -> End:
+    return End(kind, role, "/x", "t", "", node, None, "")
+
+
+# ---------------------------------------------------------------- multibot snapshot
+
+
+GRAPH = System(
+    (Node("/a", "p9", lifecycle="active"), Node("/b", "p2"), Node("/c", "p9"), Node("/d")),
+    (
+        end(TOPIC, PUBLISHES), end(TOPIC, PUBLISHES), end(TOPIC, SUBSCRIBES), end(SERVICE, SERVES),
+        end(SERVICE, CALLS), end(ACTION, SERVES), end(ACTION, CALLS), end(TOPIC, SUBSCRIBES, "/b"),
+    ),
+    (
+        Edge("x", "y", "/tf", False, ("/b", "/a")), Edge("z", "y", "/tf", False, ("/b", "/a")),
+        Edge("w", "y", "/r/tf", False, ()),
+    ),
+    environment(),
+    heard=(Heard("/scan", "laser", 2.0),),
+    parameters=(Parameter("/b", "use_sim_time", "true"), Parameter("/b", "x", "1")),
+    controllers=(
+        Controller("/a", "arm", "active"), Controller("/a", "base", "inactive"),
+        Controller("/e", "x", "y"),
+    ),
+)  # fmt: skip
+HEAD = (
+    "4 nodes in 4 participants after 3.5 s (no change any more);"
+    " domain 0, range LOCALHOST, rmw_fastrtps_cpp"
+)
+
+
+def test_a_graph_as_tables() -> None:
+    assert render(snapshot.report(GRAPH)) == (
+        f"{HEAD}\n\n"
+        "node  process  publishes  subscribes  serves  calls  actions\n"
+        "/a    2        2          1           1       1      1\n"
+        "/b    1        0          1           0       0      0\n"
+        "/c    2        0          0           0       0      0\n"
+        "/d             0          0           0       0      0\n\n"
+        "tf topic  frames  publishers\n"
+        "/r/tf     1\n"
+        "/tf       2       /b, /a\n\n"
+        "message on  frame_id\n"
+        "/scan       laser\n\n"
+        "node  state   use_sim_time  controllers\n"
+        "/a    active                arm (active), base (inactive)\n"
+        "/b            true\n"
+        "/e                          x (y)\n"
+    )
+
+
+def test_a_graph_with_nothing_is_its_headline() -> None:
+    around = environment()._replace(
+        domain=7, range="", static_peers=("a", "b"), settled="timeout", participants=1, seconds=0.06
+    )
+    assert render(snapshot.report(System(environment=around))) == (
+        "0 nodes in 1 participant after 0.1 s (timeout); domain 7, peers a b, rmw_fastrtps_cpp\n"
+    )
+    router = environment()._replace(rmw="rmw_zenoh_cpp", discovery_server="tcp/a:1", range="")
+    line = next(snapshot.report(System((Node("/a"),), environment=router)))
+    assert line == (
+        "1 node in 4 participants after 3.5 s (no change any more);"
+        " domain 0, router tcp/a:1, rmw_zenoh_cpp"
+    )
+
+
+def test_what_snapshot_does_not_take_together() -> None:
+    usual = {"snapshot": [], "zenoh": None, "expect": [], "topic": [], "output": None}
+    snapshot._check_use(options(**usual))
+    snapshot._check_use(options(**{**usual, "expect": ["/a"], "topic": ["/b"]}))
+    for more in ("expect", "topic"):
+        with pytest.raises(UsageError) as caught:
+            snapshot._check_use(options(**{**usual, "snapshot": ["g"], more: ["/a"]}))
+        assert (
+            str(caught.value) == "--expect and --topic are for the live graph, leave out --snapshot"
+        )
+
+
+# ---------------------------------------------------------------- multibot inspect
+
+
+def test_arguments_of_a_xacro() -> None:
+    uses = (Use("link", "prefix", "_", 3, 4, "r_base"), Use("topic", "whole", "", 1, 1, "r"))
+    found = XacroArguments(
+        "a b.xacro",
+        (
+            Argument("name", "robot", uses, 0, ""),
+            Argument("size", "", (), 0, ""),
+            Argument("bad", "x", (), 0, "it breaks"),
+        ),
+        ("late",),
+    )
+    parts = render(coverage.xacro_parts(found)).splitlines()
+    assert [it.split() for it in parts[:4]] == [
+        ["argument", "default", "goes", "into", "as", "count", "example"],
+        ["name", "robot", "link", "prefix", "_", "3", "of", "4", "r_base"],
+        ["topic", "whole", "1", "of", "1", "r"],
+        [],
+    ]
+    assert parts[4:7] == [
+        "go into no names: size", "take no name of a robot: bad", "too many to try: late",
+    ]  # fmt: skip
+    assert parts[8].startswith("  urdf-postfix 'a b.xacro' robot1 robot2 -o 'out/{robot}.urdf'")
+
+
+def test_a_xacro_without_arguments_is_rewritten() -> None:
+    found = XacroArguments("a.xacro", (), ())
+    assert render(coverage.xacro_parts(found)) == (
+        "no argument gives each robot its own names; the rewrite does it:\n"
+        "  urdf-postfix a.xacro robot1 robot2 -o 'out/{robot}.urdf'\n"
+    )
+
+
+TALLY = Tally(3, 2, "a.urdf:4", "base  link")
+SURVEY = Survey(
+    2,
+    {
+        Loaded("plugin", "liba.so", True): TALLY, Loaded("plugin", "libb.so", False): TALLY,
+        Loaded("plugin", "libc.so", False): TALLY._replace(times=4),
+        Loaded("hardware", "x/Y", True): TALLY._replace(times=1),
+    },
+    {"link": 3, "frame": 5, "joint": 3},
+    {
+        MentionPlace("robot/a", True): TALLY, MentionPlace("robot/b", False): TALLY._replace(times=1),
+        MentionPlace("robot/c", False): TALLY._replace(times=2),
+    },
+)  # fmt: skip
+REPORT = coverage.CoverageReport(SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy")
+
+
+def test_how_much_is_known() -> None:
+    """Percentages are rounded down, and the most frequent comes first."""
+    assert render(coverage._parts(REPORT)) == (
+        "2 files read, 1 cannot be read (ROS 2 jazzy)\n  x.urdf: no XML\n\n"
+        "3 of 10 plugins known (30.0 %), 1 of 3 names\n"
+        "count  files  not known  first seen\n"
+        "    4      2  libc.so    a.urdf:4\n"
+        "    3      2  libb.so    a.urdf:4\n\n"
+        "1 of 1 hardware classes known (100.0 %), 1 of 1 names\n\n"
+        "11 values claimed\n  frame 5, joint 3, link 3\n\n"
+        "3 unclaimed and exactly a link or joint\n"
+        "count  files  path     value      first seen\n"
+        "    3      2  robot/a  base link  a.urdf:4\n\n"
+        "3 unclaimed with a link or joint inside\n"
+        "count  files  path     value      first seen\n"
+        "    2      2  robot/c  base link  a.urdf:4\n"
+        "    1      2  robot/b  base link  a.urdf:4\n"
+    )
+    assert (coverage._percentage(3, 2), coverage._percentage(0, 0)) == (66.6, 100.0)
+    assert coverage._percentage(2000, 1999) == 99.9
+
+
+def test_the_same_as_json() -> None:
+    made = json.loads(json.dumps(coverage.as_json(REPORT)))
+    place = {"count": 3, "files": 2, "place": "a.urdf:4"}
+    assert made == {
+        "distro": "jazzy",
+        "files": {"read": 2, "unreadable": [{"file": "x.urdf", "reason": "x.urdf: no XML"}]},
+        "plugins": {
+            "count": 10, "known": 3, "percent": 30.0, "names": 3, "known_names": 1,
+            "unknown": [{"name": "libc.so", **place, "count": 4}, {"name": "libb.so", **place}],
+        },
+        "hardware": {
+            "count": 1, "known": 1, "percent": 100.0, "names": 1, "known_names": 1, "unknown": [],
+        },
+        "claims": {"frame": 5, "joint": 3, "link": 3},
+        "mentions": {
+            "exact": [{"path": "robot/a", **place, "value": "base  link"}],
+            "inside": [
+                {"path": "robot/c", **place, "count": 2, "value": "base  link"},
+                {"path": "robot/b", **place, "count": 1, "value": "base  link"},
+            ],
+        },
+    }  # fmt: skip
+    assert list(made["claims"]) == ["frame", "joint", "link"]
+
+
+def test_twenty_rows_are_shown() -> None:
+    assert [*coverage._rest(["x"] * 20)] == []
+    assert [*coverage._rest(["x"] * 21)] == ["  and 1 more row; --form json shows all"]
+    assert [*coverage._rest(["x"] * 23)] == ["  and 3 more rows; --form json shows all"]
+
+
+@pytest.mark.parametrize(
+    ("word", "it_is"),
+    [*((f"none{it}", True) for it in (".urdf", ".sdf", ".srdf", ".xacro", ".xml")),
+     ("none", False), (".", True)],
+)  # fmt: skip
+def test_a_word_is_a_file_or_a_name(word: str, it_is: bool) -> None:
+    assert inspect._is_path(word) is it_is
+
+
+# ---------------------------------------------------------------- multibot learn
+
+
+def learned(seen: str, name: str, *remarks: str) -> LearnedNode:
+    return LearnedNode(seen, NodeFacts(name, "", ()), (), (), remarks)
+
+
+def test_what_is_left_out_is_noted() -> None:
+    helper = Node("/transform_listener_impl_55d0", "alone")
+    graph = System((Node("/r/a", "p"), helper, Node("/rviz2")))
+    below = learned("/r/a", "r/a", "is odd")
+    assert [*learn._notes(graph, [below], None, False)] == [
+        "/r/a: is odd",
+        "whose helpers these are is not seen, they are left out: /transform_listener_impl_55d0",
+        "left out as tools: /rviz2; to learn one give its name to --node",
+        "all are below /r; if that is the robot's namespace, add --namespace /r",
+    ]
+    quiet = System((Node("/r/a"),))
+    assert [*learn._notes(quiet, [below], "/r", False)] == ["/r/a: is odd"]
+    both = [learned("/r/a", "r/a"), learned("/b", "b")]
+    assert [*learn._notes(quiet, both, None, False)] == []
+    assert [*learn._notes(quiet, [both[0], learned("/q/a", "q/a")], None, False)] == []
+    assert [*learn._notes(System((Node("/rviz2"),)), both[1:], None, True)] == []
+
+
+# ---------------------------------------------------------------- plan, rehearse, check
+
+
+@pytest.mark.parametrize(
+    ("name", "it_is"),
+    [("a.launch.py", True), ("a.py", True), ("a.launch.xml", True), ("a_launch.yaml", True),
+     ("a.launch", True),
+     ("system_model.yaml", True), ("my_system_model.yaml", True), ("a.urdf", False),
+     ("launch.yaml", False),
+     ("a.launch.x.y", False), ("fleet.yaml", False)],
+)  # fmt: skip
+def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
+    assert bool(plan._LAUNCH.fullmatch(name)) is it_is
+
+
+def test_options_that_a_plan_of_a_launch_file_has_not() -> None:
+    assert plan.NOT_OF_LAUNCH == {
+        "robots": "--robots", "stack": "--stack", "launch": "--launch", "layout": "--layout",
+        "affix": "--affix", "topics": "--topics", "shared_frames": "--shared-frames",
+        "shared_topics": "--shared-topics",
+    }  # fmt: skip
+
+
+def test_the_stage_of_a_rehearsal_is_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    away = ("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS_LOCALHOST_ONLY")
+    for name in away:
+        monkeypatch.setenv(name, "x")
+    monkeypatch.setenv("KEPT", "y")
+    monkeypatch.setattr(rehearse.os, "getpid", lambda: 1234)
+    found = rehearse.stage(None)
+    assert (found["ROS_DOMAIN_ID"], found["ROS_AUTOMATIC_DISCOVERY_RANGE"]) == ("35", "LOCALHOST")
+    assert found["KEPT"] == "y" and not {*away} & found.keys()
+    assert rehearse.stage(7)["ROS_DOMAIN_ID"] == "7" and rehearse.stage(0)["ROS_DOMAIN_ID"] == "0"
+
+
+def test_what_stubs_do_not_send_is_not_kept() -> None:
+    graph = System(
+        ends=(end(TOPIC, PUBLISHES)._replace(qos=qos()),),
+        edges=(Edge("a", "b", "/tf", False, (), transform=(1.0,)),),
+    )
+    made = rehearse._without_places(graph)
+    assert (made.ends[0].qos, made.edges[0].transform) == (None, ())
+
+
+def test_types_that_are_replaced_are_noted(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(quiet=False, program="multibot")
+    rehearse._note_substitutes(given, {})
+    rehearse._note_substitutes(given, {"b/B": "x"})
+    rehearse._note_substitutes(given, dict.fromkeys("gfedcb", "x"))
+    end = "not installed here and replaced by others: {}; this does not change the names\n"
+    assert capsys.readouterr().err == (
+        f"multibot: note: 1 type is {end.format('b/B')}"
+        f"multibot: note: 6 types are {end.format('b, c, d, e, f and 1 more')}"
+    )
+
+
+def test_a_graph_of_tools_alone_has_nothing_to_judge() -> None:
+    said = ["no node of a robot is in this graph, so there is nothing to judge"]
+    for graph, reasons in (
+        (System(), said), (System((Node("/rviz2"),)), said), (System((Node("/rviz2"), Node("/a"))), []),
+    ):  # fmt: skip
+        assert [*unplanned._nothing_seen(graph)] == reasons
+
+
+def test_words_of_a_check_without_a_plan() -> None:
+    words = ["nothing wrong seen", "inconclusive, the view may be incomplete", "something is wrong"]
+    verdicts = (Verdict.PLANNED, Verdict.INCONCLUSIVE, Verdict.WRONG)
+    assert [unplanned._outcome(it, ["a"]) for it in verdicts] == [
+        Outcome(it, text, "multibot check", False, ("a",))
+        for it, text in zip(verdicts, words, strict=True)
+    ]
+
+
+# ---------------------------------------------------------------- help and mistakes
+
+
+COMMAND = Command(
+    "do", "done", "%(prog)s FILE [options]", "Do it.",
+    (Example("multibot do a", "as it is"), Example("multibot do " + "b" * 60, "long"),
+     Example("x" * 79)),
+    (
+        OptionGroup("input, and more", (argument("file", "FILE", "the file"),)),
+        OptionGroup("output", (
+            choice("--form", "FORM", ("a", "b"), "100 % of it"),
+            switch("-q", "--quiet", about="say less"),
+        )),
+    ),
+    "0 done; 2 wrong", "One paragraph.\n\n  as it is", fail_on="error",
+)  # fmt: skip
+
+
+def test_the_short_help() -> None:
+    assert parser.short_help(COMMAND, "multibot do") == (
+        "usage: multibot do FILE [options]\n\nDo it.\n\nexamples:\n"
+        "  multibot do a    # as it is\n"
+        f"  multibot do {'b' * 60}\n\n"
+        "input: FILE\noutput: --form --quiet\n\nmultibot do --help explains them.\n"
+    )
+
+
+def test_the_whole_help(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "90")
+    text = parser.make_parser(COMMAND, "multibot do").format_help()
+    assert text.startswith("usage: multibot do FILE [options]\n\nDo it.\n\nexamples:\n")
+    for part in (
+        "  multibot do a    # as it is\n", f"  # long\n  multibot do {'b' * 60}\n",
+        "One paragraph.\n\n  as it is\n", "input, and more:\n", "  --form FORM", "100 % of it",
+        "exit codes:\n  0 done\n  2 wrong\n", "  --version", "show the version",
+        "show what there is, on one screen", "show all of it",
+    ):  # fmt: skip
+        assert part in text, part
+
+
+def test_headings_and_names_are_painted() -> None:
+    text = "usage: x\noptions:\n  -q, --quiet  less\n  --form F\nNo: x\n"
+    assert parser.painted(text, False) == text
+    assert parser.painted(text, True) == (
+        "\033[1musage:\033[0m x\n\033[1moptions:\033[0m\n\033[36m  -q, --quiet\033[0m  less\n"
+        "\033[36m  --form\033[0m F\nNo: x\n"
+    )
+
+
+def test_a_paragraph_is_wrapped() -> None:
+    assert parser.wrapped("aa bb cc", 6) == "aa bb\ncc"
+    assert parser.wrapped("aa bb cc", 4) == "aa\nbb\ncc"
+    assert parser.wrapped("", 5) == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
+        (["--from=a"], "unknown option --from; did you mean '--form'?"),
+        (["--json"], "unknown option --json; use --format json"),
+        (["--xyzabc"], "unknown option --xyzabc"),
+        (["a", "b"], "unexpected b; a list is written A,B"),
+    ],
+)
+def test_a_mistake_is_one_line(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as caught:
+        parser.parsed(parser.make_parser(COMMAND, "multibot do"), words)
+    assert caught.value.code == 2
+    assert capsys.readouterr().err == f"multibot do: {said}; see multibot do --help\n"
+
+
+def test_what_a_command_is_told() -> None:
+    made = parser.parsed(parser.make_parser(COMMAND, "multibot do"), ["a", "--form", "b", "-q"])
+    assert vars(made) == {
+        "file": "a", "form": "b", "quiet": True, "command": "do", "findings_first": False,
+        "fail_on": "error", "program": "multibot", "h": None,
+    }  # fmt: skip
+    assert parser._colour_asked(["--color", "always", "--color=never"]) == "never"
+    assert (parser._colour_asked([]), parser._colour_asked(["--color", "always"])) == (
+        "auto",
+        "always",
+    )
+    assert parser._unknown_option(["--", "--odd"], ["--form"]) == ""
+
+
+def test_the_command_of_ros2() -> None:
+    """ros2cli asks for add_arguments and main."""
+    made = argparse.ArgumentParser(
+        prog="ros2 multibot", formatter_class=argparse.RawTextHelpFormatter
+    )
+    MultibotCommand().add_arguments(made, "ros2 multibot")
+    given = made.parse_args(["check", "--watch", "a"])
+    assert (given.command, given.words) == ("check", ["--watch", "a"])
+    lines = str(made.epilog).splitlines()
+    assert lines[0] == "commands:" and any(it.startswith("  build       ") for it in lines)
+    assert lines[-2:] == ["", "ros2 multibot COMMAND --help shows the options of each"]
+    assert MultibotCommand.NAME == "multibot"
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [
+        (
+            ProofError("x"), 1,
+            "the proof failed, nothing was written; this is a fault of the tool: x",
+        ),
+        (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
+        (BrokenPipeError(), 1, "standard output was closed before everything was written"),
+        (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),
+    ],
+)  # fmt: skip
+def test_an_error_is_a_line_and_an_exit_code(
+    error: BaseException, code: int, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fails() -> int:
+        raise error
+
+    assert process.guarded("p", fails, False) == code
+    assert capsys.readouterr().err == f"p: {said}\n"
+    assert process.guarded("p", lambda: 3, False) == 3
+
+
+def test_messages_of_a_closed_stream_go_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", None)
+
+    def fails() -> int:
+        raise UsageError("x")
+
+    assert process.guarded("p", fails, False) == 2
+
+
+def test_a_refused_rewrite_is_told_beside_or_first(capsys: pytest.CaptureFixture[str]) -> None:
+    error = RewriteRefused((Finding("MB1", "error", "is bad"),))
+    assert str(error) == "graph: error: MB1 is bad"
+    usual = {
+        "format": "text", "color": "never", "verbose": False, "program": "p", "command": "p",
+        "fail_on": "error", "output": None, "input": "a.urdf",
+    }  # fmt: skip
+    assert process._refused(options(**usual, findings_first=False), error) == 1
+    beside = capsys.readouterr()
+    assert process._refused(options(**usual, findings_first=True), error) == 1
+    first = capsys.readouterr()
+    line = "graph: error: MB1 is bad\n"
+    assert (beside.out, beside.err, first.out) == ("", line, line)
+
+
+def test_a_table_of_numbers_is_set_to_the_right() -> None:
+    grid = Grid(
+        ("count", "files", "rows", "name"), [("1", "2", "3", "a"), ("100", "200", "300", "b")]
+    )
+    assert render([grid]) == (
+        "count  files  rows  name\n    1      2     3  a\n  100    200   300  b\n"
+    )
+    assert render(["a\nb  "]) == "a\\nb\n"

@@ -1,0 +1,472 @@
+"""What options mean: robots, arguments, the source of a graph, files that are read and written."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.cli import check, learn, live, output, pictures, usage, walk, why
+from multibot_rewrite.cli.report import counted_findings
+from multibot_rewrite.live.watching import Verdict
+from multibot_rewrite.system.records import Parameter, System
+
+
+def options(**given: Any) -> argparse.Namespace:
+    return argparse.Namespace(**given)
+
+
+def said(call: Callable[..., object], *given: object) -> str:
+    with pytest.raises(UsageError) as caught:
+        call(*given)
+    return str(caught.value)
+
+
+# ---------------------------------------------------------------- words
+
+
+WORDS = ["robot1", "name:=a:=b", "robot2", "empty:="]
+
+
+def test_words_are_robots_or_arguments_of_a_xacro() -> None:
+    given = options(words=WORDS, robots=["robot3"], separator=[])
+    assert usage.plain_words(given) == ["robot1", "robot2"]
+    assert usage.robots(given) == ["robot1", "robot2", "robot3"]
+    assert usage.xacro_args(given) == {"name": "a:=b", "empty": ""}
+    usage.check_xacro(given, ["a.urdf", "b.xacro"])
+    assert (
+        said(usage.check_xacro, given, ["a.urdf"]) == "NAME:=VALUE is for xacro, a.urdf is no xacro"
+    )
+    usage.check_xacro(options(words=["robot1"]), ["a.urdf"])
+
+
+def test_a_separator_among_the_robots_is_said() -> None:
+    given = options(words=["robot1", "frame=-"], robots=[], separator=["link=_"])
+    assert said(usage.robots, given) == (
+        "'frame=-' is not a robot's name; write --separator link=_,frame=-"
+    )
+    assert usage.robots(options(words=["a=b"], robots=[], separator=[])) == ["a=b"]
+
+
+def test_separators_of_a_kind_count_more_than_one_for_all() -> None:
+    assert usage.separators(options(separator=["frame=/", "link=_"])) == {"frame": "/", "link": "_"}
+    every = usage.separators(options(separator=["-", "link=_"]))
+    assert every["link"] == "_" and every["joint"] == every["frame"] == "-" and "topic" not in every
+    assert said(usage.separators, options(separator=["_", "link"])) == (
+        "--separator link: write KIND=SEP, for example link=_, or SEP alone: _"
+    )
+
+
+def test_a_policy_has_what_is_given() -> None:
+    none = dict.fromkeys(("layout", "affix", "topics", "shared_frames", "shared_topics", "groups"))
+    assert usage.policy(options(**none, separator=[])) == {}
+    given = {**none, "layout": "both", "groups": []}
+    assert usage.policy(options(**given, separator=["link=_"])) == {
+        "layout": "both", "groups": [], "separators": {"link": "_"},
+    }  # fmt: skip
+    more = {"urdf": None, "words": ["a:=b"], "vocabulary": ["v"], "trust": True, "distro": None}
+    assert usage.rewriting(options(**none, separator=[], **more)) == {
+        "urdf": None, "xacro_args": {"a": "b"}, "vocabulary": ["v"], "trust": True, "distro": "",
+    }  # fmt: skip
+    more["distro"] = "jazzy"
+    assert usage.rewriting(options(**none, separator=[], **more))["distro"] == "jazzy"
+
+
+def test_given_options_are_named_as_they_are_written() -> None:
+    names = {"a": "--a", "b": "--b", "c": "-c"}
+    assert usage.given_options(options(a=1, b="", c=["x"]), names) == ["--a", "-c"]
+
+
+@pytest.mark.parametrize("text", ["a.urdf", ":3", "a.urdf:", "a.urdf:x", "3"])
+def test_a_line_to_explain_is_a_file_and_a_number(text: str) -> None:
+    assert said(why._place, text) == f"--why {text}: write FILE:LINE, for example rover.urdf:34"
+
+
+def test_a_file_with_a_colon_may_be_explained() -> None:
+    assert why._place("a:b.urdf:34") == ("a:b.urdf", 34)
+
+
+# ---------------------------------------------------------------- the source of a graph
+
+
+USUAL = {"snapshot": [], "zenoh": None, "watch": False, "state": False, "bag": None}
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        *(
+            ({"bag": "b", it: "x"}, f"--bag is a recording, which has no nodes: leave out --{it}")
+            for it in ("snapshot", "zenoh", "watch", "state", "suggest", "report")
+        ),
+        ({"snapshot": ["g"], "watch": True}, "--watch is for the live graph, leave out --snapshot"),
+        *(
+            (
+                {it: "x", "state": True},
+                "--state asks nodes of the live graph: leave out --snapshot and --zenoh",
+            )
+            for it in ("snapshot", "zenoh")
+        ),
+        (
+            {"snapshot": ["g"], "zenoh": "tcp/a:1"},
+            "saved snapshots and --zenoh are two sources: give one of them",
+        ),
+    ],
+)
+def test_a_graph_has_one_source(given: dict[str, object], message: str) -> None:
+    assert said(live.check_source, options(**{**USUAL, **given})) == message
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{}, {"snapshot": ["g"]}, {"zenoh": "z"}, {"watch": True, "state": True}, {"bag": "b"},
+     {"zenoh": "z", "watch": True}],
+)  # fmt: skip
+def test_one_source_is_enough(given: dict[str, object]) -> None:
+    live.check_source(options(**{**USUAL, **given}))
+    live.check_source(options(snapshot=["g"], zenoh=None))
+
+
+def test_a_live_graph_is_asked_for_with_what_the_options_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from multibot_rewrite.producers.ros import child
+
+    asked: list[tuple[Any, str]] = []
+    monkeypatch.setenv("ROS_DOMAIN_ID", "3")
+    monkeypatch.setattr(
+        child, "observe", lambda it, around: asked.append((it, around["ROS_DOMAIN_ID"]))
+    )
+    monkeypatch.setattr(
+        child, "watch", lambda it, around: asked.append((it, around["ROS_DOMAIN_ID"]))
+    )
+    plain = {**USUAL, "timeout": None, "domain": None}
+    live.graph(options(**plain))
+    live.graph(options(**{**plain, "timeout": 2.0, "domain": 7}, no_frame_ids=False))
+    live.graph(options(**plain, no_frame_ids=True))
+    live.watched(options(**plain), {"a": ["b"]})
+    live.watched(options(**{**plain, "timeout": 4.0, "state": True}), {"a": ["b"]})
+    first, second, third, watched, asking = (it for it, _ in asked)
+    assert [it for _, it in asked] == ["3", "7", "3", "3", "3"]
+    assert (first.timeout, first.headers, first.watch) == (15.0, False, False)
+    assert (second.timeout, second.headers, third.headers) == (2.0, True, False)
+    assert (watched.timeout, watched.watch, watched.asks) == (float("inf"), True, None)
+    assert (asking.timeout, asking.asks) == (4.0, {"a": ["b"]})
+
+
+def test_a_domain_that_rcl_would_not_take_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "x")
+    with pytest.raises(UsageError, match="ROS_DOMAIN_ID"):
+        live.environ()
+    assert live.environ(5)["ROS_DOMAIN_ID"] == "5"
+
+
+def test_exit_codes_of_a_look() -> None:
+    """docs/check.md: 0 as planned, 1 not as planned, 3 inconclusive."""
+    assert live.CODES == {Verdict.PLANNED: 0, Verdict.WRONG: 1, Verdict.INCONCLUSIVE: 3}
+
+
+def test_parameters_of_a_plan_are_asked_by_node() -> None:
+    asked = [("/a", "x"), ("/b", "z"), ("/a", "y")]
+    plan = System(parameters=tuple(Parameter(node, name, "1") for node, name in asked))
+    assert check._parameters(plan) == {"/a": ["x", "y"], "/b": ["z"]}
+
+
+@pytest.mark.parametrize(
+    ("release", "asked", "found"), [("jazzy", "", "jazzy"), ("", "humble", "humble"),
+    ("jazzy", "jazzy", "jazzy"), ("", "", "")],
+)  # fmt: skip
+def test_a_plan_is_of_its_release(release: str, asked: str, found: str) -> None:
+    given = options(distro=asked or None, plan="plan.yaml")
+    assert check._of_release(given, System(release=release)).release == found
+
+
+def test_a_plan_of_another_release_is_refused() -> None:
+    given = options(distro="humble", plan="plan.yaml")
+    assert said(check._of_release, given, System(release="jazzy")) == (
+        "plan.yaml is for ROS 2 jazzy; make one with multibot plan --distro humble,"
+        " or leave out --distro"
+    )
+
+
+def test_notes_about_a_plan_are_counted_where_nobody_asks_for_them(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    gaps = tuple(Finding("MF801", level, "open") for level in (WARNING, NOTE, NOTE))
+    plan = System(gaps=gaps)
+    usual = {"select": [], "ignore": [], "quiet": False, "program": "multibot", "verbose": False}
+    found = check._gaps(options(**usual, fail_on=ERROR), plan)
+    assert [it.level for it in found] == [WARNING]
+    assert capsys.readouterr().err == (
+        "multibot: note: 2 notes about topics that no known node sends; --verbose shows them\n"
+    )
+    assert check._gaps(options(**usual, fail_on=NOTE), plan) == list(gaps)
+    assert check._gaps(options(**{**usual, "verbose": True}, fail_on=ERROR), plan) == list(gaps)
+    assert len(check._gaps(options(**usual, fail_on=ERROR), System(gaps=gaps[:1]))) == 1
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("levels", "text"),
+    [((), "0 findings"), ((NOTE,), "1 note"), ((NOTE, NOTE), "2 notes"), ((NOTE, ERROR), "2 findings"),
+     ((ERROR,), "1 finding")],
+)  # fmt: skip
+def test_only_notes_are_called_notes(levels: tuple[str, ...], text: str) -> None:
+    assert counted_findings([Finding("M", it, "") for it in levels]) == text
+
+
+# ---------------------------------------------------------------- a learned node
+
+
+@pytest.mark.parametrize(
+    ("target", "form", "nodl"),
+    [(None, "nodes", False), ("a.yaml", "nodes", False), (None, "nodl", True), ("out", "nodl", True),
+     ("a.nodl.yaml", None, True), ("a.nodl.json", "nodl", True)],
+)  # fmt: skip
+def test_the_name_or_the_form_says_that_it_is_nodl(
+    target: str | None, form: str | None, nodl: bool
+) -> None:
+    assert learn._is_nodl(options(output=target, form=form)) is nodl
+
+
+def test_what_learn_does_not_take_together() -> None:
+    usual = {**USUAL, "timeout": None, "domain": None, "output": None}
+    learn._check_use(options(**usual))
+    learn._check_use(options(**{**usual, "timeout": 0.0}))
+    for more in ({"timeout": 0.0}, {"domain": 0}):
+        given = options(**{**usual, "snapshot": ["g.json"], **more})
+        assert said(learn._check_use, given) == (
+            "--timeout and --domain are for the live graph, leave out --snapshot"
+        )
+    same = options(**{**usual, "snapshot": ["g.json"], "output": "./g.json"})
+    assert said(learn._check_use, same).startswith("./g.json is a file that is read")
+    learn._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
+    assert said(learn._is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
+        "a.nodl.yaml is the name of a NoDL file; leave out --form nodes"
+    )
+
+
+# ---------------------------------------------------------------- files and streams
+
+
+def test_files_below_folders_are_each_once_and_in_order(tmp_path: Path) -> None:
+    for name in ("b.urdf", "A.URDF", "c.txt", "sub/d.sdf", ".hidden/e.urdf", "sub/x.urdf"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    (tmp_path / "loop").symlink_to(tmp_path)
+    (tmp_path / "dead.urdf").symlink_to(tmp_path / "none")
+    os.mkfifo(tmp_path / "pipe.urdf")
+    suffixes = (".urdf", ".sdf")
+    found = walk.find_files([str(tmp_path / "b.urdf"), str(tmp_path)], suffixes)
+    assert [os.path.relpath(it, tmp_path) for it in found] == [
+        "b.urdf", "A.URDF", "dead.urdf", "sub/d.sdf", "sub/x.urdf",
+    ]  # fmt: skip
+    wanted = walk.find_files([str(tmp_path)], suffixes, wanted=lambda it: it.endswith(".sdf"))
+    assert wanted == [str(tmp_path / "sub" / "d.sdf")]
+    # A file that is named is taken whatever it is called.
+    assert walk.find_files([str(tmp_path / "c.txt")], suffixes) == [str(tmp_path / "c.txt")]
+    gone, empty = str(tmp_path / "gone"), tmp_path / "empty"
+    empty.mkdir()
+    assert said(walk.find_files, [gone], suffixes) == f"{gone}: there is no such file or folder"
+    assert said(walk.find_files, [str(empty)], suffixes) == (
+        f"{empty}: no *.urdf or *.sdf there; name a file or another folder"
+    )
+
+
+def test_a_result_does_not_replace_what_is_read(tmp_path: Path) -> None:
+    one, two = tmp_path / "a", tmp_path / "b"
+    one.write_text("")
+    os.link(one, two)
+    for target in (str(one), f"{tmp_path}/./a", str(two)):
+        assert said(walk.check_target, target, ["x", str(one)]) == (
+            f"{target} is a file that is read; choose another one for --output"
+        )
+    assert said(walk.check_target, "x", ["x"], "--report").endswith(
+        "choose another one for --report"
+    )
+    walk.check_target(str(tmp_path / "c"), [str(one)])
+    walk.check_target(str(tmp_path), [str(tmp_path / "c")])
+
+
+def test_a_link_out_of_its_folder_is_not_written_through(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    link, inside = tmp_path / "sub" / "link", tmp_path / "sub" / "inside"
+    link.symlink_to(tmp_path / "far")
+    inside.symlink_to("near")
+    assert said(walk.check_link, str(link)) == (
+        f"{link} is a link to {tmp_path / 'far'}; name that file, if it is meant"
+    )
+    for fine in (str(inside), str(tmp_path / "plain"), "/dev/stdout"):
+        walk.check_link(fine)
+
+
+def test_the_folder_of_a_result_can_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    walk.check_folder(str(tmp_path / "new" / "sub" / "a"))
+    target = str(tmp_path / "file" / "sub" / "a")
+    assert said(walk.check_folder, target) == (
+        f"{target}: cannot be written: {tmp_path / 'file'} is a file, not a folder"
+    )
+
+
+class Stdin:
+    def __init__(self, data: bytes) -> None:
+        self.buffer = io.BytesIO(data)
+
+
+def test_standard_input_has_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(walk, "MAX_BYTES", 5)
+    monkeypatch.setattr(sys, "stdin", Stdin(b"12345"))
+    assert walk.standard_input() == b"12345"
+    monkeypatch.setattr(sys, "stdin", Stdin(b"123456"))
+    with pytest.raises(
+        InputError, match="<stdin>: cannot be read: it is over the limit of 5 bytes"
+    ):
+        walk.standard_input()
+    monkeypatch.setattr(sys, "stdin", None)
+    with pytest.raises(InputError, match="<stdin>: standard input is closed; name a file instead"):
+        walk.standard_input()
+
+
+class Screen(io.StringIO):
+    def __init__(self, terminal: bool) -> None:
+        super().__init__()
+        self.terminal = terminal
+
+    def isatty(self) -> bool:
+        return self.terminal
+
+
+@pytest.mark.parametrize(
+    ("when", "around", "terminal", "coloured"),
+    [
+        ("always", {"NO_COLOR": "1"}, False, True), ("never", {"FORCE_COLOR": "1"}, True, False),
+        ("auto", {}, True, True), ("auto", {}, False, False), ("auto", {"TERM": "dumb"}, True, False),
+        ("auto", {"FORCE_COLOR": "1"}, False, True), ("auto", {"NO_COLOR": "1"}, True, False),
+        ("auto", {"NO_COLOR": "1", "FORCE_COLOR": "1"}, True, False),
+        ("auto", {"NO_COLOR": ""}, True, True),
+    ],
+)  # fmt: skip
+def test_what_decides_on_colour(
+    when: str,
+    around: dict[str, str],
+    terminal: bool,
+    coloured: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in ("NO_COLOR", "FORCE_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in around.items():
+        monkeypatch.setenv(name, value)
+    assert output.is_coloured(when, Screen(terminal)) is coloured
+    assert output.is_coloured("auto", None) is bool(
+        around.get("FORCE_COLOR") and "NO_COLOR" not in around
+    )
+
+
+def test_a_diff_is_one_that_patch_reads() -> None:
+    made = output.diff(b"a\nb\nc", b"a\nB\nc", "old\nname", "new é")
+    assert (
+        made
+        == (
+            "--- old\\nname\n+++ new é\n@@ -1,3 +1,3 @@\n a\n-b\n+B\n c\n\\ No newline at end of file\n"
+        ).encode()
+    )
+    coloured = output.diff(b"a\n", b"b\n", "x", "y", colour=True)
+    assert coloured == (
+        b"\033[31m--- x\033[0m\n\033[32m+++ y\033[0m\n\033[36m@@ -1 +1 @@\033[0m\n"
+        b"\033[31m-a\033[0m\n\033[32m+b\033[0m\n"
+    )
+
+
+def test_files_that_options_name_to_be_read() -> None:
+    given = options(input="a", plan="b", snapshot=["c", "d"], urdf=None, nodes="", config="e")
+    assert [*output._given(given)] == ["a", "b", "c", "d", "e"]
+    known = (
+        "input",
+        "plan",
+        "fleet",
+        "snapshot",
+        "urdf",
+        "xacro",
+        "vocabulary",
+        "nodes",
+        "suggest",
+    )
+    assert (*known, "config", "baseline") == output.READ
+
+
+def test_a_line_about_the_work_replaces_the_one_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "11")
+    monkeypatch.setenv("TERM", "xterm")
+    screen = Screen(True)
+    monkeypatch.setattr(sys, "stderr", screen)
+    show = output.status()
+    show("one\ntwo and more")
+    show("")
+    assert screen.getvalue() == "\r\033[Kone\\ntwo a\r\033[K"
+    monkeypatch.setenv("TERM", "dumb")
+    output.status()("not shown")
+    monkeypatch.setattr(sys, "stderr", Screen(False))
+    output.status()("not shown")
+    assert sys.stderr.getvalue() == "" and screen.getvalue().count("\r") == 2  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("quiet", "verbose", "lines"),
+    [(False, False, ["p: note"]), (True, False, []), (True, True, []),
+     (False, True, ["p: note", "p: more"])],
+)  # fmt: skip
+def test_what_quiet_and_verbose_show(
+    quiet: bool, verbose: bool, lines: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = options(quiet=quiet, verbose=verbose, program="p")
+    output.note(given, "note")
+    output.detail(given, "more")
+    assert capsys.readouterr().err.splitlines() == lines
+
+
+@pytest.mark.parametrize(("target", "file"), [(None, False), ("-", False), ("a", True)])
+def test_only_a_name_is_a_file(target: str | None, file: bool) -> None:
+    assert output.goes_to_file(options(output=target)) is file
+
+
+# ---------------------------------------------------------------- the page of a check
+
+
+def test_a_page_goes_where_nothing_is_read_or_written(tmp_path: Path) -> None:
+    plan = str(tmp_path / "plan.yaml")
+    pictures.check(options())
+    pictures.check(options(report=None))
+    pictures.check(options(report=str(tmp_path / "r.html"), output="x", plan=plan, snapshot=["g"]))
+    for name in ("plan", "input"):
+        given = options(report=plan, **{name: plan})
+        assert said(pictures.check, given) == (
+            f"{plan} is a file that is read; choose another one for --report"
+        )
+    given = options(report="g", snapshot=["f", "g"])
+    assert said(pictures.check, given).startswith("g is a file that is read")
+    given = options(report="./x", output="x")
+    assert said(pictures.check, given) == (
+        "./x: two results would go to this one file, give each its own"
+    )
+
+
+@pytest.mark.parametrize("suffix", ["urdf", "xacro", "srdf", "sdf", "xml", "world", "yaml", "yml"])
+def test_lines_of_a_source_are_shown_with_their_numbers(suffix: str, tmp_path: Path) -> None:
+    file = tmp_path / f"a:b.{suffix}"
+    file.write_text("".join(f"line {at}  \n" for at in range(1, 8)) + "x" * 170)
+    found = pictures.snippets([f"{file}:4", f"{file}:8", f"{file}:1", f"{file}:x", "", ":3"])
+    assert found == {
+        f"{file}:4": [f"    {at} line {at}" for at in range(2, 7)],
+        f"{file}:8": ["    6 line 6", "    7 line 7", f"    8 {'x' * 160}"],
+        f"{file}:1": [f"    {at} line {at}" for at in (1, 2, 3)],
+    }

@@ -1,0 +1,309 @@
+"""What commands do not take together, and what a watch ends with: no process, no file of a robot."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Generator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import small_fleet
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.model import Edit, UsageError
+from multibot_rewrite.cli import check, lint, live, plan, rewrite_use, unplanned
+from multibot_rewrite.live.watching import Outcome, Verdict
+from multibot_rewrite.system.records import System
+
+
+def options(**given: Any) -> argparse.Namespace:
+    return argparse.Namespace(**given)
+
+
+def said(call: Callable[..., object], *given: object) -> str:
+    with pytest.raises(UsageError) as caught:
+        call(*given)
+    return str(caught.value)
+
+
+# ---------------------------------------------------------------- urdf-postfix
+
+
+REWRITE = {
+    "input": "r.urdf", "words": [], "urdf": None, "xacro": None, "vocabulary": [], "strip": False,
+    "in_place": False, "output": None, "changes": None, "diff": False, "select": [], "ignore": [],
+    "format": "text",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("given", "robots", "message"),
+    [
+        ({"input": ""}, "a", "the name of the input is empty"),
+        ({"input": None}, "a", "no INPUT and no ROBOT given; see urdf-postfix --help"),
+        ({}, "", "no robot name given; for example: urdf-postfix rover.urdf robot1"),
+        ({"words": ["a:=b"]}, "a", "NAME:=VALUE is for xacro, r.urdf is no xacro"),
+        ({"words": ["a:=b"], "input": "-"}, "a", "NAME:=VALUE is for xacro, <stdin> is no xacro"),
+        ({"strip": True}, "ab", "--strip and --in-place take one robot at a time"),
+        ({"in_place": True}, "ab", "--strip and --in-place take one robot at a time"),
+        ({"format": "json"}, "a",
+         "--format json prints the findings; name a file for the result with -o"),
+        ({"output": "x", "in_place": True}, "a", "--output and --in-place exclude each other"),
+        *(
+            ({"diff": True, **it}, "a",
+             "--diff prints to standard output: leave out --output and --in-place")
+            for it in ({"output": "x"}, {"in_place": True})
+        ),
+        ({"xacro": "a.xacro"}, "a",
+         "--xacro goes with --strip; to rewrite a xacro, name it as the INPUT"),
+        ({"strip": True, "changes": "c"}, "a",
+         "--changes lists what a rewrite changes, it cannot go with --strip"),
+        *(
+            ({"in_place": True, "input": it}, "a",
+             "--in-place needs a URDF file, not standard input or xacro")
+            for it in ("-", "r.xacro", "r.urdf.xacro")
+        ),
+        ({"output": "{rob}"}, "a",
+         "--output {rob}: unknown placeholder {rob}, only {robot} is filled in"),
+        ({"changes": "{robot}"}, "a",
+         "--changes {robot}: unknown placeholder {robot}, one file serves all robots"),
+        ({}, "ab", "several robots need one file each: -o 'out/{robot}.urdf'"),
+        ({"input": "r.sdf"}, "ab", "several robots need one file each: -o 'out/{robot}.sdf'"),
+        ({"input": "-"}, "ab", "several robots need one file each: -o 'out/{robot}.urdf'"),
+        ({"output": "x", "changes": "./x"}, "a", "./x: the result and --changes need a file each"),
+    ],
+)  # fmt: skip
+def test_a_rewrite_that_cannot_be_meant(
+    given: dict[str, object], robots: str, message: str
+) -> None:
+    assert said(rewrite_use.check_use, options(**{**REWRITE, **given}), [*robots]) == message
+
+
+@pytest.mark.parametrize(
+    ("given", "robots"),
+    [
+        ({}, "a"), ({"output": "{robot}.urdf"}, "ab"), ({"diff": True}, "ab"),
+        ({"strip": True, "xacro": "a.xacro"}, "a"), ({"words": ["a:=b"], "input": "r.xacro"}, "a"),
+        ({"words": ["a:=b"], "strip": True, "xacro": "a.xacro"}, "a"), ({"in_place": True}, "a"),
+        ({"output": "x", "changes": "y", "format": "json"}, "a"),
+        ({"in_place": True, "format": "json"}, "a"),
+    ],
+)  # fmt: skip
+def test_a_rewrite_that_can(given: dict[str, object], robots: str) -> None:
+    rewrite_use.check_use(options(**{**REWRITE, **given}), [*robots])
+
+
+def test_a_rewrite_does_not_land_on_what_it_reads(tmp_path: Path) -> None:
+    files = {it: str(tmp_path / it) for it in ("r.urdf", "u", "v", "x.xacro")}
+    for path in files.values():
+        Path(path).write_text("")
+    use = {**REWRITE, "input": files["r.urdf"]}
+    told = f"{files['r.urdf']} is the input file; choose another name, or --in-place"
+    for more in ({"output": files["r.urdf"]}, {"changes": files["r.urdf"]}):
+        assert said(rewrite_use.check_use, options(**{**use, **more}), ["a"]) == told
+    for more, option in (
+        ({"urdf": files["u"], "output": files["u"]}, "urdf"),
+        ({"vocabulary": [files["v"]], "changes": files["v"]}, "vocabulary"),
+        ({"xacro": files["x.xacro"], "strip": True, "output": files["x.xacro"]}, "xacro"),
+    ):
+        message = said(rewrite_use.check_use, options(**{**use, **more}), ["a"])
+        assert message.endswith(f"is the file of --{option}; choose another name")
+    read = options(output="out/{robot}", changes="c")
+    told = said(rewrite_use.check_unread, read, ["a", "b"], ["out/b"])
+    assert told.startswith("out/b is a file that")
+    assert said(rewrite_use.check_unread, read, ["a"], ["c"]).endswith("another one for --changes")
+    rewrite_use.check_unread(read, ["a"], ["out/b"])
+    rewrite_use.check_unread(options(output=None, changes=None), ["a"], ["x"])
+
+
+def test_the_input_as_messages_call_it() -> None:
+    named = [rewrite_use.input_name(options(input=it)) for it in ("-", "a.urdf", "a.xacro")]
+    assert named == ["<stdin>", "a.urdf", "a.xacro (expanded)"]
+    assert rewrite_use.target_path("out/{robot}/{robot}.urdf", "a") == "out/a/a.urdf"
+
+
+# ---------------------------------------------------------------- urdf-lint
+
+
+LINT = {
+    "words": ["a.urdf"], "fix": False, "changed_since": None, "diff": False, "output": None,
+    "write_baseline": None, "baseline": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"words": []}, "no PATH given; for example: urdf-lint urdf/"),
+        ({"words": ["a", ""]}, "the name of a file is empty"),
+        *(
+            ({"words": ["-"], **it},
+             "standard input is linted alone, without --fix and --changed-since")
+            for it in ({"words": ["-", "a"]}, {"fix": True}, {"changed_since": "HEAD"})
+        ),
+        ({"diff": True}, "--diff shows what --fix would change: give both"),
+        ({"diff": True, "fix": True, "output": "x"},
+         "--diff prints to standard output: leave out --output"),
+        *(
+            ({"write_baseline": "b", **it},
+             "--write-baseline takes neither --fix, --baseline nor --output")
+            for it in ({"fix": True}, {"baseline": "c"}, {"output": "x"})
+        ),
+    ],
+)  # fmt: skip
+def test_a_lint_that_cannot_be_meant(given: dict[str, object], message: str) -> None:
+    assert said(lint.check_use, options(**{**LINT, **given})) == message
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{}, {"words": ["-"]}, {"fix": True, "diff": True}, {"write_baseline": "b"},
+     {"fix": True, "output": "x", "baseline": "b", "changed_since": "HEAD"}],
+)  # fmt: skip
+def test_a_lint_that_can(given: dict[str, object]) -> None:
+    lint.check_use(options(**{**LINT, **given}))
+
+
+def test_the_last_line_of_a_lint() -> None:
+    edit = (Edit(0, 1, b"", None),)
+    found = [
+        Finding("MB1", ERROR, "", edits=edit), Finding("MB1", ERROR, ""),
+        Finding("MB2", NOTE, "", edits=edit),
+    ]  # fmt: skip
+    told = options(changed_since=None, fix=False)
+    assert lint._summary(told, ["a"], [], 0) == "1 file: no findings"
+    assert lint._summary(told, ["a", "b"], found, 0) == "2 files: 2 errors, 1 note; --fix fixes 2"
+    fixed = options(changed_since="HEAD~1", fix=True)
+    assert lint._summary(fixed, ["a"], found[:1], 3) == (
+        "1 file changed since HEAD~1: 1 error; 3 in the baseline are gone"
+    )
+
+
+# ---------------------------------------------------------------- plan, check --watch
+
+
+PLAN = {
+    **dict.fromkeys(("robots", "stack", "launch", "layout", "affix", "topics")), "form": "plan",
+    "shared_frames": None, "shared_topics": None, "input": "a.launch.py", "words": [], "output": None,
+}  # fmt: skip
+
+
+def test_a_launch_file_says_what_runs() -> None:
+    for given, what in (
+        ({"stack": ["nav2"]}, "--stack"), ({"shared_frames": ["x"]}, "--shared-frames"),
+        ({"form": "table"}, "--form"), ({"robots": ["a"], "layout": "both"}, "--robots"),
+    ):  # fmt: skip
+        assert said(plan._of_launch, options(**{**PLAN, **given})) == (
+            f"a.launch.py: a launch file says what runs, leave out {what}"
+        )
+
+
+def views(*graphs: System) -> Generator[System, None, None]:
+    yield from graphs
+
+
+WATCH = {
+    "plan": "plan.yaml", "program": "multibot", "command": "check", "quiet": False, "verbose": False,
+    "fail_on": ERROR, "select": [], "ignore": [], "output": None, "report": None, "state": False,
+    "suggest": None, "format": "text", "color": "never", "snapshot": [],
+}  # fmt: skip
+
+
+def watched(
+    monkeypatch: pytest.MonkeyPatch, run: Callable[..., int], *graphs: System, **more: object
+) -> int:
+    monkeypatch.setattr(live, "watched", lambda *_: views(*graphs))
+    given = {**WATCH, **more}
+    planned = (given.pop("of"),) if "of" in given else ()
+    return run(options(**given), *planned)
+
+
+@pytest.mark.parametrize(
+    ("gap", "code", "words"),
+    [
+        ((), 0, "2 robots, 0 findings: as planned (ROS 2 lyrical)"),
+        ((WARNING,), 0, "2 robots, 1 finding: as planned, but the plan has faults (ROS 2 lyrical)"),
+        ((ERROR,), 1, "2 robots, 1 finding: as planned, but the plan has faults (ROS 2 lyrical)"),
+    ],
+)
+def test_a_watch_of_a_plan_ends_with_its_worst(
+    gap: tuple[str, ...], code: int, words: str, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    gaps = tuple(Finding("MF801", it, "is open", robot="robot1") for it in gap)
+    of = small_fleet.plan()._replace(gaps=gaps, release="lyrical")
+    assert watched(monkeypatch, check._watch, small_fleet.healthy(), of=of) == code
+    told = capsys.readouterr()
+    assert told.err == f"multibot: {words}\n"
+    assert told.out.startswith("".join(f"robot1: {it}: MF801 is open\n" for it in gap))
+
+
+def test_a_watch_with_a_fault_writes_its_findings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    out = tmp_path / "found.txt"
+    graphs = (small_fleet.healthy(), small_fleet.clash())
+    given = {"output": str(out), "of": small_fleet.plan()}
+    assert watched(monkeypatch, check._watch, *graphs, **given) == 1
+    assert "MG306" in out.read_text()
+    assert "2 robots, 1 finding: not as planned" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("run", [check._watch, unplanned._watch])
+def test_a_watch_that_saw_nothing_is_inconclusive(
+    run: Callable[..., int], monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    given = {"of": small_fleet.plan()} if run is check._watch else {}
+    assert watched(monkeypatch, run, **given) == 3
+    assert capsys.readouterr().err == "multibot: ended before anything was seen\n"
+
+
+def test_a_watch_without_a_plan(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    out = tmp_path / "found.txt"
+    assert watched(monkeypatch, unplanned._watch, small_fleet.healthy()) == 0
+    assert capsys.readouterr().err == "multibot: 0 findings: nothing wrong seen\n"
+    assert watched(monkeypatch, unplanned._watch, small_fleet.clash(), output=str(out)) == 1
+    assert capsys.readouterr().err == "multibot: 1 finding: something is wrong\n"
+    assert "types-differ" in out.read_text() or "MG306" in out.read_text()
+
+
+@pytest.mark.parametrize(
+    ("verdict", "levels", "words"),
+    [
+        (Verdict.PLANNED, (), "as planned"), (Verdict.PLANNED, (NOTE,), "as planned"),
+        (Verdict.PLANNED, (NOTE, WARNING), "as planned, but the plan has faults"),
+        (Verdict.WRONG, (ERROR,), "not as planned, and the plan has faults"),
+        (Verdict.INCONCLUSIVE, (), "inconclusive, the view may be incomplete"),
+    ],
+)  # fmt: skip
+def test_the_outcome_of_a_check(verdict: Verdict, levels: tuple[str, ...], words: str) -> None:
+    gaps = [Finding("MF801", it, "") for it in levels]
+    assert check._outcome(options(program="p", command="c"), verdict, gaps) == Outcome(
+        verdict, words, "p c"
+    )
+
+
+def test_what_a_check_does_not_take_together() -> None:
+    usual = {**WATCH, "watch": True, "zenoh": None, "bag": None}
+    for given in ({"select": ["M"]}, {"ignore": ["M"]}, {"format": "json"}):
+        for run in (check._check_use, unplanned._check_use):
+            assert said(run, options(**{**usual, **given})) == (
+                "--watch shows every finding: leave out --select, --ignore and --format"
+            )
+    suggesting = options(**{**usual, "suggest": "x", "watch": False})
+    assert said(check._check_use, suggesting) == "--suggest begins a plan: leave out PLAN"
+
+
+def test_a_suggestion_replaces_nothing(tmp_path: Path) -> None:
+    usual = options(
+        **{**WATCH, "watch": False, "zenoh": None, "bag": None, "suggest": str(tmp_path)}
+    )
+    unplanned._check_use(usual)
+    for name in ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml"):
+        (tmp_path / name).write_text("")
+        assert said(unplanned._check_use, usual) == (
+            f"{tmp_path / name} is there already; name another folder with --suggest"
+        )
+        (tmp_path / name).unlink()

@@ -1,0 +1,218 @@
+"""What a file beside a description is not, or cannot hold, is said in one line."""
+
+from __future__ import annotations
+
+import pytest
+from lxml import etree
+from made_params import L2, made, section
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.companions.behavior_tree.ports import node_name
+from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.params.controller_sections import takes_sections
+from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.rviz.read_config import every, read_config
+from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml
+
+TO_DO = "put each node's parameters below ros__parameters:"
+ROS1 = "it has no ros__parameters key, so it is for ROS 1 or a node reads it directly; for ROS 2"
+MOVEIT = "it holds MoveIt {}; list it under moveit"
+
+
+def read(text: str, file: str = "p.yaml") -> YamlText:
+    return read_yaml(text.encode(), file)
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("Visualization Manager: 1", "it is an RViz config; list it under rviz"),
+        ("Panels: 1", "it is an RViz config; list it under rviz"),
+        (
+            "image: a.pgm",
+            "it is a map file for map_server, which holds no robot's name; leave it out",
+        ),
+        ("joint_limits: 1", MOVEIT.format("joint limits")),
+        ("controller_names: 1", MOVEIT.format("controllers")),
+        ("moveit_simple_controller_manager: 1", MOVEIT.format("controllers")),
+        ("planner_configs: 1", MOVEIT.format("planners")),
+        ("arm: {kinematics_solver: x}", MOVEIT.format("kinematics")),
+        ("initial_positions: 1", "it holds initial joint positions for xacro; leave it out"),
+        ("robots: []", "it is a fleet file"),
+        ("- {topic_name: a}", "it is a ros_gz_bridge file; list it under bridge"),
+        ("- {ros_topic_name: a}", "it is a ros_gz_bridge file; list it under bridge"),
+        ("- {gz_topic_name: a}", "it is a ros_gz_bridge file; list it under bridge"),
+        ("- a", f"it is a list; {TO_DO}"),
+        ("a", f"it holds a single value; {TO_DO}"),
+        ("", f"it is empty; {TO_DO}"),
+        ("other: 1", f"{ROS1} {TO_DO}"),
+    ],
+)
+def test_a_file_that_is_none_of_parameters(text: str, what: str) -> None:
+    with pytest.raises(InputError) as caught:
+        raw_sections(read(text))
+    assert str(caught.value) == f"p.yaml:1: not a ROS 2 parameter file: {what}"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "ros__parameters: {a: 1}",
+            "ros__parameters has no node name above it; write /**: above it",
+        ),
+        ("a: {ros__parameters: 5}", "ros__parameters must hold names and values"),
+        ("? [a]\n: {ros__parameters: {}}", "a key is a mapping or a list; use a name as key"),
+        (
+            "a: {ros__parameters: &x {}}",
+            "rcl takes no anchors or aliases (&x); write the value out",
+        ),
+    ],
+)
+def test_a_section_that_rcl_rejects(text: str, said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        raw_sections(read(text))
+    assert str(caught.value) == f"p.yaml:1: {said}"
+
+
+def test_keys_above_a_section_are_its_path() -> None:
+    own = "ros__parameters"
+    text = f"/: {{a: {{{own}: {{x: 1}}}}}}\n/b/: {{/c: {{{own}: {{}}}}}}\n/: {{{own}: {{}}}}\n"
+    assert [it.path for it in raw_sections(read(text))] == ["a", "b/c", ""]
+    assert [
+        it.path for it in raw_sections(read("a: {ros__parameters: }\nb: {ros__parameters: {}}"))
+    ] == ["b"]
+
+
+@pytest.mark.parametrize(
+    ("text", "can"),
+    [
+        ("a: 1\n", True), ("---\na: 1\n", True), ("a: 1\n...\n", False), ("a: 1\n---\n", False),
+        ("{a: 1}\n", False), ("  a: 1\n", False), ("- a\n", False), ("", False), ("a\n", False),
+    ],
+)  # fmt: skip
+def test_where_a_section_can_stand_behind_the_last_line(text: str, can: bool) -> None:
+    try:
+        document = read(text)
+    except InputError:
+        assert not can
+        return
+    assert takes_sections(document) is can
+
+
+@pytest.mark.parametrize("word", ["true", "True", "yes", "YES", "on", "On", "y", "Y"])
+def test_a_switch_for_a_prefix_is_off_where_frames_have_it(word: str) -> None:
+    text, _ = made(
+        section("diff_drive_controller", f"tf_frame_prefix_enable: {word}"), L2, "kilted"
+    )
+    assert "tf_frame_prefix_enable: false" in text
+    kept, _ = made(section("diff_drive_controller", "tf_frame_prefix_enable: false"), L2, "kilted")
+    assert "tf_frame_prefix_enable: false" in kept
+
+
+# ---------------------------------------------------------------- RViz
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "what"),
+    [
+        ("Visualization Manager:\n  Displays: [a]\n", 2, "displays"),
+        ("Visualization Manager:\n  Tools: [a]\n", 2, "tools"),
+        ("Panels: [a]\nVisualization Manager: {}\n", 1, "panels"),
+    ],
+)
+def test_lists_in_brackets_cannot_be_copied(text: str, line: int, what: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read_config(read(text, "a.rviz"))
+    assert str(caught.value) == (
+        f"a.rviz:{line}: {what} are in brackets, which cannot be copied; save the file with rviz2"
+    )
+
+
+def test_a_config_of_ros_1_is_refused() -> None:
+    text = "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n"
+    with pytest.raises(InputError) as caught:
+        read_config(read(text, "a.rviz"))
+    assert str(caught.value) == (
+        "a.rviz:3: this is a ROS 1 config (rviz/Grid), which rviz2 cannot load; create it in rviz2"
+    )
+
+
+def test_displays_in_groups_are_found() -> None:
+    text = """\
+Panels:
+  - {Class: rviz_common/Displays, Name: Displays}
+Visualization Manager:
+  Displays:
+    - Class: rviz_common/Group
+      Name: all
+      Displays:
+        - {Class: rviz_default_plugins/LaserScan, Name: scan, Topic: {Value: /scan}}
+        - {Class: acme/Odd, Name: odd}
+  Tools:
+    - {Class: rviz_default_plugins/SetGoal, Topic: {Value: goal}}
+"""
+    config = read_config(read(text, "a.rviz"))
+    assert [it.name for it in every(config.displays)] == ["all", "scan", "odd"]
+    assert [it.known for it in every(config.displays)] == [True, True, False]
+    scan = next(it for it in every(config.displays) if it.name == "scan")
+    assert [(it.kind, it.text) for it in scan.places] == [("topic", "/scan")]
+    (panel,), (tool,) = config.panels, config.tools
+    assert (panel.places, panel.known, tool.known) == ((), True, True)
+    assert [it.text for it in tool.places] == ["goal"]
+
+
+@pytest.mark.parametrize("form", ["Action", "Condition", "Decorator", "Control"])
+def test_a_node_of_a_tree_is_called_by_its_id(form: str) -> None:
+    """BT.CPP: the explicit form has the name in ID, the compact one is the tag."""
+    assert node_name(etree.fromstring(f'<{form} ID="Spin"/>')) == "Spin"
+    assert node_name(etree.fromstring('<Spin ID="x"/>')) == "Spin"
+
+
+# ---------------------------------------------------------------- texts in their places
+
+
+def site(slot: Slot, text: str, at: int = 0, size: int = -1) -> Site:
+    return Site("frame", text, "key", slot, at, size)
+
+
+def test_several_names_of_one_value_are_put_in_their_places() -> None:
+    slot = Slot(1, 4, 3, 8, "a b c")
+    made = [(site(slot, "a", 0, 1), "long"), (site(slot, "c", 4, 1), "x")]
+    assert [*splices_of("k: a b c", "f", made)] == [Splice(3, 8, '"long b x"')]
+    assert [*splices_of("k: a b c", "f", [(site(slot, "a b c"), "a b c")])] == []
+    block = slot._replace(style="|")
+    assert [*splices_of("k: a b c", "f", [(site(block, "a"), "z")])] == []
+
+
+@pytest.mark.parametrize(("style", "new"), [(AS_IS, "<a>'"), (XML, "&lt;a&gt;&apos;")])
+def test_a_value_is_written_as_its_file_has_it(style: str, new: str) -> None:
+    slot = Slot(1, 1, 0, 1, "a", style)
+    (made,) = splices_of("a", "f", [(site(slot, "a"), "<a>'")])
+    assert made.new == new
+
+
+def test_what_cannot_be_edited_is_said() -> None:
+    slot = Slot(7, 1, 0, 1, "a", UNCLEAR)
+    with pytest.raises(InputError) as caught:
+        [*splices_of("a", "f", [(site(slot, "a"), "b")])]
+    assert str(caught.value) == "f:7: 'a' cannot be edited in place; write it on one line"
+
+
+def test_one_text_cannot_be_two_names() -> None:
+    slot = Slot(7, 1, 0, 1, "a")
+    both = [(site(slot, "a"), f"{TAG_SLOT}/a"), (site(slot, "a"), f"/{NAMESPACE_SLOT}/a")]
+    with pytest.raises(InputError) as caught:
+        [*splices_of("a", "f", both)]
+    assert str(caught.value) == (
+        "f:7: an alias uses 'a' as two kinds of name, 'ROBOT/a' and '/ROBOT/a';"
+        " write the value out in both places"
+    )
+
+
+def test_an_anchor_before_a_value_stays() -> None:
+    text = "k: &x 'a'"
+    (made,) = splices_of(text, "f", [(site(Slot(1, 4, 3, 9, "a", "'"), "a"), "b")])
+    assert text[: made.start] + made.new + text[made.end :] == "k: &x 'b'"

@@ -1,0 +1,259 @@
+"""What a name in a file beside a description becomes, by its kind and by the layout."""
+
+from __future__ import annotations
+
+import pytest
+from made_params import DECLARED, L1, L2, L3, L4, setting
+
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.names import by_kind
+from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
+from multibot_rewrite.companions.names.node_topics import TopicText, spell_topic
+from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
+from multibot_rewrite.companions.names.robot_topics import is_topic, robot_topic
+from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
+from multibot_rewrite.companions.template import NAMESPACE_SLOT as SPACE
+from multibot_rewrite.companions.template import TAG_SLOT as TAG
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+L5, AFTER = ("L5", "prefix"), ("L2", "postfix")
+
+
+@pytest.mark.parametrize(
+    ("policy", "kind", "value", "new"),
+    [
+        (L2, "joint", "elbow", f"{TAG}_elbow"),
+        (L1, "joint", "elbow", "elbow"),
+        (AFTER, "joint", "elbow", f"elbow_{TAG}"),
+        (L2, "joint", "other", "other"),
+        (L2, "joint", "drive/elbow", f"drive/{TAG}_elbow"),
+        (L4, "joint", "drive/elbow", f"drive_{SPACE}/elbow_{TAG}"),
+        (L4, "joint", "a/imu_sensor/elbow", f"a_{SPACE}/imu_sensor_{TAG}/elbow_{TAG}"),
+        (L4, "joint", "drive/other", "drive/other"),
+        (L2, "interface", "elbow/position", f"{TAG}_elbow/position"),
+        (L2, "interface", "position", "position"),
+        (L4, "interface", "drive/elbow/position", f"drive_{SPACE}/elbow_{TAG}/position"),
+        (L4, "interface", "drive/linear/velocity", f"drive_{SPACE}/linear/velocity"),
+        (L4, "interface", "drive/a/elbow/position", f"drive_{SPACE}/a_{SPACE}/elbow_{TAG}/position"),
+        (L2, "interface", "imu_sensor/x", f"{TAG}_imu_sensor/x"),
+        # Descriptions do not declare all their gpios.
+        (L2, "interface", "io/out", f"{TAG}_io/out"),
+        (L1, "interface", "io/out", "io/out"),
+        (L4, "controller", "drive", f"drive_{SPACE}"),
+        (L2, "controller", "drive", "drive"),
+        (L4, "controller", "<drive>", "<drive>"),
+        (L4, "controller", "", ""),
+        (L2, "component", "elbow", f"{TAG}_elbow"),
+        (L2, "component", "laser", "laser"),
+        (L2, "namespace", "/front", f"/{SPACE}/front"),
+        (L2, "namespace", "front", "front"),
+        (L4, "namespace", "/front", "/front"),
+        (L2, "node", "amcl", "amcl"),
+        (L2, "node", "/amcl", f"/{SPACE}/amcl"),
+        (L4, "node", "amcl", f"amcl_{SPACE}"),
+        (L4, "node", "/amcl", f"/amcl_{SPACE}"),
+        (L4, "node", "front/amcl", f"front/amcl_{SPACE}"),
+        (L2, "node", "front/amcl", "front/amcl"),
+        (L2, "node", "/front/amcl", "/front/amcl"),
+        (L2, "node", "/<x>", "/<x>"),
+        # Its code places its costmap; the manager's bond knows it by its name.
+        (L4, "node", "controller_server", "controller_server"),
+        (L4, "node", "/controller_server", f"/{SPACE}/controller_server"),
+        (L2, "stem", "cam", f"{TAG}/cam"),
+        (AFTER, "stem", "cam", "cam"),
+        (L2, "words", "joints(elbow, base_link,x)", f"joints({TAG}_elbow, {TAG}/base_link,x)"),
+        (L2, "link_prefix", "", f"{TAG}/"),
+        (L2, "link_prefix", "a_", f"{TAG}/a_"),
+        (L2, "link_prefix", "<a>", "<a>"),
+        (L1, "link_prefix", "a_", "a_"),
+        (AFTER, "link_prefix", "a_", "a_"),
+        (L2, "joint_prefix", "", f"{TAG}_"),
+        (L2, "gpio_prefix", "x_", f"{TAG}_x_"),
+        (L2, "joint_stem", "", TAG),
+        (L2, "joint_stem", "left", f"{TAG}_left"),
+        (AFTER, "joint_stem", "left", "left"),
+        (L5, "doubles", "x", TAG),
+        (L5, "doubles_as_is", "x", f"{TAG}/"),
+        (L2, "doubles", "x", "x"),
+        (L2, "doubles_as_is", "x", "x"),
+        (L2, "frame", "base_link", f"{TAG}/base_link"),
+        (L2, "frame", "map", "map"),
+        (L2, "frame", "<base_link>", "<base_link>"),
+        (L2, "frame", "$(var x)", "$(var x)"),
+        (L5, "frame", "base_link", f"{TAG}/base_link"),
+        (L5, "link", "base_link", "base_link"),
+        (L2, "link", "base_link", f"{TAG}/base_link"),
+        (L2, "sensor", "imu_sensor", f"{TAG}_imu_sensor"),
+        (L2, "gpio", "io", f"{TAG}_io"),
+        (L2, "hardware", "drive", f"{TAG}_drive"),
+        (L2, "group", "", ""),
+    ],
+)  # fmt: skip
+def test_a_name_of_each_kind(policy: tuple[str, str], kind: str, value: str, new: str) -> None:
+    assert SPELLERS[kind](setting(policy), value) == new
+
+
+def test_every_kind_is_tried() -> None:
+    """knowledge/nodes: the words that a parameter's kind may be."""
+    assert set(SPELLERS) == {
+        "joint", "interface", "controller", "node", "namespace", "stem", "link_prefix",
+        "joint_prefix", "gpio_prefix", "joint_stem", "doubles", "doubles_as_is", "component", "words",
+        "frame", "link", "sensor", "gpio", "hardware", "group",
+    }  # fmt: skip
+
+
+def test_a_node_of_all_robots_keeps_its_name() -> None:
+    for policy, told in ((L2, "/map_server"), (L4, "map_server")):
+        shared = setting(policy)._replace(nodes={"map_server": "/map_server"})
+        assert by_kind.node(shared, "map_server") == told
+
+
+@pytest.mark.parametrize(
+    ("policy", "kind", "can"),
+    [
+        (L2, "stem", True), (AFTER, "stem", False), (L2, "link_prefix", True),
+        (AFTER, "link_prefix", False), (L1, "link_prefix", True), (AFTER, "joint_stem", False),
+        (AFTER, "gpio_prefix", False), (AFTER, "joint_prefix", False), (L2, "joint_stem", True),
+        (AFTER, "frame", True), (L1, "stem", True),
+    ],
+)  # fmt: skip
+def test_a_prefix_cannot_be_a_postfix(policy: tuple[str, str], kind: str, can: bool) -> None:
+    assert expressible(setting(policy), kind) is can
+
+
+def test_a_stem_of_joints_has_an_underscore_behind_it() -> None:
+    other = setting(L2)
+    naming = other.names.naming
+    dashed = naming._replace(separators={**naming.separators, "joint": "__"})
+    context = other._replace(names=other.names._replace(naming=dashed))
+    assert not expressible(context, "joint_stem") and expressible(context, "joint_prefix")
+
+
+def test_an_argument_of_the_xacro_is_the_prefix() -> None:
+    own = {("joint", "elbow"): "left_elbow", ("link", "laser"): "laser"}
+    context = setting(L2)
+    context = context._replace(names=context.names._replace(own=own))
+    found = [SPELLERS["joint_prefix"](context, it) for it in ("", "left_", "x_")]
+    assert found == ["left_", "left_", "left_x_"]
+    assert SPELLERS["link_prefix"](context, "") == f"{TAG}/"
+    assert SPELLERS["joint"](context, "elbow") == "left_elbow"
+
+
+def test_what_arguments_make_is_declared_by_either_text() -> None:
+    declared = {"joint": {"left_A1": "here"}, "link": {}}
+    naming = make_naming("L2", "prefix")
+    own = {("joint", "lbr_A1"): "left_A1", ("topic", "/imu"): "left/imu"}
+    names = companion_names(declared, naming, "left", own)  # type: ignore[arg-type]
+    assert names.declared["joint"] == {"left_A1": "here", "lbr_A1": "here", "A1": "here"}
+    assert names.own == {
+        ("joint", "lbr_A1"): "left_A1", ("joint", "A1"): "left_A1",
+        ("topic", "/imu"): "left/imu", ("topic", "imu"): "left/imu",
+    }  # fmt: skip
+    both = with_srdf(
+        {"link": {"a": 1}, "joint": {"j": 1}},
+        {"group": {"arm": 2}, "joint": {"v": 2}, "link": {"x": 2}},
+    )  # type: ignore[dict-item]
+    assert both == {"link": {"a": 1}, "joint": {"j": 1, "v": 2}, "group": {"arm": 2}}
+
+
+# ---------------------------------------------------------------- topics
+
+
+NODE = NodeFacts(
+    "driver", "driver",
+    (Endpoint(TOPIC, SUBSCRIBES, "/scan"), Endpoint(TOPIC, PUBLISHES, "odom")),
+)  # fmt: skip
+APART = NODE._replace(name="costmap/costmap", apart=True)
+
+
+def around(policy: tuple[str, str], *nodes: NodeFacts) -> Context:
+    return make_context(DECLARED, make_naming(*policy), nodes or (NODE,), "jazzy")  # type: ignore[arg-type]
+
+
+def topic(
+    policy: tuple[str, str], value: str, reach: str = FROM_NODE, node: NodeFacts = NODE,
+    kind: str = "topic",
+) -> TopicText:  # fmt: skip
+    return spell_topic(
+        around(policy, NODE, APART), node.name, kind, value, reach, {node.name: node}
+    )
+
+
+@pytest.mark.parametrize(
+    ("policy", "value", "reach", "text"),
+    [
+        (L2, "other", FROM_NODE, "other"),
+        (L2, "/other", FROM_NODE, f"/{SPACE}/other"),
+        (L4, "other", FROM_NODE, f"other/{SPACE}"),
+        (L4, "/other", FROM_NODE, f"/other/{SPACE}"),
+        (L2, "~/own", FROM_NODE, "~/own"),
+        (L2, "<x>", FROM_NODE, "<x>"),
+        (L2, "a//b", FROM_NODE, "a//b"),
+        (L2, "", FROM_NODE, ""),
+        # What all share.
+        (L2, "/diagnostics", FROM_NODE, "/diagnostics"),
+        (L2, "diagnostics", FROM_NODE, "/diagnostics"),
+        (L4, "diagnostics", FROM_NODE, "diagnostics"),
+        (L4, "diagnostics", IN_FULL, "/diagnostics"),
+        # Outside of the robot's namespace only a full name is right.
+        (L2, "other", IN_FULL, f"/{SPACE}/other"),
+        (L4, "other", IN_FULL, f"/other/{SPACE}"),
+        (L4, "other", FROM_PARENT, f"/other/{SPACE}"),
+        (L2, "other", FROM_PARENT, "other"),
+        # What is below another node's name follows that node.
+        (L4, "/driver/reset", FROM_NODE, f"/driver_{SPACE}/reset"),
+        (L4, "driver/reset", FROM_NODE, f"driver_{SPACE}/reset"),
+        (L2, "/driver/reset", FROM_NODE, f"/{SPACE}/driver/reset"),
+    ],
+)
+def test_a_topic_of_a_parameter(policy: tuple[str, str], value: str, reach: str, text: str) -> None:
+    assert topic(policy, value, reach) == TopicText(
+        text, made_absolute=reach == IN_FULL and not value.startswith("/")
+    )
+
+
+def test_what_a_rule_moves_stays() -> None:
+    """In a namespace /scan:=scan is a rule; in the others a name is moved by its own rule."""
+    assert topic(L2, "/scan").text == f"/{SPACE}/scan"
+    assert topic(L4, "scan").text == "scan"
+    assert topic(L4, "odom").text == "odom"
+    # A rule without rostopic:// before it is for services, too.
+    assert topic(L4, "scan", kind="service").text == "scan"
+
+
+def test_a_topic_of_a_node_that_stands_apart_is_a_full_name() -> None:
+    assert topic(L4, "front", node=APART).text == f"/costmap/front/{SPACE}"
+    assert topic(L4, "front", FROM_PARENT, APART).text == f"/front/{SPACE}"
+    assert topic(L2, "front", node=APART).text == "front"
+
+
+def test_a_topic_that_a_rule_turns_into_another_is_told() -> None:
+    moved = NODE._replace(endpoints=(Endpoint(TOPIC, SUBSCRIBES, "scan", remapped="/front/scan"),))
+    found = topic(L2, "scan", node=moved)
+    assert found.text == "scan" and found.wrong_target == ""
+    shared = NODE._replace(shared=True)
+    assert topic(L4, "scan", node=shared).text == f"scan/{SPACE}"
+
+
+@pytest.mark.parametrize(
+    ("value", "is_one"),
+    [("scan", True), ("/a/b", True), ("", False), ("~/a", False), ("$(var a)", False),
+     ("a//b", False), ("1a", False), ("a b", False)],
+)  # fmt: skip
+def test_what_is_the_name_of_a_topic(value: str, is_one: bool) -> None:
+    assert is_topic(value) is is_one
+
+
+@pytest.mark.parametrize(
+    ("policy", "value", "new"),
+    [
+        (L2, "scan", f"/{SPACE}/scan"), (L2, "/scan", f"/{SPACE}/scan"), (L2, "/tf", "/tf"),
+        (L4, "scan", f"/scan/{SPACE}"), (L3, "/diagnostics", "/diagnostics"), (L2, "a b", "a b"),
+        (L2, "known", "/else"), (L2, "/same", "/same"), (L2, "same", "same"),
+    ],
+)  # fmt: skip
+def test_the_topic_of_a_robot_in_full(policy: tuple[str, str], value: str, new: str) -> None:
+    known = {"/known": "/else", "/same": "/same"}
+    assert robot_topic(setting(policy).topics, value, known) == new

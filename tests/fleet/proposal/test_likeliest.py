@@ -1,0 +1,164 @@
+"""Which of several descriptions is the robot: what speaks for one, and who may be meant as well."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.fleet.proposal.choosing import acts, chosen, launches_of
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.searching import Found
+
+LINK, JOINT = '<link name="{}"/>', '<joint name="{}" type="{}"/>'
+Made = Callable[..., Looked]
+
+
+def text(links: str, moving: str = "", name: str = "r", tag: str = "robot") -> str:
+    joints = "".join(JOINT.format(it, "continuous") for it in moving)
+    return f'<{tag} name="{name}">{"".join(map(LINK.format, links))}{joints}</{tag}>'
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Made:
+    """A description in a file: its links and moving joints are letters."""
+
+    def looked(
+        path: str, links: str = "ab", moving: str = "j", name: str = "", **more: object
+    ) -> Looked:
+        file = tmp_path / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text(links, moving, name or path))
+        root = etree.fromstring(file.read_bytes())
+        found = Looked(str(file), name or path, "robot", len(links), root=root)
+        return found._replace(**more)  # type: ignore[arg-type]
+
+    return looked
+
+
+def put(folder: Path, name: str, data: str) -> str:
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(data)
+    return str(path)
+
+
+def order(*robots: Looked, found: Found | None = None) -> str:
+    """The names of the files without their ends, the likeliest first."""
+    every = Found(every=tuple(it.path for it in robots))
+    made = chosen(robots, found or every)
+    return " ".join(Path(it.robot.path).stem for it in made.order)
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["gripper", "hand", "finger", "camera", "sensor", "lidar", "tool", "effector", "mount", "wheel",
+     "dock", "geometry"],
+)  # fmt: skip
+def test_what_is_called_like_a_part_is_behind(word: str, made: Made) -> None:
+    assert order(made(f"my_{word}.urdf"), made("zzzzzzzzzzzzzzzzzzzzz.urdf")).startswith("zzz")
+
+
+def test_a_robot_has_links_and_moves(made: Made) -> None:
+    assert order(made("a.urdf", "a"), made("b.urdf", "ab")) == "b a"
+    assert order(made("a.urdf", moving=""), made("b.urdf")) == "b a"
+    # The number of links counts more than the name, the name more than what moves.
+    assert order(made("hand.urdf", "ab"), made("a.urdf", "a")) == "hand a"
+    assert order(made("hand.urdf"), made("a.urdf", moving="")) == "a hand"
+
+
+def test_of_two_alike_the_simulated_one_with_control_and_a_short_path_is_first(made: Made) -> None:
+    assert order(made("a.urdf"), made("b.urdf", simulator="gz")) == "b a"
+    assert order(made("a.urdf"), made("b.urdf", control=True)) == "b a"
+    assert order(made("aa.urdf"), made("b.urdf")) == "b aa"
+    assert order(made("b.urdf"), made("a.urdf")) == "a b"
+
+
+def test_what_is_launched_is_first(made: Made, tmp_path: Path) -> None:
+    one, two = made("a.urdf"), made("b.urdf")
+    launch = put(tmp_path, "x.launch.py", "load('b.urdf')")
+    found = Found(every=(one.path, two.path), launch=(launch,))
+    assert order(one, two, found=found) == "b a"
+    assert (launches_of(one.path, found), launches_of(two.path, found)) == (0, 1)
+
+
+@pytest.mark.parametrize(
+    ("said", "times"),
+    [
+        ("'b.urdf'", 1),
+        ("bb.urdf", 0),
+        ("b.urdf.xacro", 0),
+        ("-b.urdf", 0),
+        ("x/b.urdf", 1),
+        ("b-urdf", 0),
+    ],
+)
+def test_a_launch_file_loads_what_it_names(said: str, times: int, tmp_path: Path) -> None:
+    launch = put(tmp_path, "x.launch.py", said)
+    path = put(tmp_path, "b.urdf", text("a"))
+    assert launches_of(path, Found(every=(path,), launch=(launch,))) == times
+
+
+def test_of_files_of_one_name_that_of_the_package_is_launched(tmp_path: Path) -> None:
+    package = "<package><name>{}</name></package>"
+    paths = []
+    for name in ("one", "two"):
+        put(tmp_path, f"{name}/package.xml", package.format(name))
+        paths.append(put(tmp_path, f"{name}/r.urdf", text("a")))
+    inside = put(tmp_path, "two/x.launch.py", "r.urdf")
+    named = put(tmp_path, "y.launch.py", "of one: r.urdf")
+    both = Found(every=tuple(paths), launch=(inside,))
+    assert [launches_of(it, both) for it in paths] == [0, 1]
+    both = both._replace(launch=(named,))
+    assert [launches_of(it, both) for it in paths] == [1, 0]
+
+
+def test_a_model_is_called_by_its_folder(tmp_path: Path) -> None:
+    model = put(tmp_path, "rover/model.sdf", "<sdf/>")
+    worlds = (put(tmp_path, "a.world", "model://rover"), put(tmp_path, "b.world", "model://other"))
+    assert launches_of(model, Found(every=(model,), worlds=worlds)) == 1
+    urdf = put(tmp_path, "rover/r.urdf", text("a"))
+    assert launches_of(urdf, Found(every=(urdf,), worlds=worlds)) == 0
+
+
+def rivals(*robots: Looked, found: Found | None = None) -> tuple[list[str], list[str]]:
+    made = chosen(robots, found or Found(every=tuple(it.path for it in robots)))
+    return tuple([Path(it.robot.path).stem for it in them] for them in (made.rivals, made.alike))  # type: ignore[return-value]
+
+
+def test_who_may_be_meant_as_well(made: Made, tmp_path: Path) -> None:
+    first, other = made("a.urdf", "abc", "jk"), made("bb.urdf", "xyz", "lm")
+    assert rivals(first, other) == (["bb"], [])
+    # Another kind, and a part of the first one's joints, are not.
+    assert rivals(first, made("bb.urdf", "xyz", "")) == ([], [])
+    assert rivals(first, made("bb.urdf", "xyz", "j")) == ([], [])
+    launch = put(tmp_path, "x.launch.py", "a.urdf")
+    paths = (first.path, other.path)
+    assert rivals(first, other, found=Found(every=paths, launch=(launch,))) == ([], [])
+
+
+def test_files_of_one_robot_are_alike(made: Made) -> None:
+    first = made("rover.urdf", "abc", "jk")
+    assert rivals(first, made("rover.urdf.xacro", "abc", "jk")) == ([], ["rover.urdf"])
+    assert rivals(first, made("another.urdf", "abc", "jk", name="rover.urdf")) == ([], ["another"])
+    # Some of its links are enough in a file of another name, and in a folder a variant is none.
+    assert rivals(first, made("rover.sdf", "abcd", "jk")) == ([], ["rover"])
+    assert rivals(first, made("sub/rover.urdf", "abcd", "jl"))[1] == []
+    copy = made("copied.urdf", "abc", "jk", name="rover.urdf")
+    Path(copy.path).write_bytes(Path(first.path).read_bytes())
+    assert rivals(first, copy) == ([], ["copied"])
+
+
+def test_a_model_of_a_thing_does_nothing() -> None:
+    def model(inner: str, links: int = 1) -> Looked:
+        return Looked(
+            "m.sdf", "m", "sdf", links, root=etree.fromstring(f"<sdf><model>{inner}</model></sdf>")
+        )
+
+    assert not acts(model("<link name='a'/>"))
+    assert acts(model("<link name='a'><sensor name='s'/></link>"))
+    assert acts(model('<joint name="j" type="revolute"/>')) and acts(model("", 2))
+    assert not acts(model('<joint name="j" type="fixed"/>'))
+    assert acts(Looked("r.urdf", "r", "robot", 1)) and not acts(Looked("m.sdf", "m", "sdf", 1))

@@ -1,0 +1,125 @@
+"""Which files of folders are robots, and which are beside them: by their names and their texts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.fleet.proposal import searching
+from multibot_rewrite.fleet.proposal.searching import Found, search, without
+
+ROBOT = '<robot name="r"/>'
+PARAMS = "a:\n  ros__parameters: {b: 1}\n"
+KINDS = [
+    ("r.urdf", ROBOT, "descriptions"), ("r.urdf", "<other/>", ""),
+    ("r.xacro", ROBOT, "descriptions"), ("r.xacro", "<robot xmlns:a='b'/>", ""),
+    ("r.srdf.xacro", ROBOT, "srdf"), ("r.xacro", '<robot name="r"><group name="g"/></robot>', "srdf"),
+    ("r.sdf", "<sdf><model/></sdf>", "descriptions"), ("r.sdf", "<sdf><world/></sdf>", "worlds"),
+    ("w.world", "<sdf><world/></sdf>", "worlds"), ("r.sdf", "<sdf/>", ""),
+    ("r.sdf", "<sdf><model><static> true </static></model></sdf>", ""),
+    ("r.sdf", "<sdf><model><static>1</static></model></sdf>", ""),
+    ("r.sdf", "<sdf><model><static>false</static></model></sdf>", "descriptions"),
+    ("r.srdf", "", "srdf"), ("v.rviz", "", "rviz"), ("p.yaml", PARAMS, "params"),
+    ("p.yml", PARAMS, "params"),
+    *(
+        (f"b{at}.yaml", text, "bridge")
+        for at, text in enumerate(("- ros_topic_name: a", "-  gz_topic_name : a", "  topic_name: a"))
+    ),
+    *(
+        (f"{it}.yaml", "a: 1", "moveit")
+        for it in (
+            "kinematics", "joint_limits", "ompl_planning", "moveit_controllers", "sensors_3d",
+            "moveit_servo",
+        )
+    ),
+    ("other.yaml", "a: 1", ""), ("t.xml", "<root><BehaviorTree/></root>", "behavior_trees"),
+    ("t.xml", "<root/>", ""), ("a.launch.py", "", "launch"), ("a_launch.yaml", PARAMS, "launch"),
+    ("a.launch.xml", "", "launch"), ("launch.py", "", ""), ("a.txt", ROBOT, ""),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "text", "kind"), KINDS, ids=[f"{a}-{c}" for a, _, c in KINDS])
+def test_a_file_is_for_one_thing(name: str, text: str, kind: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    found = search([str(tmp_path)])
+    path = str(tmp_path / name)
+    kinds = {it for it in Found._fields if path in getattr(found, it) and it != "every"}
+    assert kinds == ({kind} if kind else set())
+    assert found.every == found.descriptions and found.folders == (str(tmp_path),)
+
+
+def put(folder: Path, **files: str) -> None:
+    for name, text in files.items():
+        path = folder / name.replace("__", "/").replace("_dot_", ".")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def test_hidden_and_built_folders_are_left_out(tmp_path: Path) -> None:
+    left = ("build", "install", "log", "node_modules", "test", "tests", "__pycache__", ".git")
+    for folder in (*left, "urdf", "builds"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "r.urdf").write_text(ROBOT)
+    found = search([str(tmp_path)]).descriptions
+    assert found == (str(tmp_path / "builds" / "r.urdf"), str(tmp_path / "urdf" / "r.urdf"))
+
+
+def test_a_description_that_is_named_goes_with_its_package(tmp_path: Path) -> None:
+    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__a_dot_urdf=ROBOT,
+        urdf__b_dot_urdf=ROBOT, config__p_dot_yaml=PARAMS)  # fmt: skip
+    named = str(tmp_path / "urdf" / "a.urdf")
+    found = search([named])
+    assert found.descriptions == (named,)
+    assert [Path(it).name for it in found.every] == ["a.urdf", "b.urdf"]
+    assert [Path(it).name for it in found.params] == ["p.yaml"]
+    other = without(found, found.params)
+    assert other.params == () and other.every == found.every
+    gone = str(tmp_path / "gone")
+    with pytest.raises(UsageError) as caught:
+        search([gone])
+    assert str(caught.value) == (
+        f"{gone}: there is no such file or folder; give a description or a folder"
+    )
+
+
+@pytest.mark.parametrize(
+    ("included", "left"),
+    [
+        ("part.xacro", False), ("./part.xacro", False), ("sub/part.xacro", True), ("other.xacro", True),
+        ("$(find p)/urdf/part.xacro", False), ("$(find-pkg-share p)/urdf/part.xacro", False),
+        ("$(find q)/urdf/part.xacro", True), ("${dir}/part.xacro", False), ("/a/part.xacro", False),
+    ],
+)  # fmt: skip
+def test_what_another_file_includes_is_no_robot(included: str, left: bool, tmp_path: Path) -> None:
+    include = f'<robot name="r" xmlns:xacro="x"><xacro:include filename="{included}"/></robot>'
+    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__part_dot_xacro=ROBOT,
+        urdf__all_dot_xacro=include)  # fmt: skip
+    found = [Path(it).name for it in search([str(tmp_path)]).descriptions]
+    assert found == (["all.xacro", "part.xacro"] if left else ["all.xacro"])
+
+
+def test_a_file_that_includes_itself_is_one(tmp_path: Path) -> None:
+    include = '<robot name="r"><xacro:include filename="a.xacro"/></robot>'
+    put(tmp_path, a_dot_xacro=include)
+    assert len(search([str(tmp_path)]).descriptions) == 1
+
+
+def test_a_folder_with_too_many_files_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put(tmp_path, a_dot_urdf=ROBOT, b_dot_txt="")
+    monkeypatch.setattr(searching, "MOST_FILES", 2)
+    assert len(search([str(tmp_path)]).descriptions) == 1
+    monkeypatch.setattr(searching, "MOST_FILES", 1)
+    with pytest.raises(
+        UsageError, match=r"it has more than 1 files; name the folder of one package"
+    ):
+        search([str(tmp_path)])
+
+
+def test_of_a_file_that_cannot_be_read_nothing_is_known(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"a\xff")
+    assert searching.text_of(str(tmp_path / "a")) == "a\ufffd"
+    assert searching.data_of_file(str(tmp_path / "gone")) == b""

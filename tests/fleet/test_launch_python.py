@@ -1,0 +1,354 @@
+"""``fleet.launch.py`` as text: what each record of what is started becomes."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from multibot_rewrite.fleet.launch.each_robot import Function, Written, functions
+from multibot_rewrite.fleet.launch.launch_python import to_python
+from multibot_rewrite.fleet.launch.starts import (
+    CLASSIC,
+    GZ,
+    Component,
+    File,
+    FleetStarts,
+    RobotStarts,
+    Start,
+    Text,
+    shell_line,
+)
+from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+
+PARAMS = File("r1/p.yaml")
+FULL = RobotStarts(
+    "r1", "rover.urdf at home", ("r1/p.yaml",),
+    (
+        Start(
+            "nav2_amcl", "amcl", "/r1", "amcl",
+            (PARAMS, {"autostart": True, "node_names": ["a", "b"]}), (("/scan", "scan"),),
+            ("--flag", "v", File("x"), "-q"),
+        ),
+        Start(
+            "rclcpp_components", "isolated", "/r1", "box",
+            components=(Component("p", "P", "/r1", "c", (PARAMS,), (("a", "b"),)),),
+        ),
+        Start("slam_toolbox", "sync", brought_up=True),
+    ),
+    (Start("ros_gz_sim", "create", arguments=("-name", "r1", "-x", "1.0")),),
+    (("x", "no program"), ("y", "")),
+    (Start("tf_bridge", "b", parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),),
+    (Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz"))),),
+)  # fmt: skip
+BARE = RobotStarts("r1", "rover.urdf", (), (Start("p", "e"),), (), ())
+SAID = not_bridged("r1")
+FUNCTION = f'''\
+def start_r1():
+    """Start rover.urdf at home."""
+    # Not started: x (no program)
+    params = [file('r1/p.yaml')]
+    return [
+        Node(
+            package='nav2_amcl',
+            executable='amcl',
+            namespace='/r1',
+            name='amcl',
+            arguments=['--flag', 'v', file('x'), '-q'],
+            parameters=[
+                *params,
+                {{'autostart': True, 'node_names': ['a', 'b']}},
+                CLOCK,
+            ],
+            remappings=[
+                ('/scan', 'scan'),
+            ],
+            output='screen',
+        ),
+        ComposableNodeContainer(
+            package='rclcpp_components',
+            executable='isolated',
+            namespace='/r1',
+            name='box',
+            parameters=[CLOCK],
+            output='screen',
+            composable_node_descriptions=[
+                ComposableNode(
+                    package='p',
+                    plugin='P',
+                    namespace='/r1',
+                    name='c',
+                    parameters=[*params, CLOCK],
+                    remappings=[
+                        ('a', 'b'),
+                    ],
+                ),
+            ],
+        ),
+        *brought_up(
+            LifecycleNode(
+                package='slam_toolbox',
+                executable='sync',
+                parameters=[CLOCK],
+                output='screen',
+            ),
+        ),
+        *if_installed(
+            '{BRIDGE}',
+            {f'"{SAID}"' if "'" in SAID else f"'{SAID}'"},
+            [
+                Node(
+                    package='tf_bridge',
+                    executable='b',
+                    parameters=[
+                        {{'text': text('r1/r.urdf'), 'n': 1.5, "it's": "it's"}},
+                        CLOCK,
+                    ],
+                    output='screen',
+                ),
+            ],
+        ),
+        GroupAction(
+            [
+                Node(
+                    package='ros_gz_sim',
+                    executable='create',
+                    arguments=['-name', 'r1', '-x', '1.0'],
+                    parameters=[CLOCK],
+                    output='screen',
+                ),
+            ],
+            condition=IfCondition(LaunchConfiguration('simulator')),
+        ),
+        GroupAction(
+            [
+                Node(
+                    package='rviz2',
+                    executable='rviz2',
+                    arguments=['-d', file('r1/w.rviz')],
+                    parameters=[CLOCK],
+                    output='screen',
+                ),
+            ],
+            condition=IfCondition(LaunchConfiguration('rviz')),
+        ),
+    ]
+
+
+ROBOTS = {{
+    'r1': start_r1,
+}}
+'''
+
+
+def fleet(*robots: RobotStarts, **more: object) -> FleetStarts:
+    made = FleetStarts("One rover.", (), (), robots, (), True, ())
+    return made._replace(**more)  # type: ignore[arg-type]
+
+
+def argument(name: str, default: str, about: str) -> str:
+    space = " " * 12
+    words = (f"'{name}',", f"default_value={default},", f"description='{about}',")
+    inner = "".join(f"{space}    {it}\n" for it in words)
+    return f"{space}DeclareLaunchArgument(\n{inner}{space}),\n"
+
+
+def described(text: str) -> str:
+    return text[text.index("def generate_launch_description") :]
+
+
+def test_all_that_a_robot_may_run() -> None:
+    text = to_python(fleet(FULL))
+    assert text[text.index("def start_r1") : text.index("\n\ndef first(count)")] == FUNCTION
+    assert "def if_installed(" in text and "def brought_up(" in text
+
+
+def test_a_robot_without_more_has_no_more() -> None:
+    text = to_python(fleet(BARE))
+    assert text.startswith(
+        '"""One rover.\n\nPlain launch and launch_ros: read it, edit it, or include it from another'
+        " launch file.\n\n    ros2 launch fleet.launch.py\n"
+        '    ros2 launch fleet.launch.py robots:=r1\n"""\n\n'
+        "from pathlib import Path\n\nfrom launch import LaunchDescription\n"
+        "from launch.actions import (\n"
+        "    DeclareLaunchArgument,\n    OpaqueFunction,\n)\n"
+        "from launch.substitutions import LaunchConfiguration\nfrom launch_ros.actions import Node\n"
+        "from launch_ros.parameter_descriptions import ParameterValue\n\nFOLDER = "
+    )
+    assert "def if_installed(" not in text and "def brought_up(" not in text
+    assert described(text) == (
+        "def generate_launch_description():\n"
+        '    """Start the simulator, then robot by robot, then the windows for all."""\n'
+        "    return LaunchDescription(\n        [\n"
+        + argument("robots", "''", "only these: robot1,robot2, or so many: 2")
+        + argument("use_sim_time", "'true'", "whether all nodes use /clock")
+        + "            OpaqueFunction(function=chosen),\n        ]\n    )\n"
+    )
+
+
+@pytest.mark.parametrize(("simulator", "package"), [(GZ, "ros_gz_sim"), (CLASSIC, "gazebo_ros")])
+def test_a_fleet_in_a_simulator(simulator: str, package: str) -> None:
+    """A bridge of the simulator is of no use without it; other nodes of all robots run anyway."""
+    shared = (Start("ros_gz_bridge", "parameter_bridge"), Start("nav2_map_server", "map_server"))
+    window = Start("rviz2", "rviz2")
+    made = fleet(
+        BARE, simulators=(simulator,), shared=shared, windows=(window,), use_sim_time=False,
+        world=File("w.sdf"),
+    )  # fmt: skip
+    text = described(to_python(made))
+    assert argument("use_sim_time", "'false'", "whether all nodes use /clock") in text
+    assert argument("rviz", "'true'", "whether to open RViz") in text
+    about = "whether to start the simulator and to spawn the robots in it"
+    assert argument("simulator", "'true'", about) in text
+    assert argument("headless", "'false'", "whether the simulator has no window") in text
+    assert argument("world", "file('w.sdf')", "the world of the simulator") in text
+    assert f"[FindPackageShare('{package}'), 'launch'" in text
+    order = [package, "parameter_bridge", "map_server", "function=chosen", "rviz2"]
+    places = [text.index(it) for it in order]
+    assert places == sorted(places)
+    groups = [
+        it.partition("condition=")[2].partition("\n")[0] for it in text.split("GroupAction(")[1:]
+    ]
+    assert groups == [
+        "IfCondition(LaunchConfiguration('simulator')),", "IfCondition(LaunchConfiguration('rviz')),",
+    ]  # fmt: skip
+    # Without a simulator the bridge is one node of all.
+    alone = described(to_python(made._replace(simulators=())))
+    assert "condition=IfCondition(LaunchConfiguration('simulator'))" not in alone
+
+
+def test_what_is_imported_is_what_is_used() -> None:
+    for made in (fleet(BARE), fleet(FULL), fleet(FULL, BARE._replace(name="r2"), simulators=(GZ,))):
+        tree = ast.parse(to_python(made))
+        imported = {
+            it.name
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ImportFrom)
+            for it in node.names
+        }
+        used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+        assert imported <= used
+        defined = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+        capital = {it for it in used if it[:1].isupper() and not it.isupper()}
+        assert capital - imported - defined <= {"RuntimeError"}
+
+
+def test_lines_to_drive_are_in_the_head() -> None:
+    long = "ros2 run a b " + " ".join(f"word{at:02}" for at in range(15))
+    head = to_python(fleet(BARE, driving=("ros2 run a b", long))).split('"""')[1]
+    assert head.endswith(
+        "\nIn other terminals, to drive:\n\n    ros2 run a b\n"
+        "    ros2 run a b word00 word01 word02 word03 word04 word05 word06 word07 word08 word09"
+        " word10 \\\n"
+        "        word11 word12 word13 word14\n"
+    )
+    many = to_python(fleet(BARE, driving=("drive r1",) * 5)).split('"""')[1]
+    assert many.count("drive r1") == 1
+    assert many.endswith("\n\nThe other robots likewise: with their names in the place of r1.\n")
+    assert to_python(fleet(BARE, driving=("drive r1",) * 4)).count("    drive r1\n") == 4
+
+
+def test_long_lists_are_several_lines() -> None:
+    words = tuple(f"--word-{at}" for at in "abcdefgh")
+    names = ["long_name_of_a_node"] * 4
+    start = Start("p", "e", arguments=words, parameters=({"a": 1, "names": names},))
+    text = to_python(fleet(BARE._replace(starts=(start,))))
+    lines = "".join(f"                '{it}',\n" for it in words)
+    assert f"            arguments=[\n{lines}            ],\n" in text
+    inner = "                        'long_name_of_a_node',\n" * 4
+    assert (
+        "            parameters=[\n                {\n                    'a': 1,\n"
+        f"                    'names': [\n{inner}                    ],\n"
+        "                },\n                CLOCK,\n            ],\n"
+    ) in text
+
+
+def test_a_line_for_a_shell() -> None:
+    start = Start(
+        "p", "e", "/r 1", "n", (File("x.yaml"), {"a": "b"}), (("/scan", "scan"),), ("-f", File("y"))
+    )
+    assert shell_line(start) == (
+        "ros2 run p e -f y --ros-args -r '__ns:=/r 1' -r __node:=n -r /scan:=scan -p a:=b"
+    )
+
+
+# ---------------------------------------------------------------- robots that run the same
+
+
+def robot(name: str, *lines: str, about: str = "the rover {}", kind: str = "rover") -> Written:
+    return Written(name, about.format(name), kind, [f"    {it}" for it in lines])
+
+
+def test_what_differs_is_a_parameter() -> None:
+    line = 'return ["{0}", "/{0}/a", "-x", "{1}", "-name", "{2}"]'
+    both = [
+        robot(it, line.format(it, x, model), f'namespace="of_{it}x"')
+        for it, x, model in (("r1", "1.0", "m1"), ("r2", "2.5", "m2"))
+    ]
+    (made,) = functions(both)
+    assert made == Function(
+        (
+            "def start(name, x, model, namespace):",
+            '    """Start the rover <name>."""',
+            '    return [name, f"/{name}/a", "-x", str(x), "-name", model]',
+            "    namespace=namespace",
+        ),
+        (
+            ("r1", 'partial(start, "r1", x=1.0, model="m1", namespace="of_r1x")'),
+            ("r2", 'partial(start, "r2", x=2.5, model="m2", namespace="of_r2x")'),
+        ),
+    )
+
+
+def test_robots_that_run_other_things_have_functions_of_their_own() -> None:
+    found = functions([
+        robot("a", 'x("a")'), robot("b", 'x("b")'), robot("c", 'y("c")', kind="my arm"),
+        robot("d", 'y("d")', kind="my arm"), robot("e", 'z("e")'), robot("f", 'x("f", 1)'),
+        robot("g", 'x("g", 1)'),
+    ])  # fmt: skip
+    assert [it.lines[0] for it in found] == [
+        "def start_rover(name):", "def start_my_arm(name):", "def start_e():",
+        "def start_rover_2(name):",
+    ]  # fmt: skip
+    assert found[2].calls == (("e", "start_e"),)
+    assert found[2].lines == ("def start_e():", '    """Start the rover e."""', '    z("e")')
+    assert [name for it in found for name, _ in it.calls] == ["a", "b", "c", "d", "e", "f", "g"]
+
+
+def test_what_is_no_robots_stays() -> None:
+    both = [robot(it, 'package="p"', f"# of {it}", f'f("{{}}{it}", "x")') for it in ("p", "q")]
+    (made,) = functions(both)
+    assert made.lines[2:4] == ('    package="p"', "    # of <name>")
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ('a=["-y", "{}"]', "y"), ('a=["--yaw", "{}"]', "yaw"), ('a=["-R", "{}"]', "roll"),
+        ('a=["-P", "{}"]', "pitch"), ('a=["-Y", "{}"]', "yaw"), ('a=["--roll", "{}"]', "roll"),
+        ('namespace="{}"', "namespace"), ('name="{}"', "value"), ('"some key": "{}"', "some_key"),
+        ('a=["--Long-Flag", "{}"]', "long_flag"), ('"1": "{}"', "value"), ('f("{}")', "value"),
+    ],
+)  # fmt: skip
+def test_a_parameter_is_called_by_what_is_before_it(line: str, name: str) -> None:
+    (made,) = functions([robot(it, line.format(text)) for it, text in (("a", "v"), ("b", "w"))])
+    assert made.lines[0] == f"def start(name, {name}):"
+    assert made.calls[0][1] == f'partial(start, "a", {name}="v")'
+
+
+def test_two_values_of_one_name_are_numbered_and_equal_ones_are_one() -> None:
+    line = 'f("-x", "{0}", "-x", "{1}", "-x", "{0}")'
+    (made,) = functions([
+        robot("a", line.format("1.0", "2.0")), robot("b", line.format("3.0", "4.0"))
+    ])  # fmt: skip
+    assert made.lines[0] == "def start(name, x, x_2):"
+    assert made.lines[2] == '    f("-x", str(x), "-x", str(x_2), "-x", str(x))'
+    # 1 and 1.0 are other texts than the numbers give.
+    (made,) = functions([robot("a", 'f("-x", "1")'), robot("b", 'f("-x", "2.0")')])
+    assert made.calls[0][1] == 'partial(start, "a", x="1")' and made.lines[2] == '    f("-x", x)'
+
+
+@pytest.mark.parametrize(("count", "alike"), [(12, True), (13, False)])
+def test_robots_that_differ_much_are_not_one_kind(count: int, alike: bool) -> None:
+    both = [robot(it, *(f'k{at}="{it}v{at}"' for at in range(count))) for it in ("a", "b")]
+    assert (len(functions(both)) == 1) is alike
