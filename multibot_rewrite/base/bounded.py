@@ -59,6 +59,11 @@ def read_text(path: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
+def own_text(module: str, name: str) -> str:
+    """The text of a file of this package, beside ``module``, which gives its ``__file__``."""
+    return read_text(os.path.join(os.path.dirname(module), name))
+
+
 def compose_yaml(text: str) -> yaml.Node | None:
     """PyYAML's node of the one document; raises yaml.YAMLError."""
     import yaml
