@@ -404,7 +404,7 @@ def test_an_old_jsonschema_is_one_line(
     assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
     out, err = capsys.readouterr()
     assert err.startswith(
-        "multibot: the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which; install"
+        "multibot: the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which;"
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()

@@ -118,7 +118,7 @@ def _section(
 
 
 def _matching(wild: Sequence[Declared], name: str) -> Iterator[Declared]:
-    return (it for it in wild if it.pattern.fullmatch(name))
+    return (it for it in wild if it.has_name(name))
 
 
 def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
