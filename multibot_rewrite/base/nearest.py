@@ -72,6 +72,7 @@ def nearest_few(name: str, known: Iterable[str], most: int, alike: float = ALIKE
     return list(dict.fromkeys([*first, *near]))[:most]
 
 
+@lru_cache(maxsize=4096)  # each unknown name is compared with the same known ones
 def fold(name: str) -> str:
     """A name without what is often written in another way: case, scope, slash, dashes, spaces."""
     bare = name.rpartition("::")[2].strip().strip("/").casefold()
