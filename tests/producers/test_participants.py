@@ -66,6 +66,12 @@ def test_a_rehearsal_is_in_the_domain_of_the_environment_if_that_is_free(
     assert stage(None)["ROS_DOMAIN_ID"] == "42"
 
 
+def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    assert participants_here(DOMAIN) in (0, None)
+    assert observe._all_are_known(session()) is False
+
+
 def session(*participants: int) -> Any:
     """One that sees a topic of the middleware with an end of each of these participants."""
     ends = [SimpleNamespace(endpoint_gid=[it] * 12 + [0, 0, 1, 3]) for it in participants]

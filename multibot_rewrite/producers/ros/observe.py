@@ -225,10 +225,9 @@ def _all_are_known(session: GraphSession) -> bool:
     asked = environment.settings(os.environ)
     if asked.range != "LOCALHOST" or asked.static_peers or asked.discovery_server:
         return False
+    announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
-    return participants_here(session.ros.context.get_domain_id()) == queries.participants(
-        session.node
-    )
+    return announced > 0 and announced == participants_here(session.ros.context.get_domain_id())
 
 
 class _ChangeTimes:
