@@ -29,6 +29,11 @@ MAX_DEPTH = 100
 MAX_REPEATED = 100_000
 MAX_DIGITS = 100
 _TAG = "tag:yaml.org,2002:"
+_TEXT = f"{_TAG}str"
+# Of YAML 1.1, as PyYAML has them.
+_TRUTH = [it for word in ("yes", "no", "true", "false", "on", "off") for it in
+          (word, word.capitalize(), word.upper())]  # fmt: skip
+_NOTHING = ("", "~", "null", "Null", "NULL")
 # What PyYAML converts without a look at what Python cannot.
 _CONVERTED = ("int", "float", "bool", "timestamp")
 # A block list or mapping is indented more than the one around it, or the one around that.
@@ -57,6 +62,11 @@ def read_text(path: str) -> str:
     UnicodeDecodeError."""
     text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def own_text(module: str, name: str) -> str:
+    """The text of a file of this package, beside ``module``, which gives its ``__file__``."""
+    return read_text(os.path.join(os.path.dirname(module), name))
 
 
 def compose_yaml(text: str) -> yaml.Node | None:
@@ -133,11 +143,19 @@ def _loader() -> type[yaml.SafeLoader]:
 
 @cache
 def _plain_loader() -> type[yaml.SafeLoader]:
-    """A loader that asks of no value whether it is a number or a date."""
-    wanted = (f"{_TAG}bool", f"{_TAG}null")
-    every: Any = _loader().yaml_implicit_resolvers
-    few = {first: [it for it in its if it[0] in wanted] for first, its in every.items()}
-    own: Any = type("PlainLoader", (_loader(),), {"yaml_implicit_resolvers": few})
+    """A loader that asks of no value whether it is a number or a date: a look into a table of words in
+    place of PyYAML's search for patterns."""
+    import yaml
+
+    words = {**dict.fromkeys(_TRUTH, f"{_TAG}bool"), **dict.fromkeys(_NOTHING, f"{_TAG}null")}
+    kinds = {yaml.SequenceNode: f"{_TAG}seq", yaml.MappingNode: f"{_TAG}map"}
+
+    def resolve(_: object, kind: Any, value: str, implicit: tuple[bool, bool]) -> str:
+        if kind is yaml.ScalarNode:
+            return words.get(value, _TEXT) if implicit[0] else _TEXT
+        return kinds[kind]
+
+    own: Any = type("PlainLoader", (_loader(),), {"resolve": resolve})
     return own  # type: ignore[no-any-return]
 
 

@@ -28,6 +28,8 @@ NAMESPACES = {
 UNBOUND = "unbound:"
 # No robot has as many; lxml looks through all of them at each name.
 MAX_PREFIXES = 50
+# What stands for the characters of markup in a text or in a value between double quotes.
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 _BOM = b"\xef\xbb\xbf"
 # Who writes one of these without its declaration meant another program, which refuses it.
 _KEPT = {b"xacro", b"xml", b"xmlns"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from itertools import islice
 
@@ -96,18 +96,21 @@ def _hint(near: str) -> str:
 
 def meant_name(name: str, known: Iterable[str]) -> str:
     """The known name that differs from ``name`` by one typing mistake in one word."""
-    folded = fold(name)
+    words = _words(name)
     for it, _ in zip(known, range(COMPARED), strict=False):
-        other = fold(it)
-        if folded == other or _one_typo(folded.split("_"), other.split("_")):
+        others = _words(it)
+        if len(words) == len(others) and (words == others or _one_typo(words, others)):
             return it
     return ""
 
 
-def _one_typo(words: list[str], others: list[str]) -> bool:
+@lru_cache(maxsize=4096)  # each unknown name is compared with the same known ones
+def _words(name: str) -> tuple[str, ...]:
+    return tuple(fold(name).split("_"))
+
+
+def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
     """Do they differ in one long word without digits, by a letter or two letters swapped?"""
-    if len(words) != len(others):
-        return False
     pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     if len(pairs) != 1:
         return False

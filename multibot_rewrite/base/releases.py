@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping
+from functools import cache
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
@@ -112,6 +113,7 @@ def facts_of_release(release: str, why: str = "") -> str:
     return f" (ROS 2 {release}{why and f': it loads {why}'})" if release else ""
 
 
+@cache  # so many facts, so few words
 def has_release(words: str, release: str) -> bool:
     """Does a fact with these release words hold in ``release``? No words stand for all releases."""
     return not words or any(_holds(it, release) for it in _terms(words))

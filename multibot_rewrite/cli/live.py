@@ -7,6 +7,7 @@ one is asked for.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 from collections.abc import Collection, Generator, Mapping
 from math import inf
@@ -102,6 +103,7 @@ def watched(
 ) -> Generator[System, None, None]:
     """Snapshots of the live graph that the options name, one after each change; with ``--state`` also
     with what its nodes answer, who are asked for ``parameters`` besides."""
+    gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)
     if options.zenoh:

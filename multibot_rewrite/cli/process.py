@@ -72,12 +72,8 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
 
 def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
     """A command that is a program; ``arguments`` are those of the process if they are None."""
-    own_process = arguments is None
-    if own_process:
-        # A short process of its own: nothing it makes needs the collector of cycles.
-        gc.disable()
     words = sys.argv[1:] if arguments is None else arguments
-    return guarded(command.name, partial(start, command, words), own_process)
+    return guarded(command.name, partial(start, command, words), own_process=arguments is None)
 
 
 def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
@@ -86,6 +82,9 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     With ``own_process`` SIGTERM ends it as Ctrl-C does, and this does not return: nothing else runs in
     this process.
     """
+    if own_process:
+        # A short one: nothing it makes needs the collector of cycles.
+        gc.disable()
     code = _guarded(program, run, own_process)
     if own_process:
         leave(code)

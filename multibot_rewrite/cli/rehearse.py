@@ -24,10 +24,12 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
+from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.transforms import Edges, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
+from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import System
 
@@ -97,9 +99,13 @@ def _edges(made: Fleet) -> tuple[Edges, list[str]]:
 
 
 def stage(domain: int | None) -> dict[str, str]:
-    """An environment where nobody else is: this machine only, a domain that is hardly used."""
+    """An environment where nobody else is: this machine only, the domain that the environment names
+    where it is free, else one that is hardly used."""
     environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
-    own = 1 + os.getpid() % _DOMAINS if domain is None else domain
+    asked = settings(os.environ).domain if os.environ.get("ROS_DOMAIN_ID") else None
+    free = asked is not None and participants_here(asked) == 0
+    other = asked if free else 1 + os.getpid() % _DOMAINS
+    own = other if domain is None else domain
     return {**environ, "ROS_DOMAIN_ID": str(own), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from xml.sax.saxutils import escape
 
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
@@ -20,7 +20,7 @@ from multibot_rewrite.companions.yaml_text import Splice, quoted
 Speller = Callable[[Site], str]
 # Names that the remap rules of their node move, too.
 GRAPH = ("topic", "service")
-_XML_QUOTES = {'"': "&quot;", "'": "&apos;"}
+_IN_QUOTES = {**ESCAPES, ord("'"): "&apos;"}
 # An anchor or a tag before the value.
 _MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
 
@@ -93,6 +93,6 @@ def written(text: str, file: str, slot: Slot, new: str) -> Splice:
     if slot.style == AS_IS:
         return Splice(slot.start, slot.end, new)
     if slot.style == XML:
-        return Splice(slot.start, slot.end, escape(new, _XML_QUOTES))
+        return Splice(slot.start, slot.end, new.translate(_IN_QUOTES))
     marks = _MARKS.match(text, slot.start, slot.end)
     return Splice(marks.end() if marks else slot.start, slot.end, quoted(new, slot.style))

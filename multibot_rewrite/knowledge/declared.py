@@ -39,10 +39,14 @@ class Declared(NamedTuple):
     how: str
     source: str
 
-    @property
-    def pattern(self) -> re.Pattern[str]:
-        """What matches its names."""
-        return _pattern(self.path)
+    def has_name(self, name: str) -> bool:
+        """Is it a name of the path, something in place of each word in brackets?"""
+        if "<" not in self.path:
+            return name == self.path
+        head, *between, tail = _pieces(self.path)
+        fits = name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
+        # A pattern takes longer to compile than most paths to refuse.
+        return fits and (not between or _pattern(self.path).fullmatch(name) is not None)
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
@@ -51,8 +55,13 @@ class Declared(NamedTuple):
 
 
 @lru_cache(maxsize=8192)
+def _pieces(path: str) -> list[str]:
+    return _WILD.split(path)
+
+
+@lru_cache(maxsize=8192)
 def _pattern(path: str) -> re.Pattern[str]:
-    return re.compile(".+".join(map(re.escape, _WILD.split(path))))
+    return re.compile(".+".join(map(re.escape, _pieces(path))))
 
 
 @lru_cache(maxsize=512)

@@ -81,11 +81,11 @@ def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:
     return unsuppressed(list(beside_findings(path, data, settings)), {}, settings)
 
 
-def lint_subject(subject: Subject) -> list[Finding]:
-    """What the active rules find in one document."""
+def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> list[Finding]:
+    """What the active rules find in one document, those that are ``wanted``."""
     found: list[tuple[Rule, list[Problem]]] = []
     crashes: list[Finding] = []
-    for rule in active_rules(subject.settings, subject.format):
+    for rule in filter(wanted, active_rules(subject.settings, subject.format)):
         try:
             problems = list(rule.check(subject)) if rule.check else []
         except Exception as error:  # reported as a finding, and the other rules still run

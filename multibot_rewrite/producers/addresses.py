@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from importlib.resources import files
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.producers import evidence
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
@@ -52,10 +52,5 @@ def _known() -> Mapping[str, str]:
 
 @lru_cache
 def _data() -> Mapping[str, list[str]]:
-    text = (
-        files("multibot_rewrite.producers.evidence")
-        .joinpath("devices.yaml")
-        .read_text(encoding="utf-8")
-    )
-    data: Mapping[str, list[str]] = load_yaml(text)
+    data: Mapping[str, list[str]] = load_yaml(own_text(evidence.__file__, "devices.yaml"))
     return data

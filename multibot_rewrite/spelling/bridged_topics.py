@@ -8,7 +8,8 @@ from typing import Any, cast
 
 from lxml import etree
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite import knowledge
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
@@ -51,10 +52,7 @@ class UnbridgedTopic(NamedTuple):
 @lru_cache(maxsize=1)
 def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
-    from importlib.resources import files  # slow to load, and the lint asks only for libraries
-
-    text = files("multibot_rewrite.knowledge").joinpath("bridge.yaml").read_text()
-    data: Mapping[str, Any] = load_yaml(text)
+    data: Mapping[str, Any] = load_yaml(own_text(knowledge.__file__, "bridge.yaml"))
     return data
 
 

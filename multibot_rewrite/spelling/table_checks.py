@@ -9,11 +9,10 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.spelling.records import NodeRule, NodeTable, Pairs
 from multibot_rewrite.spelling.targets import expanded, target_of
 from multibot_rewrite.system.records import SERVICE, TOPIC, place_of
@@ -154,7 +153,7 @@ def _of_managers(release: str) -> frozenset[str]:
     """The names in the code of controller managers and of controllers that get their rules, in any
     release: one description may be for several."""
     handed_on = controller_way(release).of_manager
-    every = [it for known in RELEASES for it in load_nodes(known).values()]
+    every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]
     return frozenset(end.name for node in nodes for end in node.endpoints)
 

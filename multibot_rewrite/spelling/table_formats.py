@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Iterator
-from xml.sax.saxutils import escape
 
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import (
     COMPONENT,
@@ -134,9 +134,11 @@ def gazebo(table: Table) -> str:
     """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
     blocks = [f"<!-- ROS 2 {table.release} -->\n"] * bool(table.release)
     for node in table.nodes:
-        rows = [f"  <namespace>{escape(node.namespace)}</namespace>"] * (node.namespace != "/")
+        rows = [f"  <namespace>{node.namespace.translate(ESCAPES)}</namespace>"] * (
+            node.namespace != "/"
+        )
         rows += [
-            f"  <remapping>{escape(f'{rule.source}:={rule.target}')}</remapping>"
+            f"  <remapping>{f'{rule.source}:={rule.target}'.translate(ESCAPES)}</remapping>"
             for rule in node.rules
         ]
         if rows:

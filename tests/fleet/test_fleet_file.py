@@ -400,11 +400,11 @@ def test_an_old_jsonschema_is_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
-    fleet = fleet_folder(tmp_path, ONE)
+    fleet = fleet_folder(tmp_path, f"{ONE}layuot: both\n")
     assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
     out, err = capsys.readouterr()
     assert err.startswith(
-        "multibot: jsonschema 3.2 or newer is needed to read a fleet file; install"
+        "multibot: the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which;"
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()

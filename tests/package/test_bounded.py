@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import multibot_rewrite
+from multibot_rewrite import knowledge
 from multibot_rewrite.base import bounded
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -30,6 +31,8 @@ from multibot_rewrite.lint.config.baseline import read_baseline
 from multibot_rewrite.spelling.plan_file import from_json as from_json_plan
 from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.system.json import from_json
+
+NODES = Path(knowledge.__file__).parent / "nodes"
 
 PACKAGE = Path(multibot_rewrite.__file__).parent
 Reader = Callable[[str], object]
@@ -276,3 +279,13 @@ def test_the_parsers_are_called_in_one_place() -> None:
     own |= {"system/parameters.py"}
     own |= {"description/sources/child/asking.py", "description/sources/child/serve.py"}
     assert found == {"base/bounded.py", "live/stub_nodes.py", *own}
+
+
+WORDS = (
+    "a: [yes, No, TRUE, oN, ~, null, Null, 1.5, 2024-01-01, 0x1, 'true', \"\", y]\nb:\nc: !!str yes"
+)
+
+
+@pytest.mark.parametrize("text", [WORDS, *(it.read_text() for it in sorted(NODES.glob("*.yaml")))])
+def test_a_text_of_the_package_is_read_as_any_other(text: str) -> None:
+    assert read_yaml_with_lines(text, "a", own=True) == read_yaml_with_lines(text, "a")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -36,12 +35,7 @@ class _Trees(NamedTuple):
 @cache
 def port_data() -> Mapping[str, Any]:
     """The data of ``behavior_tree.yaml``."""
-    text = (
-        files("multibot_rewrite.companions.behavior_tree")
-        .joinpath("behavior_tree.yaml")
-        .read_text()
-    )
-    return dict(load_yaml(text))
+    return dict(load_yaml(own_text(__file__, "behavior_tree.yaml")))
 
 
 def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.sites import Site, site_at, slot_of
@@ -49,12 +48,7 @@ _Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 @cache
 def kinds() -> tuple[FileKind, ...]:
     """All kinds of files, in the order in which they are tried."""
-    text = (
-        files("multibot_rewrite.companions.moveit")
-        .joinpath("moveit.yaml")
-        .read_text(encoding="utf-8")
-    )
-    data = load_yaml(text)
+    data = load_yaml(own_text(__file__, "moveit.yaml"))
     return tuple(
         FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()

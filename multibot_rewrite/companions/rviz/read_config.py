@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from importlib.resources import files
 from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -55,8 +54,7 @@ class RvizConfig(NamedTuple):
 @lru_cache(maxsize=1)
 def rviz_data() -> Mapping[str, Any]:
     """The data of ``rviz.yaml``."""
-    text = files("multibot_rewrite.companions.rviz").joinpath("rviz.yaml").read_text()
-    data: Mapping[str, Any] = load_yaml(text)
+    data: Mapping[str, Any] = load_yaml(own_text(__file__, "rviz.yaml"))
     return data
 
 

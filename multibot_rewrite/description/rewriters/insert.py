@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from lxml import etree
 
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
@@ -29,8 +30,6 @@ from multibot_rewrite.description.rewriters.vocabulary import (
 )
 from multibot_rewrite.description.rewriters.vocabulary.wired import WiredTopic
 from multibot_rewrite.knowledge.controller_ways import controller_way
-
-ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 
 
 class Insertion(NamedTuple):

@@ -18,9 +18,10 @@ from itertools import groupby
 
 from lxml import etree
 
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.rewriters.insert import ESCAPES, Insertion, query, without
+from multibot_rewrite.description.rewriters.insert import Insertion, query, without
 from multibot_rewrite.description.rewriters.own_defaults import MODEL
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.text import text_of

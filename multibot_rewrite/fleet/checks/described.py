@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings
 
@@ -44,12 +45,18 @@ def _linted(it: Member, settings: Settings, weighed: Collection[str]) -> Iterato
     from multibot_rewrite.lint.files.subjects import make_subject
 
     subject = make_subject(it.source, settings)
-    found = [one for one in lint_subject(subject) if one.level == ERROR or one.code in weighed]
+    every = lint_subject(subject, _may_stop)
+    found = [one for one in every if one.level == ERROR or one.code in weighed]
     told = {(one.code, one.message) for one in it.shared}
     for one in unsuppressed(found, {it.source.file: it.source.source}, settings):
         is_asked = one.code in weighed or one.code not in _STOPPING
         if is_asked and (one.code, one.message) not in told:
             yield one
+
+
+def _may_stop(rule: Rule) -> bool:
+    """Can a finding of the rule be an error?"""
+    return rule.level == ERROR or rule.code in _STOPPING
 
 
 def _is_for_gazebo(member: Member) -> bool:

@@ -14,6 +14,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
+from multibot_rewrite.fleet.file.valid import is_valid
 
 Path = tuple[Any, ...]
 # JSON Schema's types in plain words.
@@ -82,13 +83,15 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
         # Ubuntu 22.04 has 3.2; the schema says nothing that its draft reads differently.
         newest = getattr(jsonschema, "Draft202012Validator", None) or jsonschema.Draft7Validator
     except (ImportError, AttributeError) as error:
-        what = "jsonschema 3.2 or newer is needed to read a fleet file"
+        what = "the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which"
         hint = "install it: pip install 'jsonschema>=3.2'"
         raise UsageError(f"{what}; {hint} ({error})") from None
     return [best_match([it]) for it in newest(schema).iter_errors(data)]
 
 
 def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
+    if is_valid(data, schema, schema["$defs"]):
+        return
     found = [it for error in _errors(data, schema) for it in _faults(error, lines)]
     if not found:
         return

@@ -7,11 +7,12 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import yaml
 
+from multibot_rewrite import fleet
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
@@ -160,8 +161,7 @@ def _wanted() -> dict[str, Any]:
 @cache
 def schema() -> dict[str, Any]:
     """The published JSON Schema of fleet files, with the layouts and releases that there are."""
-    text = files("multibot_rewrite.fleet").joinpath(SCHEMA).read_text()
-    result: dict[str, Any] = json.loads(text)
+    result: dict[str, Any] = json.loads(own_text(fleet.__file__, SCHEMA))
     names = [*(it.name for it in LAYOUTS), *(it.short for it in LAYOUTS)]
     result["properties"]["layout"]["enum"] = names
     result["properties"]["distro"]["enum"] = list(RELEASES)

@@ -7,10 +7,10 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite import fleet
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
@@ -52,7 +52,7 @@ class Shape(NamedTuple):
 @cache
 def shapes() -> Mapping[str, Shape]:
     """All shapes by name."""
-    text = files("multibot_rewrite.fleet").joinpath("shapes.yaml").read_text()
+    text = own_text(fleet.__file__, "shapes.yaml")
     return {name: _shape(it) for name, it in load_yaml(text).items()}
 
 

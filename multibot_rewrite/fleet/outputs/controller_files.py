@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.rewriters.insert import ESCAPES
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import package_folder, package_of
 from multibot_rewrite.description.steps.apply import cut

@@ -16,10 +16,10 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.description.rewriters.insert import ESCAPES
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import HIGHEST, package_folder
 from multibot_rewrite.description.sources.read import read_file

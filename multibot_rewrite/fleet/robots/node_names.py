@@ -113,12 +113,13 @@ def names_of(table: Table, robot: str) -> NodeNames:
         nodes.setdefault(it.node, it)
     names = tuple(it for it in table.names if it.robot == robot)
     found = started(table._replace(nodes=tuple(own), names=names))
-    managed = {it.node: tuple(_managed(it.full_name, names)) for it in own}
+    calls = [it for it in names if it.endpoint.role == CALLS]
+    managed = {it.node: tuple(_managed(it.full_name, calls)) for it in own}
     return NodeNames(robot, nodes, {it.node.node: it for it in found}, managed)
 
 
-def _managed(manager: str, names: Iterable[EndpointName]) -> Iterator[str]:
-    for it in names:
+def _managed(manager: str, calls: Iterable[EndpointName]) -> Iterator[str]:
+    for it in calls:
         name, _, service = it.endpoint.name.rpartition("/")
-        if (it.node, it.endpoint.role, service) == (manager, CALLS, CHANGE_STATE):
+        if (it.node, service) == (manager, CHANGE_STATE):
             yield name

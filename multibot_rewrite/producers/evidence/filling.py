@@ -32,8 +32,13 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     """
     values = given.values
     whole = known or node
-    made = [it for raw in whole.endpoints for it in _endpoint(node, raw, values)]
-    made += [it for it in node.endpoints if _of_stack_alone(it, whole)]
+    of_stack: dict[tuple[str, str], list[Endpoint]]
+    of_stack = {(it.role, it.name): [] for it in whole.endpoints}
+    alone: list[Endpoint] = []  # those of a part that the stack adds
+    for it in node.endpoints:
+        of_stack.get((it.role, it.named_from or it.name), alone).append(it)
+    each = ((it, of_stack[it.role, it.name]) for it in whole.endpoints)
+    made = [it for raw, own in each for it in _endpoint(node, raw, own, values)] + alone
     with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
     return with_frames._replace(
         name=given.name,
@@ -41,12 +46,6 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
         sends=tuple(_sent(with_frames, values)),
         origin=str(given.place),
     )
-
-
-def _of_stack_alone(endpoint: Endpoint, known: NodeFacts) -> bool:
-    """Does a part that the stack adds have it?"""
-    key = endpoint.role, endpoint.named_from or endpoint.name
-    return all((it.role, it.name) != key for it in known.endpoints)
 
 
 def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
@@ -70,8 +69,11 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
     return frame._replace(default=str(given.value), given=True)
 
 
-def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
-    """The endpoint once for each binding of its ids, with the names that are set."""
+def _endpoint(
+    node: NodeFacts, raw: Endpoint, own: Iterable[Endpoint], values: Mapping[str, Given]
+) -> Iterator[Endpoint]:
+    """The endpoint once for each binding of its ids, with the names that are set; ``own`` is what the
+    stack makes of it."""
     ids = dict(node.ids)
     wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
     asked = _wanted(ids, raw.when)
@@ -81,7 +83,7 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
     is_there = verdict(raw.when, lookup(node, values)) if raw.when and not wanted else None
     if is_there is False:
         return
-    of_stack = [_sure(it, is_there) for it in node.endpoints if _is_from(it, raw)]
+    of_stack = [_sure(it, is_there) for it in own]
     remapped = next((it.remapped for it in of_stack), "")
     if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
         yield from (_typed(it, lookup(node, values)) for it in of_stack)
@@ -117,10 +119,6 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
     """The endpoint with the one type that its parameters choose."""
     chosen = chosen_type(endpoint.types, value_of)
     return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
-
-
-def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
-    return endpoint.role == raw.role and (endpoint.named_from or endpoint.name) == raw.name
 
 
 def _is_decided(

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
-from importlib.resources import files
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.fact_words import SOURCE_KEY
 from multibot_rewrite.knowledge.node_entries import read_claims
@@ -103,7 +103,7 @@ def _plugin(hardware: _Element) -> _Plugin | None:
 
 @lru_cache
 def _plugins() -> Mapping[str, _Plugin]:
-    text = files("multibot_rewrite.producers.evidence").joinpath(_TABLE).read_text(encoding="utf-8")
+    text = own_text(__file__, _TABLE)
     top = table(read_yaml_with_lines(text, _TABLE), _TABLE)
     found = {name: table(item, name, ("claims", "nodes", SOURCE_KEY)) for name, item in top.items()}
     return {

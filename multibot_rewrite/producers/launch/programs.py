@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from functools import cache
-from importlib.resources import files
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.record import NamedTuple
 
 
@@ -25,7 +24,6 @@ class Programs(NamedTuple):
 @cache
 def programs() -> Programs:
     """Those of ``programs.yaml``."""
-    text = files(__package__).joinpath("programs.yaml").read_text("utf-8")
-    data = load_yaml(text)
+    data = load_yaml(own_text(__file__, "programs.yaml"))
     sets = {it: frozenset(data[it]) for it in ("passing", "spawners", "simulators")}
     return Programs(**{**data, **sets})

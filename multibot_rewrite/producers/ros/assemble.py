@@ -24,6 +24,9 @@ from multibot_rewrite.system.records import (
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
+# Where all participants that there can be are known. Their nodes and endpoints follow at once, or one
+# after another where a program starts.
+ALL_KNOWN_SECONDS = 1.5
 # More than this of one delay is a pause: of the process, or of the machine.
 DELAY_SECONDS = 0.5
 # So much of its time a look may wait for a processor.
@@ -92,14 +95,16 @@ def cut_short() -> Iterator[Caveat]:
     yield Caveat("cut-short", True, text)
 
 
-def why_settled(now: float, changed: LastChange, complete: bool, timeout: float) -> str:
+def why_settled(
+    now: float, changed: LastChange, complete: bool, timeout: float, quiet: float = QUIET_SECONDS
+) -> str:
     """Why the observation can end, or an empty string; times are seconds since its start.
 
-    ``complete``: all that is expected is there.
+    ``complete``: all that is expected is there; ``quiet``: so long without a change suffices.
     """
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
-    if now - changed.all >= QUIET_SECONDS:
+    if now - changed.all >= quiet:
         return QUIET
     return TIMEOUT if now >= timeout else ""
 

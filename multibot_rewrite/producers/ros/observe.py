@@ -19,6 +19,7 @@ from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
 from multibot_rewrite.producers.ros.headers import HeaderSamples
+from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
@@ -50,6 +51,8 @@ TF_SECONDS = (1.5, 3.0)
 HEADER_SECONDS = 1.5
 # After so long without a change there will probably be none; tf is received until that is known.
 IDLE_SECONDS = assemble.QUIET_SECONDS - TF_SECONDS[0]
+# The same where all participants are known.
+SHORT_IDLE_SECONDS = 0.3
 # What a look may take beyond its timeout, for the last queries.
 GRACE_SECONDS = 1.0
 # When watching, a snapshot comes so long after the last change, because changes come in groups,
@@ -199,19 +202,32 @@ def _wait_until_settled(
         # While it changes the moment of the last change is wanted.
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
+        known = _all_are_known(session)
+        quiet = assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
         # Not later than the moment at which it is quiet.
-        pause = min(pause, max(POLL_SECONDS, changed.all + assemble.QUIET_SECONDS - now))
+        pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
         timeout = request.timeout - (session.now() - now)
-        why = assemble.why_settled(now, changed, request.is_met(view[1]), timeout)
+        why = assemble.why_settled(now, changed, request.is_met(view[1]), timeout, quiet)
         if why:
             return why, clock
-        idle = now - changed.all >= IDLE_SECONDS or now >= timeout - TF_SECONDS[1]
+        still = SHORT_IDLE_SECONDS if known else IDLE_SECONDS
+        idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != view:
             queried = view
             ears.update(_view(session, cache)[1])
         spent = time.thread_time() - began
     return "", clock
+
+
+def _all_are_known(session: GraphSession) -> bool:
+    """Has every participant announced itself that there can be? Nobody knows but of this machine."""
+    asked = environment.settings(os.environ)
+    if asked.range != "LOCALHOST" or asked.static_peers or asked.discovery_server:
+        return False
+    announced = queries.participants(session.node)
+    # One that was killed meanwhile is still announced, and would hide one that is not yet.
+    return announced > 0 and announced == participants_here(session.ros.context.get_domain_id())
 
 
 class _ChangeTimes:

@@ -29,12 +29,21 @@ from multibot_rewrite.system.records import (
 NodeQuery = tuple[str, str, Callable[..., Any]]
 # No limit in rmw: the largest 64 bit number of nanoseconds.
 _NO_LIMIT = 2**63 - 1
+# Source: rmw_dds_common; a GID of DDS begins with its participant.
+_OF_PARTICIPANTS, _GUID_PREFIX = "ros_discovery_info", 12
 
 
 def node_names(node: Any) -> list[str]:
     """Full names of all nodes but ``node`` itself; two nodes with one name are there twice."""
     found = (_full_name(name, space) for name, space in node.get_node_names_and_namespaces())
     return sorted(name for name in found if name != node.get_fully_qualified_name())
+
+
+def participants(node: Any) -> int:
+    """How many participants have announced themselves, this process's own among them: each writes on a
+    topic of the middleware which nodes it has."""
+    found = node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True)
+    return len({bytes(it.endpoint_gid)[:_GUID_PREFIX] for it in found})
 
 
 def enclaves(node: Any) -> dict[str, str]:

@@ -110,15 +110,20 @@ def _section(
     at: str = "",
 ) -> Section:
     exact: dict[str, list[Declared]] = {}
-    wild: list[Declared] = []
+    wild: list[tuple[str, Declared]] = []
     for fact in facts:
-        (wild if "<" in fact.path else exact.setdefault(fact.path, [])).append(fact)
+        if "<" in fact.path:
+            wild.append((fact.path.rpartition(".")[2], fact))
+        else:
+            exact.setdefault(fact.path, []).append(fact)
     known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
     return Section(title, node, given, facts, known, {it.name: it for it in whole}, at)
 
 
-def _matching(wild: Sequence[Declared], name: str) -> Iterator[Declared]:
-    return (it for it in wild if it.pattern.fullmatch(name))
+def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
+    """Those that have the name, each with the last word of its path."""
+    last = name.rpartition(".")[2]
+    return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
 
 
 def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
