@@ -7,7 +7,7 @@ condition that nobody knows is left out.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from lxml import etree
@@ -26,6 +26,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
+from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.launched import (
     Launched,
@@ -94,14 +95,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     """All that the launch starts, and the system that this makes."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
-    refused: list[str] = []
-    parts = []
-    for it in nodes:
-        try:
-            parts.append(_part(it, inside))
-        except UsageError as error:
-            refused.append(f"{it.full_name} ({it.place}: {error})")
-            parts.append(_Part(it.full_name, (), ()))
+    parts, refused = _parts(nodes, inside)
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
     caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
     system = System(
@@ -117,6 +111,36 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     found = Launched(graph, nodes, spawned, models, system, known.release)
     heard = _heard(nodes, dict(frames_of_sensors(models_in_simulator(found))))
     return found._replace(system=system._replace(heard=tuple(heard)))
+
+
+def _parts(nodes: Sequence[RunningNode], inside: Sent) -> tuple[list[_Part], list[str]]:
+    """What each node adds, and the nodes that rcl refuses. Some listen only where somebody listens to
+    them: they are asked again until no topic has a new subscriber."""
+    parts, refused = [], []
+    for it in nodes:
+        try:
+            parts.append(_part(it, inside))
+        except UsageError as error:
+            refused.append(f"{it.full_name} ({it.place}: {error})")
+            parts.append(_Part(it.full_name, (), ()))
+    lazy = [at for at, it in enumerate(nodes) if it.facts and asks_who_listens(it.facts)]
+    lazy = [at for at in lazy if parts[at].endpoints]
+    heard: Collection[str] = ()
+    while lazy and heard != (now := frozenset(_read(parts))):
+        heard = now
+        for at in lazy:
+            parts[at] = _part(_listened_to(nodes[at], heard), inside)
+    return parts, refused
+
+
+def _read(parts: Iterable[_Part]) -> Iterator[str]:
+    """The topics that somebody subscribes to."""
+    yield from (it.name for part in parts for it in part.endpoints if it.role == SUBSCRIBES)
+
+
+def _listened_to(it: RunningNode, heard: Collection[str]) -> RunningNode:
+    bound = bound_of(it.name, it.namespace, it.rules)
+    return it._replace(facts=as_heard(it.facts, heard, bound) if it.facts else None)
 
 
 def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[Heard]:
@@ -225,13 +249,21 @@ def _part(it: RunningNode, inside: Sent) -> _Part:
 def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) -> Iterator[End]:
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
-            own = end._replace(name=_below_namespace_above(it, end))
-            full = _resolved(own, helper if end.helper else bound)
+            full = _full(it, end, helper if end.helper else bound)
             type_ = chosen_type(end.types, partial(_value, it)) or end.type
             who = f"{name}{end.by}"
             yield End(
                 end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
             )
+
+
+def _full(it: RunningNode, end: Endpoint, bound: BoundNode) -> str:
+    """The name that an endpoint has; that of one beside another is made of the other's
+    (image_transport camera_common.cpp getCameraInfoTopic)."""
+    if not end.beside:
+        return _resolved(end._replace(name=_below_namespace_above(it, end)), bound)
+    above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
+    return f"{above}/{end.name.rpartition('/')[2]}"
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
