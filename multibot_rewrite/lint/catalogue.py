@@ -59,7 +59,6 @@ HOMES: tuple[Home, ...] = (
         (
             "producers.evidence.nodes",
             "producers.launch.findings",
-            "producers.launch.spawner_managers",
             "fleet.launch.launched_files",
             "fleet.outputs.controller_files",
             "fleet.outputs.yarp_files",
@@ -69,8 +68,6 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.named_twice",
             "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
-            "fleet.robots.srdf_of_another",
-            "fleet.robots.apart",
             "fleet.outputs.cell_outputs",
             "fleet.outputs.moveit_parameters",
         ),

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
@@ -18,7 +19,15 @@ from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
+from multibot_rewrite.rules.launch.declaration import (
+    FIRST,
+    LAUNCH,
+    at,
+    launch_of,
+    launch_rule,
+    node_of,
+)
 
 _SPAWNER = node_of("controller_manager", "spawner", ("arm",))
 _MANAGER = node_of("controller_manager", "ros2_control_node")
@@ -98,19 +107,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
             yield at(spawned_twice, last.place, message, "is one of them another robot's?")
 
 
-@launch_rule(
-    "MG723",
-    "no-controller-manager",
-    what="A spawner waits for a controller manager that no node of the launch file and no plugin of a "
-    "published description makes.",
-    why="The spawner waits and ends; none of its controllers is started.",
-    fix="Correct the name of the manager (`-c`), or start it in that namespace.",
-    bad=launch_of(
-        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
-    ),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
-)
-def no_manager(launched: Launched) -> Iterator[Finding]:
+def _no_manager(launched: Launched) -> Iterator[Finding]:
     """An error where all nodes are known, or a manager of another namespace is there."""
     there = [it.full_name for it in launched.nodes if _is(it, "controller_manager")]
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -124,6 +121,18 @@ def no_manager(launched: Launched) -> Iterator[Finding]:
         certain = bool(near) or _is_known(launched)
         level = {} if certain else {"level": INCONCLUSIVE}
         yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)
+
+
+no_manager = NO_MANAGER._replace(
+    check=_no_manager,
+    bad=launch_of(
+        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
+    ),
+    good=launch_of(_WITH_TYPE, _SPAWNER),
+    line=FIRST,
+    formats=(LAUNCH,),
+    beside=NOTHING,
+)
 
 
 def _is(it: RunningNode, known: str) -> bool:
