@@ -65,7 +65,6 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
-            "fleet.robots.named_twice",
             "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
             "fleet.outputs.cell_outputs",
