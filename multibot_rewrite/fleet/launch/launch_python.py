@@ -196,7 +196,8 @@ def _shell(line: str) -> Iterator[str]:
 
 
 def _written(it: RobotStarts) -> Written:
-    return Written(it.name, it.about, it.about.partition(".")[0], list(_robot(it)))
+    kind = it.description.partition(".")[0]
+    return Written(it.name, f"{it.description} in {it.where}", kind, list(_robot(it)))
 
 
 def _robot(it: RobotStarts) -> Iterator[str]:
