@@ -8,9 +8,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import partial
-
-from lxml import etree
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
@@ -34,6 +31,16 @@ from multibot_rewrite.producers.launch.launched import (
     models_in_simulator,
 )
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
+from multibot_rewrite.producers.launch.node_transforms import (
+    TF_TYPE,
+    Sent,
+    edges_of,
+    passed_on,
+    prefix_of,
+    publishes_a_tree,
+    root_of,
+    tree_of,
+)
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
@@ -44,7 +51,6 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.transforms import lookups_of
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     ACTION,
@@ -63,19 +69,14 @@ from multibot_rewrite.system.records import (
     Node,
     Parameter,
     System,
-    edge_of,
 )
 
-TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
     "node-not-known",
     "description-not-known",
     "rcl-refuses",
 )
-
-
-Sent = Mapping[str, Sequence[Edge]]
 
 
 class _Part(NamedTuple):
@@ -156,7 +157,7 @@ def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[
 def _lookups(it: RunningNode) -> Iterator[Lookup]:
     """What a node asks of tf by its parameters, with what it puts before its frames."""
     for asked in lookups_of(it.full_name, it.facts, it.values) if it.facts else ():
-        yield asked._replace(frame=f"{_prefix(it)}{asked.frame}")
+        yield asked._replace(frame=f"{prefix_of(it)}{asked.frame}")
 
 
 def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Address]:
@@ -164,8 +165,8 @@ def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Ad
     model in a simulator."""
     node = known.parameters.nodes.get(it.facts.known) if it.facts else None
     yield from of_parameters(it.full_name, node.params if node else {}, it.values)
-    text = _value(it, DESCRIPTION)
-    root = None if any(one.spawned and one.text == text for one in models.found) else _root(text)
+    text = it.value(DESCRIPTION)
+    root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
         yield from of_hardware(root, it.full_name, it.place)
 
@@ -201,7 +202,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
         hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
-    treeless = [it.full_name for it in nodes if _publishes_a_tree(it) and _tree(it) is None]
+    treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
@@ -239,10 +240,10 @@ def _part(it: RunningNode, inside: Sent) -> _Part:
     helper = bound_of(it.name, it.process_namespace, it.process_rules)
     own = _endpoints(it, name, bound, helper)
     ends = [*own, *_bridged(it, name, bound)]
-    if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
+    if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
-        name, tuple(dict.fromkeys(ends)), (*_edges(it, bound), *_passed_on(it, bound, inside))
+        name, tuple(dict.fromkeys(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
     )
 
 
@@ -250,7 +251,7 @@ def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) 
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
             full = _full(it, end, helper if end.helper else bound)
-            type_ = chosen_type(end.types, partial(_value, it)) or end.type
+            type_ = chosen_type(end.types, it.value) or end.type
             who = f"{name}{end.by}"
             yield End(
                 end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
@@ -268,7 +269,7 @@ def _full(it: RunningNode, end: Endpoint, bound: BoundNode) -> str:
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
     """The name of an endpoint that its node resolves in the namespace above its own, else its name."""
-    if not end.above or str(_value(it, end.parameter) or "").startswith("/"):
+    if not end.above or str(it.value(end.parameter) or "").startswith("/"):
         return end.name
     return expand(end.name.lstrip("/"), it.namespace.rpartition("/")[0] or "/", "")
 
@@ -285,78 +286,6 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
     for end, _ in bridged_by(it):
         full = resolve_bound(end.name, end.kind, bound)
         yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
-
-
-def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
-    """The transforms of a node, each with its topic."""
-    if it.facts is None:
-        return
-    sent = [end.name for end in it.facts.endpoints if end.role == PUBLISHES and not end.when]
-    for edge in _own_edges(it):
-        topic = TF_STATIC if edge.static else TF
-        # A driver may send its odometry on tf_static, and nodes may only have one of the two.
-        named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
-        if named:
-            yield resolve_bound(named, TOPIC, bound), edge
-
-
-def _passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
-    """The transforms of the simulator that a bridge passes on."""
-    for end, own in bridged_by(it):
-        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
-            full = resolve_bound(end.name, TOPIC, bound)
-            yield from ((full, edge) for edge in inside.get(own, ()))
-
-
-def _own_edges(it: RunningNode) -> Iterable[Edge]:
-    if it.facts is None:
-        return ()
-    if _publishes_a_tree(it):
-        return _tree(it) or ()
-    prefix = _prefix(it)
-    return _below(prefix, sent_by(it.facts, ""))
-
-
-def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
-    return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
-
-
-def _prefix(it: RunningNode) -> str:
-    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
-    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
-    prefix = _value(it, "tf_prefix")
-    switch = it.facts.prefix_switch if it.facts else ""
-    if switch:
-        own = _value(it, "tf_frame_prefix") or it.namespace
-        prefix = "" if _value(it, switch) is False else own
-    bare = str(prefix or "").strip("/")
-    return f"{bare}/" if bare else ""
-
-
-def _publishes_a_tree(it: RunningNode) -> bool:
-    return it.facts is not None and it.facts.package == STATE_PUBLISHER
-
-
-def _tree(it: RunningNode) -> list[Edge] | None:
-    """The transforms of a description under ``frame_prefix``; None where that is not known."""
-    prefix = str(_value(it, "frame_prefix") or "")
-    root = _root(_value(it, DESCRIPTION))
-    return None if root is None else _below(prefix, edges_in(root))
-
-
-def _root(text: object) -> etree._Element | None:
-    """The root of a description; None where it is not known."""
-    if not isinstance(text, str) or not text.strip():
-        return None
-    try:
-        return etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
-    except etree.XMLSyntaxError:
-        return None
-
-
-def _value(it: RunningNode, name: str) -> object:
-    given = it.values.get(name)
-    return given.value if given else None
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
@@ -379,5 +308,5 @@ def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
     that hold for ever needs no time."""
     for it in nodes:
         if it.facts is not None and it.facts.known not in ("", STATIC):
-            text = parameter_text(_value(it, SIM_TIME) is True)
+            text = parameter_text(it.value(SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)

@@ -222,7 +222,7 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     """By full names: a manager is for the nodes of its namespace."""
     managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
     listed = {name: it for it in managers for name in _listed(it)}
-    known = all(isinstance(_names(it), list) for it in managers)
+    known = all(isinstance(it.value("node_names"), list) for it in managers)
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
         kind = it.facts.kind if it.facts else ""
@@ -246,17 +246,11 @@ _SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_se
 
 
 def _activates_itself(it: RunningNode) -> bool:
-    given = it.values.get("autostart_node")
-    return given is not None and given.value is True
-
-
-def _names(it: RunningNode) -> object:
-    given = it.values.get("node_names")
-    return given.value if given else None
+    return it.value("autostart_node") is True
 
 
 def _listed(it: RunningNode) -> Iterator[str]:
-    names = _names(it)
+    names = it.value("node_names")
     yield from (
         (expand(str(one), it.namespace, "") for one in names or ())
         if isinstance(names, list)
