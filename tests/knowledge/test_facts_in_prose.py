@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.conditions import (
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.stacks import every_release
 
-PROSE = {"endpoint": 4, "node": 3, "parameter": 5, "file": 0, "port": 0, "condition": 10}
+PROSE = {"endpoint": 3, "node": 1, "parameter": 4, "file": 0, "port": 0, "condition": 9}
 TOPIC = re.compile(r"(?:^|[\s(])[~/]?[a-z_<>]*/[\w<>/*]+")
 FILE = re.compile(r"\.(?:ya?ml|lua|xml|py|cpp|hpp|bag|mcap|launch)\b")
 PORT = re.compile(r"\bport\b|:\d{4,5}\b")
