@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.knowledge.conditions import UNSENT, said, words_in
+from multibot_rewrite.knowledge.conditions import UNSENT, said
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
@@ -119,16 +119,16 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
     """A node under a condition: what nobody else sends is needed."""
-    wanted = tuple(words_in(it.when, UNSENT))
-    sent = [one for one in given.plan.fleet.table.names if _sends(one, wanted)]
+    topic = it.when.removeprefix(f"{UNSENT}: ")
+    sent = [one for one in given.plan.fleet.table.names if _sends(one, topic)]
     mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
     others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
-    return bool(wanted) and mine.isdisjoint({*others, *given.bridged})
+    return topic != it.when and mine.isdisjoint({*others, *given.bridged})
 
 
-def _sends(it: EndpointName, topics: tuple[str, ...]) -> bool:
+def _sends(it: EndpointName, topic: str) -> bool:
     end = it.endpoint
-    return end.role == PUBLISHES and not end.when and end.name.endswith(topics)
+    return end.role == PUBLISHES and not end.when and end.name.endswith(topic)
 
 
 def _started(given: _Given, name: str) -> Iterator[Start]:
