@@ -17,9 +17,9 @@ from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.launch.declaration import (
     FIRST,
     LAUNCH,
@@ -123,7 +123,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
         yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)
 
 
-no_manager = NO_MANAGER._replace(
+no_manager = spawner_managers.NO_MANAGER._replace(
     check=_no_manager,
     bad=launch_of(
         node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
