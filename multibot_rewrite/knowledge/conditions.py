@@ -40,7 +40,7 @@ KINDS = {
     "run": "simulated or real: use_sim_time",
     UNSENT: "a topic that no other node of the robot sends: its other nodes",
     VERSION: "the package, and its version or a newer one: whoever installed it",
-    OPEN_KIND: "nobody before the robot runs",
+    OPEN_KIND: "what is not known before the robot runs",
 }
 # What is open -> as people read it. What is open may be there: no rule needs it, and it needs nobody.
 # The launch file of a fleet starts such a node only where a parameter file declares it; CHOSEN is a

@@ -306,7 +306,7 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     robot_wide=True,
     what="A frame has the robot's name twice: `robot1/robot1/base_link`; or in `build` a topic or "
     "service: an argument of the xacro puts it before the name, and the robot's namespace before that.",
-    why="No other node uses that name: every lookup fails, and commands reach nobody.",
+    why="No other node uses that name: every lookup fails, and commands reach no node.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
     " where the description has the robot's name already. Write '' for the argument of the xacro: "
     "links, joints and frames get the robot's name all the same.",
