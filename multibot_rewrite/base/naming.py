@@ -175,19 +175,17 @@ def _check_run_time(layout: Layout, side: str, separators: Mapping[str, str]) ->
 
 def find_layout(word: str) -> Layout:
     """The layout called ``word``; raises UsageError naming all of them."""
-    for layout in LAYOUTS:
-        if word in (layout.name, layout.short):
-            return layout
-    _one_of("layout", word, tuple(layout.name for layout in LAYOUTS))
-    raise AssertionError(word)
+    known = {name: it for it in LAYOUTS for name in (it.name, it.short)}
+    if word not in known:
+        _one_of("layout", word, tuple(it.name for it in LAYOUTS))
+    return known[word]
 
 
 def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
-    if word in allowed:
-        return
-    near = did_you_mean_one_of(word, allowed)
-    hint = f"; {near}" if near else ""
-    raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
+    if word not in allowed:
+        near = did_you_mean_one_of(word, allowed)
+        hint = f"{', '.join(allowed)}{near and f'; {near}'}"
+        raise UsageError(f"{what} {word!r} is not known, use one of {hint}")
 
 
 def _separators(given: Mapping[str, str]) -> dict[str, str]:
@@ -196,11 +194,9 @@ def _separators(given: Mapping[str, str]) -> dict[str, str]:
         allowed = ROS_SEPARATORS.get(kind, ("/", "_", "__", "-", "."))
         if separator not in allowed:
             raise UsageError(f"separator {kind}={separator!r}: use one of {' '.join(allowed)}")
-    result = {**SEPARATORS, **given}
     # A frame names a link more often than not: they only differ where both were asked for.
-    if "link" in given and "frame" not in given:
-        result["frame"] = given["link"]
-    return result
+    frame = {"frame": given["link"]} if "link" in given else {}
+    return {**SEPARATORS, **frame, **given}
 
 
 def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:

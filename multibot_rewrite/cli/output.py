@@ -15,7 +15,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.printable import for_terminal, one_line
 from multibot_rewrite.cli.walk import check_link, check_target
 
-AUTO, ALWAYS, NEVER = "auto", "always", "never"
+AUTO, ALWAYS = "auto", "always"
 MANY = 20
 STANDARD = "-"
 # Options and arguments that name files to read.

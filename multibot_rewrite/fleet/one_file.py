@@ -33,7 +33,7 @@ REASONS = {
     "MB876": ("name", "in a block of text"),
     "MB105": ("placeholder", "that a launch file has to replace"),
     "MB422": ("prefix parameter", "that no postfix reaches"),
-    "MB880": ("port or file", "shared by all robots"),
+    "MB412": ("port or file", "shared by all robots"),
     "MF120": ("topic", "that remap rules move"),
     "MF203": ("tf topic", "that rviz2 has to be given"),
     "MB891": ("display", "not known"),

@@ -20,7 +20,7 @@ A node:
     shared     true: one node serves all robots
     apart      true: its code sets its name, or that of a node below it, so it keeps its name and
                has its robot's namespace in every layout
-    when       the condition under which it is started
+    when       the condition under which it is started (``conditions.py``)
     with       the parts it has
     publishes, subscribes, serves, calls   its endpoints by name; /msg/ is a topic, /srv/ a service,
                /action/ an action. A node with parameters and nothing of a graph (none of these, nor
@@ -50,8 +50,9 @@ condition under which it exists), if (the condition on the node's parameters, fo
 known: ``conditions.py``), helper (a helper node has it, which only rules for the whole process
 reach), by (that node's name behind its node's; * is made at run time: _private_*), above (releases
 in which a relative name from its parameter is resolved in the namespace above the node's own),
-fixed (why no rule reaches it), note; a list of {...} where it differs from release to release. A
-name in <> is made at run time; a stack sets it under ``names``.
+fixed (why no rule reaches it), beside (the endpoint whose name it takes, but for the last word),
+note; a list of {...} where it differs from release to release. A name in <> is made at run time; a
+stack sets it under ``names``.
 
 A parameter is a kind or {...}: kind, default (of the code), list (an array of strings), absolute
 (as above), deprecated (releases), own (true: a frame that the node makes), note; a list of {...}

@@ -8,9 +8,12 @@ Alternatives are joined by ``or``, what must hold together by ``and``. A term as
     PARAMETER != VALUE         it has none of them; so has one that is not set
     PARAMETER has VALUE        it is a list, or a text of several words, that holds one of them
     PARAMETER set, unset       it has a value that is not empty, or none
+    PARAMETER names VALUE      it is the path of a file in which one of them is written
 
-or it is ``KIND: WORDS``, for what no parameter says (``KINDS``); ``unknown: TEXT`` is what nobody could
-say in another way yet.
+A parameter that begins with ``-`` is an option of the command line: its value is the word behind it,
+and it is ``set`` where it is given; ``-`` alone is any word that is no option. Else a term is
+``KIND: WORDS``, for what else a program decides (``KINDS``), or ``open: WORD``, for what none can
+before the robot runs: one of the words of ``OPEN``.
 """
 
 from __future__ import annotations
@@ -25,43 +28,42 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 
 Values = Callable[[str], object]
-RELEASE, VERSION, UNKNOWN = "release", "version", "unknown"
-# Subject -> what its words are.
+RELEASE, VERSION, PROGRAM, HEARD, UNSENT = "release", "version", "program", "heard", "unsent"
+OPEN_KIND, CHOSEN, NODL = "open", "chosen", "nodl"
+# Subject -> what its words are, and who decides.
 KINDS = {
-    "argument": "an argument of the command line that starts it",
-    "bridge": "an entry of its bridge's file: a direction or a topic",
-    "display": "a display of the RViz config",
-    "given": "a parameter that whoever starts it passes",
-    "goal": "what a goal of an action is, or names",
-    "hardware": "what the robot has",
-    "heard": "an own topic that has a subscriber",
-    "lua": "an option of its Lua file",
-    "missing": "a parameter that is not passed",
-    "nodl": "no: its NoDL file does not have it",
-    "panel": "a panel of the RViz config",
-    "phase": "what it is doing",
-    "program": "the executable that runs it",
-    RELEASE: "releases of ROS, for the type of an endpoint",
-    "run": "simulated or real",
-    "stream": "a stream of the device that is enabled",
-    "tool": "a tool of the RViz config",
-    "tree": "a node of the behavior tree",
-    "unsent": "a topic that no other node sends",
-    "use": "what the robot is used for",
-    VERSION: "the package, and its version or a newer one",
-    UNKNOWN: "a text",
+    "given": "a parameter that whoever starts it passes: its parameters",
+    HEARD: "an own topic that has a subscriber: all that a launch starts",
+    "missing": "a parameter that is not passed: its parameters",
+    PROGRAM: "the executable that runs it: the launch file",
+    RELEASE: "releases of ROS, for the type of an endpoint: the release",
+    "run": "simulated or real: use_sim_time",
+    UNSENT: "a topic that no other node of the robot sends: its other nodes",
+    VERSION: "the package, and its version or a newer one: whoever installed it",
+    OPEN_KIND: "what is not known before the robot runs",
+}
+# What is open -> as people read it. What is open may be there: no rule needs it, and it needs nobody.
+# The launch file of a fleet starts such a node only where a parameter file declares it; CHOSEN is a
+# word of nodes alone.
+OPEN = {
+    CHOSEN: "only where you start it",
+    "device": "only if the device has it",
+    "moment": "only for a time, or for one request",
+    "code": "only as its code was built",
+    "file": "only if a file says so",
+    NODL: "its NoDL file does not have it",
 }
 AND, OR, ALSO = " and ", " or ", "|"
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"
-    r"(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
+    r"(?:\s*(?P<how>!=|=|\b(?:has|names)\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
 )
 
 
 class Condition(NamedTuple):
-    """One term: ``how`` is ``=``, ``!=``, ``has``, ``set`` or ``unset`` for a parameter, and ``:`` for
-    what no parameter says, whose kind is the ``parameter``."""
+    """One term: ``how`` is ``=``, ``!=``, ``has``, ``names``, ``set`` or ``unset`` for a parameter, and
+    ``:`` for what no parameter says, whose kind is the ``parameter``."""
 
     parameter: str
     how: str
@@ -72,46 +74,52 @@ class Condition(NamedTuple):
 def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
     """The alternatives, each with the terms that must all hold; raises UsageError for a text that is
     none. Of an empty text there are none."""
-    told, mark, rest = text.partition(f"{UNKNOWN}: ")
-    if mark:  # the text behind it may have any words
-        before = (*map(_one, told.removesuffix(AND).split(AND)),) if told else ()
-        return ((*before, Condition(UNKNOWN, ":", (rest,))),)
     return tuple(tuple(map(_one, it.split(AND))) for it in text.split(OR)) if text else ()
 
 
 def joined(text: str, other: str) -> str:
     """Both conditions as one."""
-    if not text or text.startswith(f"{UNKNOWN}: "):
-        return other if not text else f"{other}{AND}{text}"
-    return OR.join(f"{it}{AND}{other}" for it in text.split(OR))
+    return OR.join(f"{it}{AND}{other}" for it in text.split(OR)) if text else other
 
 
 def said(text: str) -> str:
-    """The condition as people read it: a version as one or newer, a text as it is."""
+    """The condition as people read it."""
     return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
 
 
 def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
-    return of_kind(text, RELEASE, lambda words: has_release(words, release))
+
+    def decide(it: Condition) -> bool | None:
+        return has_release(it.values[0], release) if it.parameter == RELEASE else None
+
+    return settled(text, decide)
 
 
-def of_kind(text: str, kind: str, is_so: Callable[[str], bool]) -> str | None:
-    """The condition without what it says of one kind; None where it never holds. Where one alternative
-    holds, nothing is left to ask."""
-    asked = f"{kind}: "
-    left = [
-        AND.join(it for it in terms if not it.startswith(asked))
-        for terms in (it.split(AND) for it in text.split(OR))
-        if all(is_so(it.removeprefix(asked)) for it in terms if it.startswith(asked))
-    ]
-    return None if not left else "" if "" in left else OR.join(left)
+def settled(text: str, decide: Callable[[Condition], bool | None]) -> str | None:
+    """The condition without the terms that ``decide`` knows; None where it never holds. Where one
+    alternative holds, nothing is left to ask."""
+    left = []
+    for terms in (it.split(AND) for it in text.split(OR)) if text else ():
+        known = {it: decide(_one(it)) for it in terms}
+        if False not in known.values():
+            left.append(AND.join(it for it, is_so in known.items() if is_so is None))
+    return "" if "" in left or not text else OR.join(left) or None
+
+
+def words_in(text: str, kind: str) -> Iterator[str]:
+    """The words of all terms of a kind."""
+    for terms in parse_condition(text):
+        yield from (
+            word for it in terms if (it.how, it.parameter) == (":", kind) for word in it.values
+        )
 
 
 def _said(term: str) -> str:
-    if term.startswith(f"{VERSION}: "):
-        return f"{term.removeprefix(f'{VERSION}: ')} or newer"
-    return term.removeprefix(f"{UNKNOWN}: ")
+    kind, _, words = term.partition(": ")
+    if kind == OPEN_KIND:
+        return OPEN[words]
+    return f"{words} or newer" if kind == VERSION else term
 
 
 def _one(text: str) -> Condition:
@@ -121,14 +129,21 @@ def _one(text: str) -> Condition:
             near = did_you_mean_one_of(kind["kind"], KINDS)
             known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
             raise UsageError(f"{text!r} is of no kind that is known; {known}")
-        return Condition(kind["kind"], ":", _words(kind["words"]))
+        return Condition(kind["kind"], ":", _checked(kind["kind"], _words(kind["words"])))
     found = _TERM.fullmatch(text.strip())
     if found is None:
-        hint = "write PARAMETER = VALUE, or unknown: and a text"
+        hint = "write PARAMETER = VALUE, or open: and a word"
         raise UsageError(f"{text!r} is no condition; {hint}")
     if found["state"]:
         return Condition(found["parameter"], found["state"], ())
     return Condition(found["parameter"], found["how"] or "=", _words(found["value"] or "true"))
+
+
+def _checked(kind: str, words: tuple[str, ...]) -> tuple[str, ...]:
+    wrong = next((it for it in words if kind == OPEN_KIND and it not in OPEN), None)
+    if wrong is not None or (kind == OPEN_KIND and len(words) > 1):
+        raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
+    return words
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -157,8 +172,9 @@ def _all(terms: tuple[Condition, ...], value_of: Values) -> bool | None:
 
 
 def _is_true(it: Condition, value_of: Values) -> bool | None:
-    # A word in <> that nothing was put in place of is no parameter.
-    if "<" in it.parameter:
+    # A word in <> that nothing was put in place of is no parameter; files and the command line are not
+    # at hand here.
+    if "<" in it.parameter or it.parameter.startswith("-") or it.how == "names":
         return None
     if it.how == ":":
         return _is_told(it, value_of)

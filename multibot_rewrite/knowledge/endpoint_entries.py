@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
+from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
     check_apart,
@@ -27,7 +28,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.system.records import ACTION, PUBLISHES, ROLES, SERVICE, SUBSCRIBES, TOPIC
 
-ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")
+ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by", "beside")
 ENDPOINT_OTHERS = ("also", "types", "transport", "helper", "if", "above")
 ENDPOINT_KEYS = (*ENDPOINT_WORDS, *ENDPOINT_OTHERS, *FACT_KEYS)
 _TYPE = lazy_compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
@@ -61,7 +62,8 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         releases=releases_of(keys),
         source=source_of(keys),
     )
-    condition_of(keys, "when")
+    if CHOSEN in words_in(condition_of(keys, "when"), OPEN_KIND):
+        wrong(keys["when"], f"{CHOSEN} is a word of nodes; an endpoint is there with its node")
     return checked_endpoint(item, endpoint)
 
 
@@ -89,6 +91,9 @@ def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
             wrong(item, f"name {name!r}: {fault.reason}")
     for type_ in filter(None, (endpoint.type, *endpoint.also)):
         _check_type(item, endpoint, type_)
+    if endpoint.beside:
+        other = f"it is derived from the name that {endpoint.beside} is remapped to"
+        return endpoint._replace(fixed=other)
     if not _MADE.search(endpoint.name) or endpoint.fixed:
         return endpoint
     source = f"parameter {endpoint.parameter}" if endpoint.parameter else "its configuration"

@@ -18,19 +18,21 @@ class Endpoint(NamedTuple):
     """A topic, service or action in a node's code, before any remap rule.
 
     ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic
-    with image_transport siblings. ``fixed`` says why no rule reaches it; else empty. ``parameter`` is
-    the node parameter that sets the name, if any. ``also`` are other types, by parameter or release.
-    ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
-    node in the same process uses it: a rule for the whole process reaches it, one for this node does
-    not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
-    rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
-    must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
-    its entry calls it, if a stack gives it another name. ``above`` are the releases in which its node
-    resolves a relative name from its parameter in the namespace above its own.
-    ``releases`` are release words (see ``base.releases``), ``source`` the places where it
-    can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
-    what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
-    ``types`` are conditions as ``condition``, each with the type that it has where that holds.
+    with image_transport siblings. ``fixed`` says why no rule reaches it; else empty. ``parameter``
+    is the node parameter that sets the name, if any. ``also`` are other types, by parameter or
+    release. ``when`` is the condition under which it exists, empty for always. ``helper`` is true
+    if a helper node in the same process uses it: a rule for the whole process reaches it, one for
+    this node does not. ``remapped`` is its name after the remap rule of the stack's usual launch
+    file: the table's rule must lead there, since only the first match counts. ``condition`` is what
+    its node's parameters must hold for it to exist (``knowledge.conditions``), for where these are
+    known. ``named_from`` is what its entry calls it, if a stack gives it another name. ``above``
+    are the releases in which its node resolves a relative name from its parameter in the namespace
+    above its own. ``releases`` are release words (see ``base.releases``), ``source`` the places
+    where it can be read. ``by`` names the helper node, as what follows the name of its node, with a
+    ``*`` for what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its
+    own. ``types`` are conditions as ``condition``, each with the type that it has where that holds.
+    ``beside`` is an endpoint of the node: the name is made of that which it has after all rules,
+    with another last word, as that of a camera_info is.
     """
 
     kind: str
@@ -52,6 +54,7 @@ class Endpoint(NamedTuple):
     source: tuple[str, ...] = ()
     by: str = ""
     types: tuple[tuple[str, str], ...] = ()
+    beside: str = ""
 
 
 class FrameParameter(NamedTuple):

@@ -54,12 +54,15 @@ ONE_DEVICE = declare(
     "one-device",
     WARNING,
     what="Two robots have one device: an address, serial number or calibration of their hardware, a "
-    "port or file that only one process can have. A note for what two computers can both have, and for "
-    "a description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address.",
-    why="Both drivers command one arm, or the second one is refused. With another arm's calibration "
-    "the tool is millimetres from where tf has it.",
+    "port or file that only one process can have. A note for what two computers can both have, for "
+    "a description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address, "
+    "and for a parameter file that names the calibration of a camera.",
+    why="Both drivers command one arm, or the second one is refused; both nodes write into one file "
+    "and damage it. With another arm's calibration the tool is millimetres from where tf has it; with "
+    "another camera's one robot measures wrongly.",
     fix="Give each robot its own: by an argument of its xacro, `arguments` in the fleet file, or its "
-    "own parameter file.",
+    "own parameter file, loaded after the one for all. In the path of a calibration "
+    "`<robot_namespace>` becomes the robot's name.",
     bad="""\
 running: /robot1/controller_manager holds device robot_ip 10.0.0.2
 running: /robot2/controller_manager holds device robot_ip 10.0.0.2

@@ -657,7 +657,7 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
         ("other", "x_topic: /x", "MB901", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MB881", "not rewritten"),
         ("robot_state_publisher", "frame_prefix: a/", "MB882", "already have"),
-        ("ekf_filter_node", "debug_out_file: /tmp/x", "MB880", "the same for all robots"),
+        ("ekf_filter_node", "debug_out_file: /tmp/x", "MB412", "the same for all robots"),
         ("amcl", "scan_topic: $(var s)", "MB105", "a launch file must replace it"),
         ("amcl", "scan_topic:", "MB868", "rcl rejects"),
         ("amcl", "base_frame_id: |\n      base_link", "MB876", "on one line"),
@@ -917,9 +917,9 @@ force:
 @pytest.mark.parametrize("node", ["usb_cam", "/**", "v4l2_camera"])
 def test_a_calibration_is_said_to_be_of_all_robots(node: str, url: str, shared: bool) -> None:
     text = section(node, f"camera_info_url: {url}")
-    found = [(it.code, it.line) for it in made(text)[1] if it.code == "MB884"]
-    assert found == ([("MB884", 3)] if shared else [])
-    assert not [it for it in made(text, own=("robot1",))[1] if it.code == "MB884"]
+    found = [(it.code, it.line) for it in made(text)[1] if it.code == "MB412"]
+    assert found == ([("MB412", 3)] if shared else [])
+    assert not [it for it in made(text, own=("robot1",))[1] if it.code == "MB412"]
 
 
 def test_the_file_of_a_calibration_stays_and_may_be_in_the_robots_folder() -> None:
@@ -935,7 +935,7 @@ def test_a_calibration_below_a_camera_is_found() -> None:
     text = section(
         "driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}", "cam_1.camerainfo_url: ''"
     )
-    assert [it.line for it in made(text)[1] if it.code == "MB884"] == [3]
+    assert [it.line for it in made(text)[1] if it.code == "MB412"] == [3]
 
 
 # ---------------------------------------------------------------- nodes that are not known

@@ -196,7 +196,7 @@ def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Pa
 def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     _, findings = built(tmp_path, own="other_")
     assert errors(findings) == [
-        "MF832 3 of the 3 links and joints that the SRDF names are not in the URDF: other_base, "
+        "MB875 3 of the 3 links and joints that the SRDF names are not in the URDF: other_base, "
         "other_hand and others"
     ]
     assert not [it for it in findings if it.code in ("MB803", "MB804", "MB807")]

@@ -47,7 +47,7 @@ def test_each_controller_of_each_robot_has_its_line(
         assert [*spawner, "diff_drive_controller", *rules, *placed] in lines
         assert [*spawner, "joint_state_broadcaster", *placed] in lines
     assert len(lines) == 8
-    assert any(it.endswith("  # hardware: base on two wheels") for it in rows)
+    assert any(it.endswith("  # only where you start it") for it in rows)
 
 
 def test_the_table_of_a_build_says_the_same(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def test_how_far_a_robot_reaches() -> None:
     assert reach_of(etree.fromstring('<robot name="r"><link name="a"/></robot>')) == 0
 
 
-def found(folder: Path, robots: str, more: str = "", code: str = "MF835") -> list[str]:
+def found(folder: Path, robots: str, more: str = "", code: str = "MG702") -> list[str]:
     (folder / "cart.urdf").write_text(CART)
     file = folder / "fleet.yaml"
     file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
@@ -95,8 +95,8 @@ def test_robots_in_a_simulator_without_any_pose(more: str, told: bool, tmp_path:
     (tmp_path / "system_model.yaml").write_text(
         "structure: {nodes: {/amcl: {pkg: nav2_amcl, exec: amcl}}}\n"
     )
-    said = found(tmp_path, "  - {name: a}\n  - {name: b}\n", more, "MF839")
+    said = found(tmp_path, "  - {name: a}\n  - {name: b}\n", more, "MG702")
     assert said == (["no robot has a start pose: all 2 are spawned in each other"] if told else [])
     posed = "  - {name: a}\n  - {name: b, pose: {y: 2}}\n"
-    assert found(tmp_path, posed, more, "MF839") == []
-    assert found(tmp_path, "  - {name: a}\n", more, "MF839") == []
+    assert found(tmp_path, posed, more, "MG702") == []
+    assert found(tmp_path, "  - {name: a}\n", more, "MG702") == []

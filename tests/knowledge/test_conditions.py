@@ -6,12 +6,13 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
+    Condition,
     holds,
     joined,
-    of_kind,
     of_release,
     parse_condition,
     said,
+    settled,
     verdict,
 )
 
@@ -72,15 +73,17 @@ def test_a_condition_is_decided(text: str, true: bool) -> None:
 @pytest.mark.parametrize(
     ("text", "known"),
     [
-        ("tree: DockRobot", None),
-        ("unknown: it is dark, or it is not", None),
-        ("on and tree: DockRobot", None),
-        ("off and tree: DockRobot", False),
-        ("on or tree: DockRobot", True),
-        ("off or tree: DockRobot", None),
+        ("heard: points", None),
+        ("open: device", None),
+        ("on and heard: points", None),
+        ("off and heard: points", False),
+        ("on or heard: points", True),
+        ("off or heard: points", None),
         ("<layer>.plugin = VoxelLayer", None),
         ("on and <layer>.plugin = VoxelLayer", None),
-        ("off and unknown: on or off", False),
+        ("off and open: device", False),
+        ("--debug set", None),
+        ("file names DockRobot", None),
     ],
 )
 def test_what_parameters_do_not_say_is_open(text: str, known: bool | None) -> None:
@@ -90,12 +93,20 @@ def test_what_parameters_do_not_say_is_open(text: str, known: bool | None) -> No
 def test_two_conditions_hold_together() -> None:
     assert joined("", "on") == "on"
     assert joined("off or on", "off") == "off and off or on and off"
-    assert verdict(joined("unknown: on or off", "off"), VALUES.get) is False
+    assert verdict(joined("open: device", "off"), VALUES.get) is False
 
 
 def test_a_word_that_is_no_kind_has_the_nearest_one() -> None:
-    with pytest.raises(UsageError, match="did you mean 'tree'"):
-        parse_condition("tre: DockRobot")
+    with pytest.raises(UsageError, match="did you mean 'heard'"):
+        parse_condition("herd: points")
+
+
+@pytest.mark.parametrize(
+    "text", ["open: it is dark", "open: device | moment", "on and open: Device"]
+)
+def test_what_is_open_is_said_in_one_of_a_few_words(text: str) -> None:
+    with pytest.raises(UsageError, match="is none of chosen, device, moment, code, file, nodl"):
+        parse_condition(text)
 
 
 @pytest.mark.parametrize("text", [" = x", "a b", "a and ", "!= x"])
@@ -155,7 +166,10 @@ def test_without_use_sim_time_nothing_says_how_it_runs() -> None:
     ],
 )
 def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -> None:
-    assert of_kind(text, "program", "one".__eq__) == left
+    def decide(it: Condition) -> bool | None:
+        return it.values == ("one",) if it.parameter == "program" else None
+
+    assert settled(text, decide) == left
 
 
 @pytest.mark.parametrize(
@@ -163,8 +177,8 @@ def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -
     [
         ("version: nav2_route 1.3.9", "nav2_route 1.3.9 or newer"),
         ("use_mag != false and version: a 1.0 or on", "use_mag != false and a 1.0 or newer or on"),
-        ("unknown: a camera or none", "a camera or none"),
-        ("hardware: arm", "hardware: arm"),
+        ("open: device", "only if the device has it"),
+        ("open: device or on", "only if the device has it or on"),
         ("", ""),
     ],
 )

@@ -484,7 +484,7 @@ def test_every_row_of_sdf_has_a_source() -> None:
     for name in chunks():
         section = described(name)
         assert section is not None
-        assert section.about, f"{name} says not where it was read"
+        assert section.words, f"{name} says not where it was read"
         for row in (row for rows in section.rows.values() for row in rows):
             line = row.line.rpartition(":")[2]
             assert line.isdigit(), f"{name}/{row.name} has no line"

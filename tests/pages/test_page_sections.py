@@ -61,7 +61,6 @@ def test_a_finding_leads_to_its_robot(robot: str, targets: list[str], link: str)
     assert link_to(finding, targets, SECTIONS) == link
 
 
-<<<<<<< HEAD
 def test_errors_are_above_what_is_not_certain_and_the_head_says_the_count_and_the_rows() -> None:
     """Codes are sorted the other way round: MG101 is inconclusive, MG301 an error."""
     robots = tuple(Robot(it, (), f"/{it}/tf") for it in ("robot1", "robot2"))
@@ -74,7 +73,8 @@ def test_errors_are_above_what_is_not_certain_and_the_head_says_the_count_and_th
     scene = make_scene(plan, System(), found)
     assert [it.finding.level for it in scene.rows] == [ERROR, INCONCLUSIVE]
     assert "<li>1 error, 2 inconclusive in 2 rows</li>" in to_html(scene).decode()
-=======
+
+
 def edge(
     node: str,
     name: str,
@@ -247,4 +247,3 @@ def test_only_what_is_serious_is_said() -> None:
     levels = {"error": 2, "warning": 1, "inconclusive": 3, "note": 4}
     assert summarize(levels) == "2 errors, 1 warning, 3 inconclusive"
     assert summarize({"error": 0, "warning": 0, "inconclusive": 0}) == ""
->>>>>>> bugsA

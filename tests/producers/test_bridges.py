@@ -78,7 +78,7 @@ def test_a_launched_bridge_has_the_topics_of_its_arguments() -> None:
     assert not found.shared
     # Without rows it is the node of a file of rows.
     alone = runs(launched(started(*BRIDGE)))["bridge"].endpoints
-    assert [(it.name, it.when) for it in alone] == [("/clock", "bridge: /clock")]
+    assert [(it.name, it.when) for it in alone] == [("/clock", "config_file names /clock")]
 
 
 def test_a_bridge_of_images_is_known_by_its_arguments() -> None:

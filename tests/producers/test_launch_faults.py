@@ -75,7 +75,7 @@ FAULTS = {
     "a launch that ends": Fault(LAUNCH, "/rover.urdf'", "/rover.xml'", "MG721"),
     "a rule that matches nothing": Fault(
         LAUNCH, "name='joint_state_publisher',",
-        "name='joint_state_publisher', remappings=[('joint_stats', 'a')],", "MG712",
+        "name='joint_state_publisher', remappings=[('joint_stats', 'a')],", "MR103",
         level="warning",
     ),
     "a parameter that is misspelt": Fault(

@@ -25,7 +25,7 @@ MANAGER = started("controller_manager", "ros2_control_node", namespace="/robot1"
 def test_a_spawner_asks_for_a_manager_that_runs(words: tuple[str, ...], asked: str) -> None:
     spawner = started("controller_manager", "spawner", arguments=("drive", "lift", *words))
     found = launched(MANAGER, spawner)
-    said = [it.message for it in found.findings if it.code == "MF838"]
+    said = [it.message for it in found.findings if it.code == "MG723"]
     text = f"the spawner of drive, lift asks for {asked}, which nothing starts"
     assert said == ([text] if asked else [])
     assert {it.manager for it in found.spawned.values()} == {"/robot1/controller_manager"}
@@ -41,5 +41,5 @@ def test_nothing_is_said_where_another_manager_may_run() -> None:
         launched(MANAGER, other, spawner),
         launched(MANAGER, spawner, notes=(unread,)),
     ):
-        assert [it for it in found.findings if it.code == "MF838"] == []
+        assert [it for it in found.findings if it.code == "MG723"] == []
         assert [it.manager for it in found.spawned.values()] == ["/x/manager"]

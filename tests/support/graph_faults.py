@@ -51,7 +51,7 @@ NEEDS = {
     **dict.fromkeys(("MG303", "MG306", "MG308", "MG310", "MG315", "MG321", "MG501"), (READERS,)),
     **dict.fromkeys(("MG304", "MG305"), (SERVICES,)),
     **dict.fromkeys(("MG320", "MG323", "MG324", "MG325"), (SENDERS,)),
-    **dict.fromkeys(("MG401", "MG403", "MG404", "MG406", "MG407"), (TRANSFORMS,)),
+    **dict.fromkeys(("MG401", "MG403", "MG404", "MG406", "MG407", "MG414"), (TRANSFORMS,)),
     **dict.fromkeys(("MG402", "MG408"), (TRANSFORMS, SENDERS)),
     **dict.fromkeys(("MG411", "MG412"), (HEADERS,)),
     **dict.fromkeys(("MG511", "MG512", "MG513"), (STATES,)),

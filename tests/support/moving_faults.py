@@ -94,6 +94,11 @@ def tf_rows() -> tuple[Fault, ...]:
             "MG406", ("2 roots", "odom_combined", "no node sends"),
         ),
         Fault(
+            "robot2's controller sends below robot1's odom", shared_tf,
+            other_parent("base_footprint/robot2", "odom/robot1", "/tf"),
+            "MG414", ("odom/robot1", "of robot2 to its own"), ERROR, ("MG406",),
+        ),
+        Fault(
             "frame_prefix on top of a rewritten description", shared_tf, prefixed_twice,
             "MG407", ("robot1/robot1", "frame_prefix"), ERROR, ("MG406",),
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
@@ -63,7 +64,7 @@ def _stack(name: str, stack: Stack) -> str:
 
 def _member(node: NodeFacts) -> str:
     notes = [f"`{e.name}` remapped to `{e.remapped}`" for e in node.endpoints if e.remapped]
-    notes += [f"only if: {node.when}"] * bool(node.when) + ["for all robots"] * node.shared
+    notes += [f"when: {said(node.when)}"] * bool(node.when) + ["for all robots"] * node.shared
     notes += _in(node.releases)
     return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(notes))}" if notes else "")
 
@@ -114,7 +115,7 @@ def _cells(endpoint: Endpoint) -> list[str]:
     notes = [*_in(endpoint.releases), *notes, *(f"source: {it}" for it in endpoint.source)]
     parameter = f"`{endpoint.parameter}`" if endpoint.parameter else ""
     name = f"{endpoint.role} {endpoint.kind}", f"`{endpoint.name}`"
-    return [*name, types, parameter, plain(endpoint.when), plain("; ".join(notes))]
+    return [*name, types, parameter, plain(said(endpoint.when)), plain("; ".join(notes))]
 
 
 def _in(releases: str) -> list[str]:

@@ -25,6 +25,12 @@ def reach_of(root: _Element) -> float:
     return max((hypot(x, y) for x, y, _ in corners), default=0.0)
 
 
+def filled_by(root: _Element) -> float:
+    """What a robot surely fills, however it is turned: half of how far it reaches. Two overlap where
+    they are nearer than both fill."""
+    return reach_of(root) / 2
+
+
 def _corners(robot: Robot, tag: str) -> Iterator[Vector]:
     """The corners of the boxes around all shapes."""
     poses = link_poses(robot)

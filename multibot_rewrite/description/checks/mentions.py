@@ -16,13 +16,15 @@ from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.tree import Tree, TreeNode, values_of_plugin
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import finding, value_slot
 
 # Kinds whose names are looked for in values without a site.
 MENTIONED = ("link", "joint", "light")
+HARDWARE, PLUGIN = "hardware", "plugin"
 # Frames that no description declares are common words: they count where the key says so.
 _FRAME_KEY = lazy_compile(r"(?:^|_)(?:frame|frame_id|link)$")
 # What is between names: of lists and paths, of structures, and of what has parts. A name may hold
@@ -87,7 +89,7 @@ def unclaimed_mentions(
 ) -> list[Mention]:
     """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
     scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are all of
-    ``slot_values``. Values with a ``keep`` site are no mention."""
+    ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not read."""
     if not (names or usual):
         return []
     telling = _telling(values, frozenset(names)) | {it: it for it in values if it in usual}
@@ -101,8 +103,27 @@ def unclaimed_mentions(
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree, nodes)
+        and not _is_unread(slot[0], tree.vocabulary)
         and (telling[slot[3]] in names or _is_meant(slot[0], slot[2], slot[3]))
     ]
+
+
+def _is_unread(element: etree._Element, vocabulary: Vocabulary) -> bool:
+    """Is it in a parameter that a plugin or hardware does not read, in no release, for ROS 1 or 2? All
+    is known then that it reads."""
+    for parent in element.iterancestors():
+        if parent.tag == HARDWARE:
+            name = element.get("name", "")
+            every = [vocabulary.values(text_at(parent, PLUGIN))]
+        elif parent.tag == PLUGIN:
+            name = str(element.tag)
+            every = [values_of_plugin(parent, vocabulary, it) for it in (False, True)]
+        else:
+            element = parent
+            continue
+        known = list(filter(None, every))
+        return bool(known) and not any(it.is_open or {name, "/*"} & {*it.rows} for it in known)
+    return False
 
 
 def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:

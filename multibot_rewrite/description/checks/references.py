@@ -146,5 +146,6 @@ def ambiguous(inventory: Inventory) -> Iterator[Problem]:
     both = links.keys() & joints.keys()
     for claim in inventory.claims if both else ():
         if claim.site.kinds == ("link", "joint") and claim.value in both:
-            message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
-            yield about(claim, "MB203", message, "SDF refuses such a pair")
+            message = f"{claim.value!r} is both a link and a joint"
+            hint = "a rewrite takes it for the link; SDF refuses such a pair"
+            yield about(claim, "MB203", message, hint)

@@ -14,8 +14,8 @@ from multibot_rewrite.description.readback.nodes import (
     ReadNode,
     frames_of,
     node_of,
-    resolved,
 )
+from multibot_rewrite.description.readback.other_topics import resolved
 from multibot_rewrite.description.readback.parameters import (
     MODEL,
     around,

@@ -17,6 +17,7 @@ from multibot_rewrite.base.loose_xml import NAMESPACES
 from multibot_rewrite.base.model import Site, VocabularyError
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.vocabulary import (
+    Values,
     Vocabulary,
     VocabularySection,
     split_path,
@@ -241,6 +242,14 @@ def plugin_keys(element: _Element) -> list[str]:
     if "::" in class_:
         known.append(class_.replace("ignition::gazebo::", "gz::sim::"))
     return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
+
+
+def values_of_plugin(
+    element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
+) -> Values | None:
+    """What is known of a plugin, by its library, else by its class."""
+    found = (vocabulary.values(it, of_ros_1) for it in plugin_keys(element))
+    return next(filter(None, found), None)
 
 
 def library_key(library: str) -> str:

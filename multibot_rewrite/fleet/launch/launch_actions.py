@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import UNSENT, said
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
@@ -38,7 +38,7 @@ from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
 from multibot_rewrite.system.records import PUBLISHES
 
-STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
+STATE, BRIDGE = "robot_state_publisher", "bridge.yaml"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
@@ -63,14 +63,14 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
         spawned = [_spawner(given)]
         spawned += [_bridge(names, robot, bridge)] if bridge in files else []
     placed = start_poses.start_poses(one).transforms
-    about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
     starts += [it.start for it in placed]
     copied, bridged_tf = _relays(given)
     starts += copied
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
+    told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
     found = tuple(starts), tuple(spawned), tuple(left.items())
     nodes = tuple(_nodes(names, left))
-    return RobotStarts(robot.spec.name, about, params, *found, bridged_tf, nodes=nodes)
+    return RobotStarts(*told, *found, bridged_tf, nodes=nodes)
 
 
 class _Given(NamedTuple):
@@ -118,18 +118,17 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
-    """A node under a condition: joint states that nobody else sends are needed."""
-    if it.kind != JOINT_STATES:
-        return False
-    sent = [one for one in given.plan.fleet.table.names if _sends_joint_states(one)]
+    """A node under a condition: what nobody else sends is needed."""
+    topic = it.when.removeprefix(f"{UNSENT}: ")
+    sent = [one for one in given.plan.fleet.table.names if _sends(one, topic)]
     mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
     others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
-    return mine.isdisjoint({*others, *given.bridged})
+    return topic != it.when and mine.isdisjoint({*others, *given.bridged})
 
 
-def _sends_joint_states(it: EndpointName) -> bool:
+def _sends(it: EndpointName, topic: str) -> bool:
     end = it.endpoint
-    return end.role == PUBLISHES and not end.when and end.name.endswith("joint_states")
+    return end.role == PUBLISHES and not end.when and end.name.endswith(topic)
 
 
 def _started(given: _Given, name: str) -> Iterator[Start]:

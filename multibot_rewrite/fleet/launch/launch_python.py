@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from textwrap import wrap
-from typing import Any
 
 from multibot_rewrite.fleet.launch.each_robot import Written, functions
+from multibot_rewrite.fleet.launch.python_actions import group, process, quoted, value
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
-    Component,
     File,
     FleetStarts,
     RobotStarts,
-    Start,
-    Text,
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 
-_Files = tuple[File, ...]
 # What brings topics of a simulator is of no use without it.
 BRIDGES = "ros_gz_bridge"
-# What ament_flake8 allows, what stays in one line, and robots of which each has its line to drive.
-WIDTH, _SHORT, _DRIVING = 99, 64, 4
-_FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
-_TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
-# A key with its value, which may be a list or a call.
+# What ament_flake8 allows, and robots of which each has its line to drive.
+WIDTH, _DRIVING = 99, 4
 # A docstring, a comment, a string: whichever begins first.
 _TOKEN = re.compile(r'"""[\s\S]*?"""|#[^\n]*|\'(?:[^\'\\\n]|\\.)*\'|f?"(?:[^"\\\n]|\\.)*"')
-_ENTRY = re.compile(rf"{_TEXTS.pattern}: (?:\[[^\]]*\]|\{{[^}}]*\}}|\w+\([^)]*\)|[^,\[{{]+)")
 
 
 # The names that it imports where it uses them, in this order.
@@ -118,10 +110,10 @@ def chosen(context):
 def to_python(it: FleetStarts) -> str:
     """The text of the file."""
     body = _text(_BODY.splitlines(), *_parts(it))
-    return _single_quoted(_text(_head(it), _imports(body)) + body)
+    return _singlequoted(_text(_head(it), _imports(body)) + body)
 
 
-def _single_quoted(text: str) -> str:
+def _singlequoted(text: str) -> str:
     """The text as ament_flake8 wants it: single quotes but for a string that has one."""
     return _TOKEN.sub(lambda it: _quotes_of(it[0]), text)
 
@@ -196,7 +188,8 @@ def _shell(line: str) -> Iterator[str]:
 
 
 def _written(it: RobotStarts) -> Written:
-    return Written(it.name, it.about, it.about.partition(".")[0], list(_robot(it)))
+    kind = it.description.partition(".")[0]
+    return Written(it.name, f"{it.description} in {it.where}", kind, list(_robot(it)))
 
 
 def _robot(it: RobotStarts) -> Iterator[str]:
@@ -205,172 +198,23 @@ def _robot(it: RobotStarts) -> Iterator[str]:
             text = f"Not started: {name} ({why})"
             yield from (f"    # {line}" for line in wrap(text, WIDTH - 6))
     if it.files:
-        yield f"    params = [{', '.join(_value(File(path)) for path in it.files)}]"
+        yield f"    params = [{', '.join(value(File(path)) for path in it.files)}]"
     own = tuple(File(path) for path in it.files)
     yield "    return ["
     for start in it.starts:
-        yield from _process(start, 8, own)
+        yield from process(start, 8, own)
     if it.bridged_tf:
         yield "        *if_installed("
-        yield f"            {_quoted(BRIDGE)},"
-        yield f"            {_quoted(not_bridged(it.name))},"
+        yield f"            {quoted(BRIDGE)},"
+        yield f"            {quoted(not_bridged(it.name))},"
         yield "            ["
         for start in it.bridged_tf:
-            yield from _process(start, 16)
+            yield from process(start, 16)
         yield "            ],"
         yield "        ),"
-    yield from _group(it.spawned, "simulator", 8)
-    yield from _group(it.windows, "rviz", 8)
+    yield from group(it.spawned, "simulator", 8)
+    yield from group(it.windows, "rviz", 8)
     yield "    ]"
-
-
-def _group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
-    """What is started where a launch argument is true."""
-    if not starts:
-        return
-    space = " " * indent
-    yield f"{space}GroupAction("
-    yield f"{space}    ["
-    for start in starts:
-        yield from _process(start, indent + 8)
-    yield f"{space}    ],"
-    yield f'{space}    condition=IfCondition(LaunchConfiguration("{argument}")),'
-    yield f"{space}),"
-
-
-def _process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
-    space = " " * indent
-    if it.brought_up:
-        yield f"{space}*brought_up("
-        yield from _process(it._replace(brought_up=False), indent + 4, own, "LifecycleNode")
-        yield f"{space}),"
-        return
-    yield f"{space}{'ComposableNodeContainer' if it.components else action}("
-    yield from (f"{space}    {line}" for line in _keywords(it, own))
-    if it.components:
-        yield f"{space}    composable_node_descriptions=["
-        for one in it.components:
-            yield from _component(one, indent + 8, own)
-        yield f"{space}    ],"
-    yield f"{space}),"
-
-
-def _keywords(it: Start, own: _Files) -> Iterator[str]:
-    yield f'package="{it.package}",'
-    yield f'executable="{it.executable}",'
-    yield from _names(it.namespace, it.name)
-    if it.arguments:
-        yield from _list("arguments", [*_pairs(it.arguments)])
-    yield from _given(it.parameters, it.remappings, own)
-    yield 'output="screen",'
-
-
-def _names(namespace: str, name: str) -> Iterator[str]:
-    if namespace:
-        yield f'namespace="{namespace}",'
-    if name:
-        yield f'name="{name}",'
-
-
-def _given(
-    parameters: Sequence[File | Mapping[str, Any]],
-    remappings: Iterable[tuple[str, str]],
-    own: _Files,
-) -> Iterator[str]:
-    """``own`` are the files that the robot's function calls ``params``."""
-    common = bool(own) and tuple(parameters[: len(own)]) == own
-    words = ["*params"] if common else []
-    words += [_value(it) for it in parameters[len(own) * common :]]
-    yield from _list("parameters", [*words, "CLOCK"])
-    pairs = list(remappings)
-    if pairs:
-        yield "remappings=["
-        yield from (f"    ({_value(old)}, {_value(new)})," for old, new in pairs)
-        yield "],"
-
-
-def _list(key: str, items: Sequence[str]) -> Iterator[str]:
-    """A keyword with a list: in one line where that is short, whatever the names of robots are."""
-    line = f"{key}=[{', '.join(items)}],"
-    if _is_short(line):
-        yield line
-        return
-    yield f"{key}=["
-    yield from (f"    {line}" for it in items for line in _item(it))
-    yield "],"
-
-
-def _is_short(text: str) -> bool:
-    """Does it stay in one line? Robots that only a number tells apart look the same."""
-    return len(re.sub(r"\d", "", text)) <= _SHORT
-
-
-def _item(it: str) -> Iterator[str]:
-    """An item of a list; a long dictionary or list of words in several lines."""
-    if _is_short(it) or not it.startswith("{"):
-        yield f"{it},"
-        return
-    yield "{"
-    for text in _ENTRY.findall(it[1:-1]):
-        yield from (f"    {line}" for line in _entry(text))
-    yield "},"
-
-
-def _entry(text: str) -> Iterator[str]:
-    key, _, value = text.partition(": ")
-    if _is_short(text) or not value.startswith("["):
-        yield f"{text},"
-        return
-    yield f"{key}: ["
-    yield from (f"    {it}," for it in _TEXTS.findall(value))
-    yield "],"
-
-
-def _pairs(words: Iterable[str | File]) -> Iterator[str]:
-    """The arguments of a program: a flag and its value stand together."""
-    flag = ""
-    for it in words:
-        is_flag = isinstance(it, str) and _FLAG.fullmatch(it) is not None
-        if flag and is_flag:
-            yield flag
-            flag = ""
-        if is_flag:
-            flag = _value(it)
-        else:
-            yield f"{flag}, {_value(it)}" if flag else _value(it)
-            flag = ""
-    if flag:
-        yield flag
-
-
-def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
-    space = " " * indent
-    yield f"{space}ComposableNode("
-    yield f'{space}    package="{it.package}",'
-    yield f'{space}    plugin="{it.plugin}",'
-    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
-    yield from (f"{space}    {line}" for line in lines)
-    yield f"{space}),"
-
-
-def _value(it: Any) -> str:
-    if isinstance(it, File):
-        return f"file({_quoted(it.path)})"
-    if isinstance(it, Text):
-        return f"text({_quoted(it.path)})"
-    if isinstance(it, str):
-        return _quoted(it)
-    if isinstance(it, Mapping):
-        return "{" + ", ".join(f"{_quoted(key)}: {_value(one)}" for key, one in it.items()) + "}"
-    if isinstance(it, list):
-        return f"[{', '.join(map(_value, it))}]"
-    return repr(it)
-
-
-def _quoted(text: str) -> str:
-    import json
-
-    return json.dumps(text)
 
 
 def _description(it: FleetStarts) -> Iterator[str]:
@@ -381,17 +225,17 @@ def _description(it: FleetStarts) -> Iterator[str]:
     for name, default, about in launch_arguments(it):
         yield "            DeclareLaunchArgument("
         yield f'                "{name}",'
-        yield f"                default_value={_value(default)},"
+        yield f"                default_value={value(default)},"
         yield f'                description="{about}",'
         yield "            ),"
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
     inside = [start for start in it.shared if it.simulators and start.package == BRIDGES]
-    yield from _group(inside, "simulator", 12)
+    yield from group(inside, "simulator", 12)
     for start in (start for start in it.shared if start not in inside):
-        yield from _process(start, 12)
+        yield from process(start, 12)
     yield "            OpaqueFunction(function=chosen),"
-    yield from _group(it.windows, "rviz", 12)
+    yield from group(it.windows, "rviz", 12)
     yield "        ]"
     yield "    )"
 

@@ -65,13 +65,15 @@ def shell_line(it: Start) -> str:
 
 
 class RobotStarts(NamedTuple):
-    """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
-    simulator, ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its
-    tf to ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone. ``nodes``
-    are the full names of those that are started."""
+    """What one robot runs: ``description`` is the name of its file, ``where`` its namespace in words;
+    ``files`` are its parameter files, ``spawned`` is what brings it into the simulator,
+    ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its tf to
+    ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone. ``nodes`` are the
+    full names of those that are started."""
 
     name: str
-    about: str
+    description: str
+    where: str
     files: tuple[str, ...]
     starts: tuple[Start, ...]
     spawned: tuple[Start, ...]

@@ -6,63 +6,14 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from math import ceil, dist
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.description.checks.footprint import reach_of
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.fleet.file.fleet_file import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.rules.launch.models import in_each_other
 
-_CART = """\
-<robot name="cart">
-  <link name="base_link">
-    <collision><geometry><box size="0.6 0.4 0.2"/></geometry></collision>
-  </link>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>
-  </gazebo>
-</robot>
-"""
-_FLEET = """\
-layout: both
-description: cart.urdf
-robots:
-  - {name: robot1, pose: {x: 1.0}}
-  - {name: robot2, pose: {x: PLACE}}
-"""
-TOO_NEAR = declare(
-    "MF835",
-    "robots-in-each-other",
-    ERROR,
-    what="Two robots start in each other: there is less room between their start poses than their "
-    "shapes need.",
-    why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
-    "entangled.",
-    fix="Give them poses that are further apart. Without a pose a robot is spawned at the origin.",
-    bad=_FLEET.replace("PLACE", "1.2"),
-    good=_FLEET.replace("PLACE", "2.2"),
-    line=5,
-    formats=("fleet",),
-    beside={"cart.urdf": _CART},
-)
-NO_POSE = declare(
-    "MF839",
-    "robots-without-start-pose",
-    WARNING,
-    what="Robots run in a simulator, no launch file of theirs spawns them, and none has a start pose: "
-    "all are spawned at the origin.",
-    why="They stand in each other: the simulator pushes them apart, and they fly away or tip over.",
-    fix="Give each robot a `pose`, or all of them a `step`. Robots that are not simulated have "
-    "`simulator: none`.",
-    bad=_FLEET.replace(", pose: {x: 1.0}", "")
-    .replace(", pose: {x: PLACE}", "")
-    .replace("robots:", "simulator: gazebo\nrobots:"),
-    good=_FLEET.replace("PLACE", "2.2").replace("robots:", "simulator: gazebo\nrobots:"),
-    line=6,
-    formats=("fleet",),
-    beside={"cart.urdf": _CART},
-)
 _BRIDGE = "ros_gz_bridge"
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
@@ -101,12 +52,11 @@ def _without_poses(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> Iterato
         room = ceil(4 * reach)
         message = f"no robot has a start pose: all {len(robots)} are spawned in each other"
         hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
-        yield at_robot(NO_POSE, robots[1], message, hint)
+        yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
 
 
 def _within(it: RewrittenRobot) -> float:
-    """What is surely filled: half of how far it reaches."""
-    return reach_of(it.member.inventory.document.root) / 2
+    return filled_by(it.member.inventory.document.root)
 
 
 def _pairs(
@@ -128,4 +78,4 @@ def _finding(robot: RewrittenRobot, other: str, gap: float, needed: float) -> Fi
         f"robot {robot.spec.name!r} starts {gap:.2f} m from robot {other!r}; their shapes need"
         f" {needed:.2f} m"
     )
-    return at_robot(TOO_NEAR, robot, message, "give them pose: further apart")
+    return at_robot(in_each_other, robot, message, "give them pose: further apart")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
@@ -36,7 +38,7 @@ from multibot_rewrite.producers.transforms import (
     virtual_lookups,
 )
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
-from multibot_rewrite.system.records import SUBSCRIBES, Edge, Lookup, Node, Place, System
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, End, Lookup, Node, Place, System
 
 NONE = Semantics((), ())
 
@@ -54,42 +56,47 @@ def system_before(
 ) -> RobotSystem:
     """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
     usual launch files remap."""
-    source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
+    source, given = robot.member.source, evidence.given
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
     nodes = [_runs(it, moves) for it in evidence.nodes]
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.vocabulary)
-    sections = {it.name: it for it in given}
-    ends = [
-        *(end for node in nodes for end in node_ends(node, sections.get(node.name))),
-        *plugin_ends(reading),
-        *(
-            end
-            for it in bridges
-            for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
-            for end in either_way(row)
-        ),
-    ]
     sent = {child for node in nodes for child in children_of(node)}
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
     plain = [_plainly(robot, it) for it in given]
-    said = (
-        semantics(read_document(srdf.data, srdf.file).root, source.root, srdf.file)
-        if srdf
-        else NONE
-    )
+    said = _said(srdf, source.root)
     exports = (_plain(robot, it) for it in exported(source.root, source.file))
     return RobotSystem(
         _control(plain, evidence, exports, _documents(robot, "moveit"), said),
         System(
             nodes=tuple(_nodes_of(nodes, reading)),
-            ends=tuple(ends),
+            ends=tuple(_ends_of(robot, nodes, given, reading)),
             edges=tuple(_edges_of(robot, nodes, evidence, sent)),
             environment=DRIVERS,
             lookups=tuple(_lookups(plain, evidence.known, said, sent)),
         ),
     )
+
+
+def _said(srdf: Job | None, root: _Element) -> Semantics:
+    """What an SRDF says of the description."""
+    if srdf is None:
+        return NONE
+    return semantics(read_document(srdf.data, srdf.file).root, root, srdf.file)
+
+
+def _ends_of(
+    robot: RewrittenRobot, nodes: Iterable[NodeFacts], given: Iterable[GivenNode], reading: Reading
+) -> Iterator[End]:
+    """The ends of nodes, plugins and bridges."""
+    sections = {it.name: it for it in given}
+    for node in nodes:
+        yield from node_ends(node, sections.get(node.name))
+    yield from plugin_ends(reading)
+    for it in _documents(robot, "bridge"):
+        for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file)):
+            yield from either_way(row)
 
 
 def _control(

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.knowledge.conditions import NODL, OPEN_KIND
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.nodl.document import Document, Parameter
 from multibot_rewrite.knowledge.nodl.lookup import (
@@ -27,7 +28,7 @@ from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 EVERY_NODE = "every_node"
 # An endpoint of the library alone keeps its rule, and is not asked for: the document may be partial.
-NOT_IN_NODL = "nodl: no"
+NOT_IN_NODL = f"{OPEN_KIND}: {NODL}"
 TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
 _TF = ("/tf", "/tf_static")
 _TF_TYPE = "tf2_msgs/msg/TFMessage"

@@ -20,6 +20,7 @@ import yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import source_of
+from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
@@ -73,8 +74,7 @@ def failure(error: BaseException) -> str:
     found = _NOT_FOUND.search(str(error))
     if found:
         name = found[1] or found[2]
-        hint = "source its workspace, or give the folder of its sources with --roots"
-        return f"package {name!r} is not installed here; {hint}"
+        return f"package {name!r} is not installed here; {ROOTS}"
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from multibot_rewrite.knowledge.conditions import ALSO, of_kind
 from multibot_rewrite.knowledge.programs import runs
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.launch.deciding import as_started
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
 
@@ -24,32 +24,21 @@ def last_word(it: LaunchedNode) -> str:
     return it.executable.rpartition(":")[2]
 
 
-def _as_started(facts: NodeFacts, it: LaunchedNode) -> NodeFacts:
-    """What is known of a node as this program has it with these arguments."""
-    program, arguments = {it.executable}, {*it.arguments}
-    ends: list[Endpoint] = []
-    for end in facts.endpoints:
-        when = of_kind(end.when, "argument", lambda words: not arguments.isdisjoint(_or(words)))
-        if when and "::" not in it.executable:
-            when = of_kind(when, "program", lambda words: not program.isdisjoint(_or(words)))
-        ends += [] if when is None else [end._replace(when=when)]
-    return facts._replace(endpoints=tuple(ends))
-
-
-def _or(words: str) -> list[str]:
-    return [it.strip() for it in words.split(ALSO)]
+def _snake(name: str) -> str:
+    return _CAMEL.sub("_", name).lower()
 
 
 def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
     """What is known of a node: by its name in a stack, else by its package and executable."""
-    executable = _CAMEL.sub("_", last_word(it)).lower()
+    executable = _snake(last_word(it))
     program = f"{it.package}/{it.executable}"
     of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
     wanted = {it.name, it.executable, executable, executable.removesuffix("_node")}
     of_package = [node for node in known.values() if node.package == it.package and not node.host]
-    by_word = (node for node in of_package if node.name in wanted)
+    # A component that has a program of its own is called as its class: RectifyNode, rectify_node.
+    by_word = (node for node in of_package if {node.name, _snake(node.name)} & wanted)
     chosen = (node for node in known.values() if runs(node, program))
     found = next(of_stack, None) or next(chosen, None) or next(by_word, None)
-    return _as_started(found, it) if found else None
+    return as_started(found, it.executable, it.arguments) if found else None

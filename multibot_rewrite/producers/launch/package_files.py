@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.description.sources.packages import package_folders
 
-_ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"
+ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"
 
 
 def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
@@ -23,7 +23,7 @@ def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
     # What is installed counts first, as for the includes of a launch.
     folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
     if not folders:
-        raise UsageError(f"launch {package} {name}: package {package!r} is not found; {_ROOTS}")
+        raise UsageError(f"launch {package} {name}: package {package!r} is not found; {ROOTS}")
     found = sorted(_called(name, folders[0]))
     if len(found) == 1:
         return found[0]

@@ -127,6 +127,11 @@ class RunningNode(NamedTuple):
         """Namespace and name."""
         return expand(self.name, self.namespace, "")
 
+    def value(self, name: str) -> object:
+        """What a parameter is set to; None where nothing sets it."""
+        given = self.values.get(name)
+        return given.value if given else None
+
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
     """The order of what follows ``ros2 launch``: a file, or a package and a file in it, and

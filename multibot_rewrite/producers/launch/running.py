@@ -27,6 +27,7 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.models import (
     Model,
@@ -189,7 +190,7 @@ def _with_values(
 ) -> NodeFacts | None:
     if facts is None:
         return None
-    made = filled(facts, given)._replace(known=facts.kind)
+    made = as_named(filled(facts, given)._replace(known=facts.kind), words, given.values)
     return with_static_transform(made, words)
 
 

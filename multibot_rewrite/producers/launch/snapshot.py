@@ -7,10 +7,7 @@ condition that nobody knows is left out.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
-
-from lxml import etree
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
@@ -26,6 +23,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
+from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.launched import (
     Launched,
@@ -33,6 +31,16 @@ from multibot_rewrite.producers.launch.launched import (
     models_in_simulator,
 )
 from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
+from multibot_rewrite.producers.launch.node_transforms import (
+    TF_TYPE,
+    Sent,
+    edges_of,
+    passed_on,
+    prefix_of,
+    publishes_a_tree,
+    root_of,
+    tree_of,
+)
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
@@ -43,7 +51,6 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.transforms import lookups_of
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     ACTION,
@@ -62,19 +69,14 @@ from multibot_rewrite.system.records import (
     Node,
     Parameter,
     System,
-    edge_of,
 )
 
-TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
     "node-not-known",
     "description-not-known",
     "rcl-refuses",
 )
-
-
-Sent = Mapping[str, Sequence[Edge]]
 
 
 class _Part(NamedTuple):
@@ -94,14 +96,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     """All that the launch starts, and the system that this makes."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
-    refused: list[str] = []
-    parts = []
-    for it in nodes:
-        try:
-            parts.append(_part(it, inside))
-        except UsageError as error:
-            refused.append(f"{it.full_name} ({it.place}: {error})")
-            parts.append(_Part(it.full_name, (), ()))
+    parts, refused = _parts(nodes, inside)
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
     caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
     system = System(
@@ -119,6 +114,36 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     return found._replace(system=system._replace(heard=tuple(heard)))
 
 
+def _parts(nodes: Sequence[RunningNode], inside: Sent) -> tuple[list[_Part], list[str]]:
+    """What each node adds, and the nodes that rcl refuses. Some listen only where somebody listens to
+    them: they are asked again until no topic has a new subscriber."""
+    parts, refused = [], []
+    for it in nodes:
+        try:
+            parts.append(_part(it, inside))
+        except UsageError as error:
+            refused.append(f"{it.full_name} ({it.place}: {error})")
+            parts.append(_Part(it.full_name, (), ()))
+    lazy = [at for at, it in enumerate(nodes) if it.facts and asks_who_listens(it.facts)]
+    lazy = [at for at in lazy if parts[at].endpoints]
+    heard: Collection[str] = ()
+    while lazy and heard != (now := frozenset(_read(parts))):
+        heard = now
+        for at in lazy:
+            parts[at] = _part(_listened_to(nodes[at], heard), inside)
+    return parts, refused
+
+
+def _read(parts: Iterable[_Part]) -> Iterator[str]:
+    """The topics that somebody subscribes to."""
+    yield from (it.name for part in parts for it in part.endpoints if it.role == SUBSCRIBES)
+
+
+def _listened_to(it: RunningNode, heard: Collection[str]) -> RunningNode:
+    bound = bound_of(it.name, it.namespace, it.rules)
+    return it._replace(facts=as_heard(it.facts, heard, bound) if it.facts else None)
+
+
 def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[Heard]:
     """The frames of what bridges bring from sensors in the simulator."""
     for it in nodes:
@@ -132,7 +157,7 @@ def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[
 def _lookups(it: RunningNode) -> Iterator[Lookup]:
     """What a node asks of tf by its parameters, with what it puts before its frames."""
     for asked in lookups_of(it.full_name, it.facts, it.values) if it.facts else ():
-        yield asked._replace(frame=f"{_prefix(it)}{asked.frame}")
+        yield asked._replace(frame=f"{prefix_of(it)}{asked.frame}")
 
 
 def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Address]:
@@ -140,8 +165,8 @@ def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Ad
     model in a simulator."""
     node = known.parameters.nodes.get(it.facts.known) if it.facts else None
     yield from of_parameters(it.full_name, node.params if node else {}, it.values)
-    text = _value(it, DESCRIPTION)
-    root = None if any(one.spawned and one.text == text for one in models.found) else _root(text)
+    text = it.value(DESCRIPTION)
+    root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
         yield from of_hardware(root, it.full_name, it.place)
 
@@ -177,7 +202,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
         hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
-    treeless = [it.full_name for it in nodes if _publishes_a_tree(it) and _tree(it) is None]
+    treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
@@ -215,28 +240,36 @@ def _part(it: RunningNode, inside: Sent) -> _Part:
     helper = bound_of(it.name, it.process_namespace, it.process_rules)
     own = _endpoints(it, name, bound, helper)
     ends = [*own, *_bridged(it, name, bound)]
-    if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
+    if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
-        name, tuple(dict.fromkeys(ends)), (*_edges(it, bound), *_passed_on(it, bound, inside))
+        name, tuple(dict.fromkeys(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
     )
 
 
 def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) -> Iterator[End]:
     for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
         if not end.when and end.name and "<" not in end.name:
-            own = end._replace(name=_below_namespace_above(it, end))
-            full = _resolved(own, helper if end.helper else bound)
-            type_ = chosen_type(end.types, partial(_value, it)) or end.type
+            full = _full(it, end, helper if end.helper else bound)
+            type_ = chosen_type(end.types, it.value) or end.type
             who = f"{name}{end.by}"
             yield End(
                 end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
             )
 
 
+def _full(it: RunningNode, end: Endpoint, bound: BoundNode) -> str:
+    """The name that an endpoint has; that of one beside another is made of the other's
+    (image_transport camera_common.cpp getCameraInfoTopic)."""
+    if not end.beside:
+        return _resolved(end._replace(name=_below_namespace_above(it, end)), bound)
+    above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
+    return f"{above}/{end.name.rpartition('/')[2]}"
+
+
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
     """The name of an endpoint that its node resolves in the namespace above its own, else its name."""
-    if not end.above or str(_value(it, end.parameter) or "").startswith("/"):
+    if not end.above or str(it.value(end.parameter) or "").startswith("/"):
         return end.name
     return expand(end.name.lstrip("/"), it.namespace.rpartition("/")[0] or "/", "")
 
@@ -253,78 +286,6 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
     for end, _ in bridged_by(it):
         full = resolve_bound(end.name, end.kind, bound)
         yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
-
-
-def _edges(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
-    """The transforms of a node, each with its topic."""
-    if it.facts is None:
-        return
-    sent = [end.name for end in it.facts.endpoints if end.role == PUBLISHES and not end.when]
-    for edge in _own_edges(it):
-        topic = TF_STATIC if edge.static else TF
-        # A driver may send its odometry on tf_static, and nodes may only have one of the two.
-        named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
-        if named:
-            yield resolve_bound(named, TOPIC, bound), edge
-
-
-def _passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
-    """The transforms of the simulator that a bridge passes on."""
-    for end, own in bridged_by(it):
-        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
-            full = resolve_bound(end.name, TOPIC, bound)
-            yield from ((full, edge) for edge in inside.get(own, ()))
-
-
-def _own_edges(it: RunningNode) -> Iterable[Edge]:
-    if it.facts is None:
-        return ()
-    if _publishes_a_tree(it):
-        return _tree(it) or ()
-    prefix = _prefix(it)
-    return _below(prefix, sent_by(it.facts, ""))
-
-
-def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
-    return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
-
-
-def _prefix(it: RunningNode) -> str:
-    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
-    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
-    prefix = _value(it, "tf_prefix")
-    switch = it.facts.prefix_switch if it.facts else ""
-    if switch:
-        own = _value(it, "tf_frame_prefix") or it.namespace
-        prefix = "" if _value(it, switch) is False else own
-    bare = str(prefix or "").strip("/")
-    return f"{bare}/" if bare else ""
-
-
-def _publishes_a_tree(it: RunningNode) -> bool:
-    return it.facts is not None and it.facts.package == STATE_PUBLISHER
-
-
-def _tree(it: RunningNode) -> list[Edge] | None:
-    """The transforms of a description under ``frame_prefix``; None where that is not known."""
-    prefix = str(_value(it, "frame_prefix") or "")
-    root = _root(_value(it, DESCRIPTION))
-    return None if root is None else _below(prefix, edges_in(root))
-
-
-def _root(text: object) -> etree._Element | None:
-    """The root of a description; None where it is not known."""
-    if not isinstance(text, str) or not text.strip():
-        return None
-    try:
-        return etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
-    except etree.XMLSyntaxError:
-        return None
-
-
-def _value(it: RunningNode, name: str) -> object:
-    given = it.values.get(name)
-    return given.value if given else None
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
@@ -347,5 +308,5 @@ def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
     that hold for ever needs no time."""
     for it in nodes:
         if it.facts is not None and it.facts.known not in ("", STATIC):
-            text = parameter_text(_value(it, SIM_TIME) is True)
+            text = parameter_text(it.value(SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.spawners import Spawned
@@ -28,15 +28,15 @@ structure:
       {pkg: controller_manager, exec: spawner, args: [drive, -n, arm, -c, MANAGER]}
 """
 NO_MANAGER = declare(
-    "MF838",
-    "spawner-without-manager",
-    WARNING,
-    what="A spawner of a launch file asks for a controller manager that none of the robot's launch "
-    "files starts, and they start another one.",
+    "MG723",
+    "no-controller-manager",
+    ERROR,
+    what="A spawner waits for a controller manager that no node of the launch files and no plugin of a "
+    "published description makes. A warning of `build`, where they start another one.",
     why="The spawner waits for the manager and gives up: its controllers are never loaded. A relative "
     "name is below the spawner's namespace, so a namespace in both is there twice.",
-    fix="Name the manager that runs, without the namespace that the spawner has already, or with a "
-    "slash before the whole name.",
+    fix="Name the manager that runs (`-c`), without the namespace that the spawner has already, or "
+    "with a slash before the whole name; or start it in that namespace.",
     bad=f"launch: system_model.yaml\n{_ROBOTS}",
     good=f"launch: right.yaml\n{_ROBOTS}",
     line=5,
@@ -75,4 +75,4 @@ def _findings(lost: Iterable[Spawned], meant: str) -> Iterator[Finding]:
     for (file, line, manager), names in spawners.items():
         message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
         hint = f"{meant} is started; give the namespace once; the plan has them there"
-        yield NO_MANAGER.finding(message, hint, file=file, line=line, column=1)
+        yield NO_MANAGER.finding(message, hint, level=WARNING, file=file, line=line, column=1)

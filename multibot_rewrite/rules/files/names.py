@@ -167,11 +167,12 @@ def _missing_owner(file: NamedFile, site: Site) -> str:
     "MB875",
     "file-of-another-robot",
     ERROR,
-    what="Most joints, links, frames and groups that a file of MoveIt names are not in the description "
-    "that it is built for.",
-    why="move_group takes no limits, solvers or controllers from such a file: trajectories have the "
-    "limits of the URDF, groups have no inverse kinematics, and execution fails.",
-    fix="Name the file of this robot, or give its xacro the arguments that the file was written for.",
+    what="Most joints, links, frames and groups that a file of MoveIt, or an SRDF, names are not in "
+    "the description that it is built for.",
+    why="move_group takes no limits, solvers or controllers from such a file, and of such an SRDF it "
+    "leaves out what it does not find: groups are empty, and nothing can be planned.",
+    fix="Name the file of this robot, or give its xacro the arguments that the file was written for; "
+    "often one of the two got a prefix that the other did not get.",
     bad="""\
 joint_limits:
   left_wheel_joint: {max_velocity: 1.0}

@@ -28,22 +28,9 @@ _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 _OFF = ("false", "no", "off")
 
 
-@rule(
-    "MB880",
-    "same-port-or-file",
-    WARNING,
-    what="A port, file or other thing that only one node can have is the same for all robots.",
-    why="The node of the second robot cannot open the port, or both write into one file and damage it.",
-    fix="Set it for each robot, in a parameter file that is loaded after this one.",
-    bad=a_section("rosbridge_websocket", "port: 9090"),
-    good=a_section("rosbridge_websocket", "max_message_size: 1000000"),
-    line=3,
-    formats=(PARAMS,),
-    options={"robots": _TWO},
-)
 @of_robots
-def same_for_all(file: NamedFile) -> Iterator[Remark]:
-    """Each such parameter that is set."""
+def _exclusive(file: NamedFile) -> Iterator[Remark]:
+    """Each parameter that is set and that only one node can have so."""
     for site in file.names:
         if site.kind == "exclusive" and site.text and site.text.lower() not in _OFF:
             message = f"{site.key} {site.text} is the same for all robots"
@@ -182,26 +169,8 @@ _OF_THE_COMPUTER = "${ROS_HOME}"
 _SCHEMES = ("file://", "package://")
 
 
-@rule(
-    "MB884",
-    "calibration-of-all-robots",
-    NOTE,
-    what="A parameter names the calibration of a camera, and each robot gets the same.",
-    why="The file has no name of a robot, so it is left where it is. But it describes the lens of one "
-    "camera: of two real robots at least one measures wrongly, and on one computer the calibration of "
-    "one robot (set_camera_info) overwrites that of the other.",
-    fix="Write `<robot_namespace>` into the path, which becomes the robot's name, and calibrate each "
-    "camera; or leave the parameter out: then the file is on each robot's own computer.",
-    bad=a_section("usb_cam", "camera_info_url: package://my_robot/config/camera.yaml"),
-    good=a_section(
-        "usb_cam", "camera_info_url: package://my_robot/config/<robot_namespace>/camera.yaml"
-    ),
-    line=3,
-    formats=(PARAMS,),
-    options={"robots": _TWO},
-)
 @of_robots
-def shared_calibration(file: NamedFile) -> Iterator[Remark]:
+def _calibrations(file: NamedFile) -> Iterator[Remark]:
     """Each calibration that all robots of a file read; a file for one robot has its own."""
     # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
     # package:// or flash:///, with ${NAME} and ${ROS_HOME} filled in; the file has no robot's name.
@@ -213,4 +182,10 @@ def shared_calibration(file: NamedFile) -> Iterator[Remark]:
         if is_url and not own:
             message = f"every robot reads the calibration {text!r}; real cameras have one each"
             hint = "write <robot_namespace> into the path, which becomes the robot's name"
-            yield remark_at(url, message, hint)
+            yield remark_at(url, message, hint, NOTE)
+
+
+def one_device(file: NamedFile) -> Iterator[Remark]:
+    """What only one node can have, and calibrations of cameras."""
+    yield from _exclusive(file)
+    yield from _calibrations(file)

@@ -7,10 +7,13 @@ src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import combinations
+from math import dist
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
     Launched,
@@ -59,31 +62,36 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule(
     "MG702",
-    "models-at-one-place",
-    what="A launch file spawns two models at the same place.",
-    why="They stand in each other: the simulator pushes them apart, and they fly away or tip over.",
-    fix="Give each a place of its own with `-x` and `-y`.",
+    "robots-in-each-other",
+    what="Two robots start in each other: a launch file spawns one where another stands, or there is "
+    "less room between the start poses of a fleet file than the shapes need. A warning where robots "
+    "run in a simulator, no launch file of theirs spawns them, and none has a start pose.",
+    why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
+    "entangled.",
+    fix="Give each a place of its own: `-x` and `-y` of its spawner; `pose` of a robot, or `step` of "
+    "all robots of a fleet file. Robots that are not simulated have `simulator: none` there.",
     bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "1")),
     good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
     line=1,
     beside=ROVERS,
 )
-def one_place(launched: Launched) -> Iterator[Finding]:
+def in_each_other(launched: Launched) -> Iterator[Finding]:
     """Of descriptions in URDF: a model in SDF may have a pose of its own."""
     models = [it for it in models_in_simulator(launched) if it.root.tag == "robot"]
-    for one, other in combinations(models, 2):
-        if one.name != other.name and _is_near(one, other):
+    placed = [(it, place, filled_by(it.root)) for it in models for place in _place_of(it)]
+    for (one, here, own), (other, there, reach) in combinations(placed, 2):
+        if one.name != other.name and dist(here, there) < max(_NEAR, own + reach):
             where = ", ".join(other.words.get(it, "0") for it in _POSE)
             message = f"spawns {other.name} where {one.name} stands, at {where}"
-            yield at(one_place, other.place, message, f"move one with -x or -y; see {one.place}")
+            yield at(
+                in_each_other, other.place, message, f"move one with -x or -y; see {one.place}"
+            )
 
 
-def _is_near(one: InSimulator, other: InSimulator) -> bool:
-    try:
-        pairs = [[float(it.words.get(key, 0)) for key in _POSE] for it in (one, other)]
-    except ValueError:
-        return False
-    return all(abs(a - b) < _NEAR for a, b in zip(*pairs, strict=True))
+def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
+    """Where a model is spawned; nothing for what is no number."""
+    with suppress(ValueError):
+        yield tuple(float(it.words.get(key, 0)) for key in _POSE)
 
 
 @launch_rule(

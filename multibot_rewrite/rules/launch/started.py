@@ -11,14 +11,23 @@ from collections import Counter
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.rules.launch.declaration import (
+    FIRST,
+    LAUNCH,
+    at,
+    launch_of,
+    launch_rule,
+    node_of,
+)
 
 _SPAWNER = node_of("controller_manager", "spawner", ("arm",))
 _MANAGER = node_of("controller_manager", "ros2_control_node")
@@ -98,19 +107,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
             yield at(spawned_twice, last.place, message, "is one of them another robot's?")
 
 
-@launch_rule(
-    "MG723",
-    "no-controller-manager",
-    what="A spawner waits for a controller manager that no node of the launch file and no plugin of a "
-    "published description makes.",
-    why="The spawner waits and ends; none of its controllers is started.",
-    fix="Correct the name of the manager (`-c`), or start it in that namespace.",
-    bad=launch_of(
-        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
-    ),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
-)
-def no_manager(launched: Launched) -> Iterator[Finding]:
+def _no_manager(launched: Launched) -> Iterator[Finding]:
     """An error where all nodes are known, or a manager of another namespace is there."""
     there = [it.full_name for it in launched.nodes if _is(it, "controller_manager")]
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -124,6 +121,18 @@ def no_manager(launched: Launched) -> Iterator[Finding]:
         certain = bool(near) or _is_known(launched)
         level = {} if certain else {"level": INCONCLUSIVE}
         yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)
+
+
+no_manager = spawner_managers.NO_MANAGER._replace(
+    check=_no_manager,
+    bad=launch_of(
+        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
+    ),
+    good=launch_of(_WITH_TYPE, _SPAWNER),
+    line=FIRST,
+    formats=(LAUNCH,),
+    beside=NOTHING,
+)
 
 
 def _is(it: RunningNode, known: str) -> bool:
@@ -213,7 +222,7 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     """By full names: a manager is for the nodes of its namespace."""
     managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
     listed = {name: it for it in managers for name in _listed(it)}
-    known = all(isinstance(_names(it), list) for it in managers)
+    known = all(isinstance(it.value("node_names"), list) for it in managers)
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
         kind = it.facts.kind if it.facts else ""
@@ -237,17 +246,11 @@ _SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_se
 
 
 def _activates_itself(it: RunningNode) -> bool:
-    given = it.values.get("autostart_node")
-    return given is not None and given.value is True
-
-
-def _names(it: RunningNode) -> object:
-    given = it.values.get("node_names")
-    return given.value if given else None
+    return it.value("autostart_node") is True
 
 
 def _listed(it: RunningNode) -> Iterator[str]:
-    names = _names(it)
+    names = it.value("node_names")
     yield from (
         (expand(str(one), it.namespace, "") for one in names or ())
         if isinstance(names, list)

@@ -12,14 +12,26 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import isclose, pi
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
-from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.rules.launch.declaration import (
+    FIRST,
+    LAUNCH,
+    at,
+    launch_of,
+    launch_rule,
+    node_of,
+)
+from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 
+_PUBLISHER = (
+    'Node(package="robot_state_publisher", executable="robot_state_publisher", '
+    'remappings=[("{}", "joints")], parameters=[{{"robot_description": "x"}}])'
+)
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
 _TF = "tf2_ros", "static_transform_publisher"
@@ -90,27 +102,7 @@ def _number(word: str) -> float | None:
         return None
 
 
-@launch_rule(
-    "MG712",
-    "remap-matches-nothing",
-    level=WARNING,
-    what="A remap rule of a launch file is for a name that the node has not, but nearly has.",
-    why="The rule does nothing: the node keeps its own name.",
-    fix="Write the name as the node has it.",
-    bad=launch_of(
-        node_of(
-            "robot_state_publisher", "robot_state_publisher",
-            remappings='[("joint_stats", "joints")]', parameters='[{"robot_description": "x"}]',
-        )
-    ),
-    good=launch_of(
-        node_of(
-            "robot_state_publisher", "robot_state_publisher",
-            remappings='[("joint_states", "joints")]', parameters='[{"robot_description": "x"}]',
-        )
-    ),
-)  # fmt: skip
-def matches_nothing(launched: Launched) -> Iterator[Finding]:
+def _matches_nothing(launched: Launched) -> Iterator[Finding]:
     """Only for a name that is mistyped: the code of a node may have more than is known."""
     for it in launched.nodes:
         names = [end.name.lstrip("/~") for end in it.facts.endpoints] if it.facts else []
@@ -120,6 +112,15 @@ def matches_nothing(launched: Launched) -> Iterator[Finding]:
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"
                 yield at(matches_nothing, it.place, message, f"did you mean {near}?")
+
+
+matches_nothing = RULE_WITHOUT_NAME._replace(
+    check=_matches_nothing,
+    bad=launch_of(_PUBLISHER.format("joint_stats")),
+    good=launch_of(_PUBLISHER.format("joint_states")),
+    line=FIRST,
+    formats=(LAUNCH,),
+)
 
 
 @launch_rule(

@@ -38,7 +38,7 @@ class Described(NamedTuple):
     """A section: its name, the words behind it, its rows by name, the names that are required."""
 
     name: str
-    about: tuple[str, ...]
+    words: tuple[str, ...]
     rows: Mapping[str, tuple[Row, ...]]
     needed: tuple[str, ...]
 

@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.nearest import fold, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.description.rewriters.tree import plugin_keys
+from multibot_rewrite.description.rewriters.tree import values_of_plugin
 from multibot_rewrite.description.rewriters.vocabulary import Value, Values, Vocabulary
 from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
@@ -26,14 +26,6 @@ from multibot_rewrite.rules.schema.values import shortened
 GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
 # How the libraries end that come with Gazebo Classic itself.
 CLASSIC = "Plugin"
-
-
-def values_of_plugin(
-    element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
-) -> Values | None:
-    """What is known of a plugin, by its library, else by its class."""
-    found = (vocabulary.values(it, of_ros_1) for it in plugin_keys(element))
-    return next(filter(None, found), None)
 
 
 def plugin_faults(

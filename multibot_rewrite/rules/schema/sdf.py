@@ -250,7 +250,7 @@ def words(name: str) -> tuple[str, ...]:
 
 def _is_folded(name: str) -> bool:
     found = described(f"{WORDS} {name}")
-    return found is not None and "folded" in found.about
+    return found is not None and "folded" in found.words
 
 
 def _unknown(

@@ -27,7 +27,7 @@ class Version(NamedTuple):
 
 
 KNOWN = (Version(1, 0), Version(1, 1), Version(1, 2))
-OLDEST, NEWEST = KNOWN[0], KNOWN[-1]
+OLDEST = KNOWN[0]
 
 
 @lru_cache(maxsize=64)  # a dozen rules ask

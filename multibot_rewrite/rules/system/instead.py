@@ -33,7 +33,10 @@ _TRIGGERS = "std_srvs/"
 
 
 def sent_instead(seen: Index, end: End) -> Ends | None:
-    """The topic or service of the end's robot that its node may have meant; None for none."""
+    """The topic or service of the end's robot that its node may have meant; None for none, and of an
+    end that only may be there."""
+    if end.sure != RUNS:
+        return None
     if known := meant(seen, end):
         return known
     # Where nodes may run that are not known, one of them may send it, or read the other.
@@ -94,7 +97,7 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
         it.node != end.node
         and seen.robot(it.node) == robot
         and (not chooses(it.node) if commands else team(it.node) == it.node)
-        for it in at_work(ends.publishers)
+        for it in at_work(_givers(ends))
     )
 
 
@@ -170,7 +173,7 @@ def meant(seen: Index, end: End) -> Ends | None:
     """What may be meant by an end: what is sent of the same type, with the same last word or the likest
     name; nothing for one of which it is not known what the code calls it."""
     mux = end.role == SUBSCRIBES and chooses(end.node)
-    if not (is_needed(end) or (mux and end.code_name and end.sure == RUNS)) or not end.type:
+    if not (is_needed(end) or (mux and end.code_name)) or not end.type:
         return None
     given = _given(seen)
     own = {"", seen.robot(end.node)}
@@ -207,4 +210,5 @@ def _may_be(seen: Index, ends: Ends, end: End) -> bool:
 
 
 def _givers(ends: Ends) -> Iterable[End]:
-    return (*ends.publishers, *ends.servers)
+    """Who sends or serves it; what only may be there is not offered."""
+    return [it for it in (*ends.publishers, *ends.servers) if it.sure == RUNS]

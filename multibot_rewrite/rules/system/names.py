@@ -21,7 +21,7 @@ from multibot_rewrite.rules.system.instead import (
     sent_instead,
 )
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
-from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, TOPIC, End
+from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
@@ -50,16 +50,16 @@ running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
     common, a warning: something else may send it."""
-    published = {
-        name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC and it.publishers
-    }
+    sent = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
+    # What only may be sent is not what was meant.
+    published = {name: it for name, it in sent.items() if any(map(_runs, it.publishers))}
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for (kind, name), ends in seen.by_name.items():
         if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
         by_kind: dict[str, list[End]] = {}
         for end in _each_node(ends.subscribers):
-            if is_viewer(end.node):
+            if is_viewer(end.node) or not _runs(end):
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
@@ -69,6 +69,10 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 by_kind.setdefault(other.name, []).append(end)
         for other_name, (first, *more) in by_kind.items():
             yield _missed_topic(seen, first, published[other_name], WARNING, more)
+
+
+def _runs(end: End) -> bool:
+    return end.sure == RUNS
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:

@@ -304,10 +304,12 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     "robots-name-twice",
     ERROR,
     robot_wide=True,
-    what="A frame has the robot's name twice: `robot1/robot1/base_link`.",
-    why="No other node uses that frame: every lookup fails.",
+    what="A frame has the robot's name twice: `robot1/robot1/base_link`; or in `build` a topic or "
+    "service: an argument of the xacro puts it before the name, and the robot's namespace before that.",
+    why="No other node uses that name: every lookup fails, and commands reach no node.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
-    " where the description has the robot's name already.",
+    " where the description has the robot's name already. Write '' for the argument of the xacro: "
+    "links, joints and frames get the robot's name all the same.",
     bad="running: transform robot1/odom -> robot1/robot1/base_link on /tf\n",
     good="running: transform robot1/odom -> robot1/base_link on /tf\n",
 )

@@ -71,3 +71,25 @@ def test_a_rewrite_warns_of_it(value: str) -> None:
     text = f"<robot name='r'>{links}<gazebo><own>{value}</own></gazebo></robot>"
     (found,) = (it for it in rewrite(text, "robot1").findings if it.code == "MB901")
     assert "'wl'" in found.message and found.column == text.index(value) + 1
+
+
+@pytest.mark.parametrize(
+    ("library", "row", "warned"),
+    [
+        # gazebo_ros_joint_state_publisher.cpp reads update_rate and joint_name.
+        ("gazebo_ros_joint_state_publisher", "<odometry_frame>odom</odometry_frame>", False),
+        ("gazebo_ros_joint_state_publisher", "<extra>wl</extra>", False),
+        ("gazebo_ros_joint_state_publisher", "<extra><more>wl</more></extra>", False),
+        # Of another library nobody knows what it reads.
+        ("acme", "<odometry_frame>odom</odometry_frame>", True),
+        ("acme", "<extra>wl</extra>", True),
+    ],
+)
+def test_what_a_known_plugin_does_not_read_is_no_mention(
+    library: str, row: str, warned: bool
+) -> None:
+    joint = '<joint name="j" type="fixed"><parent link="wl"/><child link="wr"/></joint>'
+    plugin = f'<plugin name="p" filename="lib{library}.so"><joint_name>j</joint_name>{row}</plugin>'
+    text = f'<robot name="r"><link name="wl"/><link name="wr"/>{joint}<gazebo>{plugin}</gazebo></robot>'
+    found = {it.code for it in rewrite(text.encode(), "robot1", distro="humble").findings}
+    assert ("MB901" in found) is warned

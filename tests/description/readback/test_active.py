@@ -7,7 +7,7 @@ import pytest
 from multibot_rewrite import rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
-from multibot_rewrite.description.readback.nodes import as_valid_topic
+from multibot_rewrite.description.readback.other_topics import as_valid_topic
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 

@@ -20,12 +20,11 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.rewriters import tree as trees
-from multibot_rewrite.description.rewriters import vocabulary as vocabularies
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, library
 from multibot_rewrite.description.steps.apply import Template
 
-FILES = (trees.__file__, vocabularies.__file__)
+FILES = (trees.__file__, library.__file__)
 # What a rover needs of the vocabulary: a section in a section, a block, a chosen plugin, a keep.
 TEXT = """\
 [element robot]

@@ -194,7 +194,7 @@ def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     file.write_text(file.read_text().replace("tf_prefix: ''", "tf_prefix: '{robot}_'"))
     assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().err
-    assert "MF844 /robot1/robot1_cmd_vel has the name of robot 'robot1' twice" in said
+    assert "MG407 /robot1/robot1_cmd_vel has the name of robot 'robot1' twice" in said
     assert "write tf_prefix: '' under arguments" in said
 
 

@@ -255,7 +255,7 @@ def test_a_camera_has_the_streams_that_are_enabled() -> None:
     node = run("camera", CAMERA)
     published = {it.name: it.when for it in node.endpoints if it.role == "publishes"}
     assert published["~/depth/color/points"] == ""
-    assert "stream: depth" in published["~/depth/image_rect_raw"]
+    assert "open: device" in published["~/depth/image_rect_raw"]
     assert not published.keys() & {"~/color/image_raw", "~/rgbd", "~/imu"}
 
 

@@ -115,238 +115,40 @@ those of installed packages (see ``installed``) and those a call or a command na
 from __future__ import annotations
 
 import os
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_text
-from multibot_rewrite.base.model import Site, VocabularyError
-from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words
+from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    FORMS as FORMS,
+    FORMS,
+    KINDS,
+    TYPES,
+    VocabularySection,
+    is_step,
+    split_path,
+    split_step,
 )
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    KINDS as KINDS,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    OF_VALUES,
-    assemble,
-    merge,
-    read_header,
-    read_section,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    TYPES as TYPES,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    VocabularySection as VocabularySection,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    is_step as is_step,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    split_path as split_path,
-)
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    split_step as split_step,
-)
-from multibot_rewrite.description.rewriters.vocabulary.installed import advice as advice
-from multibot_rewrite.description.rewriters.vocabulary.installed import installed
-from multibot_rewrite.description.rewriters.vocabulary.values import (
-    Value as Value,
-)
-from multibot_rewrite.description.rewriters.vocabulary.values import (
-    Values as Values,
-)
-from multibot_rewrite.description.rewriters.vocabulary.values import (
-    has_values,
-    read_values,
-    values_of,
-)
+from multibot_rewrite.description.rewriters.vocabulary.installed import advice, installed
+from multibot_rewrite.description.rewriters.vocabulary.library import Vocabulary
+from multibot_rewrite.description.rewriters.vocabulary.values import Value, Values
 
+__all__ = [
+    "FORMS",
+    "KINDS",
+    "TYPES",
+    "Value",
+    "Values",
+    "Vocabulary",
+    "VocabularySection",
+    "advice",
+    "check_vocabulary",
+    "is_step",
+    "load_vocabulary",
+    "split_path",
+    "split_step",
+]
 HERE = os.path.dirname(__file__)
-Raw = tuple[str, int, str]
-VALUED = ("plugin", "hardware", OF_VALUES)
-
-
-class Vocabulary:
-    """The sections of several files, parsed on demand; build with ``load_vocabulary``.
-
-    ``extended`` tells that some of them are not built in. It is of one ``release``, or has what all of
-    them have, where that is empty.
-    """
-
-    def __init__(self, texts: Mapping[str, str], release: str, extended: bool = False) -> None:
-        self.extended = extended
-        self.release = release
-        self._raw: dict[tuple[str, str], list[Raw]] = {}
-        self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
-        self._values: dict[tuple[str, bool], Values | None] = {}
-        for file, text in texts.items():
-            self._index(file, text)
-
-    def _index(self, file: str, text: str) -> None:
-        preamble, *chunks = ("\n" + text).split("\n[")
-        line = 0
-        for line, row in enumerate(preamble.split("\n")):
-            if row.strip() and not row.startswith("#"):
-                raise VocabularyError(f"{file}:{line}: text before the first [section]")
-        for chunk in chunks:
-            line += 1
-            type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
-            for name in names:
-                self._raw.setdefault((type_, name), []).append((file, line, chunk))
-            line += chunk.count("\n")
-
-    def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
-        """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
-
-        Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
-        """
-        return self._find((type_, name), ())
-
-    def _find(self, key: tuple[str, str], within: tuple[str, ...]) -> tuple[VocabularySection, ...]:
-        """``within`` are the blocks that are being read."""
-        if key in self._found or key not in self._raw:
-            return self._found.get(key, ())
-        made: list[VocabularySection] = []
-        for raw in self._raw[key]:
-            section = self._read(*raw, within)
-            if self._is_here(section.releases):
-                self._add(made, section)
-        # Whole when others see it; two threads that make it at once both get the first one's.
-        return self._found.setdefault(key, tuple(made))
-
-    def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
-        same = [
-            at
-            for at, old in enumerate(found)
-            if new.ros in ("", old.ros) and (self.release or new.releases == old.releases)
-        ]
-        for at in same:
-            found[at] = merge(found[at], new)
-        if not same:
-            found.append(new)
-
-    def _is_here(self, words: str) -> bool:
-        return not self.release or has_release(words, self.release)
-
-    def has(self, type_: str, name: str) -> bool:
-        """Is there a section of that type and name, in this release or another?"""
-        return (type_, name) in self._raw
-
-    def names(self, type_: str) -> Iterator[str]:
-        """Every name and alias of that type."""
-        return (name for of, name in self._raw if of == type_)
-
-    def rows_elsewhere(self, type_: str, name: str) -> Iterator[Site]:
-        """The rows that this release lacks, each with the words for the releases that have it."""
-        for file, line, chunk in self._raw.get((type_, name), ()):
-            if "releases" in chunk:
-                settings, own = read_section(file, line, chunk.split("\n"))
-                words = settings.get("releases", "")
-                for site in own.values():
-                    if not (self._is_here(words) and self._is_here(site.releases)):
-                        yield site._replace(releases=site.releases or words)
-
-    def releases_elsewhere(self, type_: str, name: str) -> tuple[str, ...]:
-        """The releases with a section of that name, where this one has none."""
-        if self.find(type_, name):
-            return ()
-        words = [_released(chunk) for *_, chunk in self._raw.get((type_, name), ())]
-        return tuple(it for it in RELEASES if any(has_release(word, it) for word in words))
-
-    def values(self, name: str, of_ros_1: bool = False) -> Values | None:
-        """What the plugin or hardware of that name reads, in any release; None where nobody looked."""
-        key = (name, of_ros_1)
-        if key not in self._values:
-            raws = [it for type_ in VALUED for it in self._raw.get((type_, name), ())]
-            own = [it for it in raws if has_values(it[2]) and _is_of_ros_1(it[2]) == of_ros_1]
-            self._values.setdefault(key, self._read_values(own, of_ros_1) if own else None)
-        return self._values[key]
-
-    def _read_values(self, raws: Sequence[Raw], of_ros_1: bool) -> Values:
-        whole = [it for it in raws if _set(it[2], "read")]
-        file, line, chunk = (*whole, *raws)[0]
-        names = read_header(f"{file}:{line}", chunk.partition("\n")[0])[1:]
-        is_open = not whole or any("yes" in word for it in whole for word in _set(it[2], "open"))
-        return values_of(names, of_ros_1, is_open, self._value_rows(raws))
-
-    def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
-        for file, line, chunk in raws:
-            yield from read_values(file, line + 1, chunk.split("\n")[1:])
-            for block in " ".join(_set(chunk, "with")).split():
-                yield from self._value_rows(self._raw.get(("block", block), ()))
-
-    def valued(self) -> Iterator[tuple[str, bool]]:
-        """The names that have values; with true for those of ROS 1."""
-        named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
-        for name, raws in named:
-            found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
-            yield from ((name, of_ros_1) for of_ros_1 in found)
-
-    def places(self) -> dict[str, list[str]]:
-        """Each element with a section and the elements it may be in, without reading more."""
-        found: dict[str, list[str]] = {}
-        elements = ((key[1], raws) for key, raws in self._raw.items() if key[0] == "element")
-        for name, all_raws in elements:
-            raws = [raw for raw in all_raws if self._is_here(_released(raw[2]))]
-            if raws:
-                rows = (row for raw in raws for row in _set(raw[2], "at"))
-                found[name] = list(dict.fromkeys(word for row in rows for word in row.split()))
-        return found
-
-    def sections(self, *types: str) -> list[VocabularySection]:
-        """All rewriters of these types, parsed and checked, in file order."""
-        return self._parsed(key for key in self._raw if key[0] in types)
-
-    def sections_in(self, files: Container[str]) -> list[VocabularySection]:
-        """All rewriters that these files have a part in, parsed and checked, and their values."""
-        raws = self._raw.items()
-        found = self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
-        own = (part for _, parts in raws for part in parts if part[0] in files)
-        tuple(self._value_rows(own))
-        return found
-
-    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[VocabularySection]:
-        found = [section for key in keys for section in self.find(*key)]
-        return list({(section.file, section.line): section for section in found}.values())
-
-    def _read(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> VocabularySection:
-        rows = chunk.split("\n")
-        settings, own = read_section(file, line, rows)
-        sites: dict[str, Site] = {}
-        for name in settings.get("with", "").split():
-            sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
-        header = read_header(f"{file}:{line}", rows[0])
-        sites |= {
-            site.path if self.release else key: site
-            for key, site in own.items()
-            if self._is_here(site.releases)
-        }
-        return assemble(file, line, header, settings, list(sites.values()))
-
-    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[Site, ...]:
-        if name in within:
-            raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
-        if not self.has("block", name):
-            raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
-        found = self._find(("block", name), (*within, name))
-        return found[0].sites if found else ()
-
-
-def _released(chunk: str) -> str:
-    """The release words of a section that is not read yet; wrong ones are found when it is."""
-    words = next((row.strip() for row in _set(chunk, "releases")), "")
-    return words if words and is_release_words(words) else ""
-
-
-def _is_of_ros_1(chunk: str) -> bool:
-    return " 1" in _set(chunk, "ros")
-
-
-def _set(chunk: str, name: str) -> list[str]:
-    """What a setting is set to in a section that is not read yet, row by row."""
-    return [it.partition("\n")[0] for it in chunk.split(f"\n{name}:")[1:]]
 
 
 @lru_cache(maxsize=8)

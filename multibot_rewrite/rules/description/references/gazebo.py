@@ -67,8 +67,7 @@ SINGLE = {
 )
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
     """Every such reference."""
-    for it in ambiguous(subject.inventory):
-        yield it._replace(message=it.message.partition(";")[0])
+    yield from ambiguous(subject.inventory)
 
 
 @rule(

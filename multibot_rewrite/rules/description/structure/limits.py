@@ -115,16 +115,6 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message)
 
 
-def _unbounded(robot: Robot) -> Iterator[Problem]:
-    for joint, limit in joints_with(robot, "limit"):
-        if joint.type not in BOUNDED:
-            continue
-        missing = [it for it in ("lower", "upper") if limit.get(it) is None]
-        if missing:
-            words = " and no ".join(missing)
-            yield Problem(limit, f"<limit> of {joint.type} joint {joint.name!r} has no {words}")
-
-
 @rule(
     "MB515",
     "zero-limit",

@@ -1,0 +1,97 @@
+"""The topics of something that is no ROS 2 node: of Gazebo's transport, and of plugins of ROS 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Site
+from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
+from multibot_rewrite.description.readback.nodes import SERVES, SERVICE, TOPIC, holds_topic
+from multibot_rewrite.description.readback.parameters import switched_off, values_of
+from multibot_rewrite.description.readback.wired import wired_of
+from multibot_rewrite.description.readback.xml import values_at
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+
+_NOT_VALID = lazy_compile("@|~|//|:=")
+# Elements whose topics are those of Gazebo's transport.
+OF_GZ = frozenset({"sensor", "particle_emitter"})
+
+
+def resolved(
+    host: _Element, section: VocabularySection, release: str
+) -> Iterator[tuple[str, str, str]]:
+    """Kind, name and parameter of the topics of something that is no ROS 2 node.
+
+    Names are below the namespace that it puts in front, and below the word that topics are made of;
+    none where those come from the model, whose name each robot has for itself.
+    """
+    above = _namespace(host, section)
+    if reads_it(section, release) and scoped_namespace(host) != "":
+        above = scoped_namespace(host)
+        # Its default topics are below it, too.
+        yield from [(TOPIC, above, "model@namespace")] if above else []
+    stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
+    words = [(site.path, value) for site in stems for value in values_of(host, site)]
+    if above is not None:
+        yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+    yield from _of_nobody(host, stems)
+    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
+    for site in filter(holds_topic, section.sites):
+        kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
+        below = above
+        if site.kinds[0] == "subtopic" and stems and above is not None:
+            below = _joined(above, words[0][1]) if words else None
+        names = values_of(host, site)
+        for name in map(as_valid_topic, names) if of_gz else names:
+            if name.startswith("/"):
+                yield kind, name, site.path
+            elif name.startswith("~"):
+                continue  # below a node that the simulator names
+            elif below is not None:
+                yield kind, _joined(below, name), site.path
+    yield from _coded(host, section, above)
+
+
+def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str, str]]:
+    """A word that topics are made of and that is there and empty: it takes the place of the model's
+    name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace"))."""
+    for site in stems:
+        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
+        if given and not any(given):
+            yield TOPIC, "/", site.path
+
+
+def as_valid_topic(name: str) -> str:
+    """The topic that gz-transport makes of a text: it has no ``~``, and takes out what it does not know
+    (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
+    return _NOT_VALID.sub("", name.replace(" ", "_"))
+
+
+def _coded(
+    host: _Element, section: VocabularySection, above: str | None
+) -> Iterator[tuple[str, str, str]]:
+    """The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace in
+    front of relative ones (names.cpp), and tf's broadcaster has an absolute one
+    (tf2_ros transform_broadcaster.cpp)."""
+    off = switched_off(host, section)
+    for wired, path in wired_of(host, section):
+        if wired.name not in off and (above is not None or wired.name.startswith("/")):
+            kind = SERVICE if wired.role == SERVES else TOPIC
+            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
+            yield kind, name, path or wired.name
+
+
+def _namespace(host: _Element, section: VocabularySection) -> str | None:
+    """What the plugin puts in front of relative names; None where that is the model's name."""
+    sites = [it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole"]
+    values = [value for site in sites for value in values_of(host, site)]
+    if not values and any(it.empty == "itself" and [*values_at(host, it.path)] for it in sites):
+        return "/"
+    return values[0] if values else None if sites else "/"
+
+
+def _joined(above: str, name: str) -> str:
+    return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")

@@ -1,0 +1,86 @@
+"""The transforms that a launched node sends, and what it puts before its frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from lxml import etree
+
+from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
+from multibot_rewrite.producers.launch.bridges import bridged_by
+from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.running import DESCRIPTION
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
+
+TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
+# The transforms of the simulator, by their topic in it.
+Sent = Mapping[str, Sequence[Edge]]
+
+
+def edges_of(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
+    """The transforms of a node, each with its topic."""
+    if it.facts is None:
+        return
+    sent = [end.name for end in it.facts.endpoints if end.role == PUBLISHES and not end.when]
+    for edge in _made(it):
+        topic = TF_STATIC if edge.static else TF
+        # A driver may send its odometry on tf_static, and nodes may only have one of the two.
+        named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
+        if named:
+            yield resolve_bound(named, TOPIC, bound), edge
+
+
+def passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
+    """The transforms of the simulator that a bridge passes on."""
+    for end, own in bridged_by(it):
+        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
+            full = resolve_bound(end.name, TOPIC, bound)
+            yield from ((full, edge) for edge in inside.get(own, ()))
+
+
+def _made(it: RunningNode) -> Iterable[Edge]:
+    if it.facts is None:
+        return ()
+    if publishes_a_tree(it):
+        return tree_of(it) or ()
+    prefix = prefix_of(it)
+    return _below(prefix, sent_by(it.facts, ""))
+
+
+def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
+    return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
+
+
+def prefix_of(it: RunningNode) -> str:
+    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
+    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
+    prefix = it.value("tf_prefix")
+    switch = it.facts.prefix_switch if it.facts else ""
+    if switch:
+        own = it.value("tf_frame_prefix") or it.namespace
+        prefix = "" if it.value(switch) is False else own
+    bare = str(prefix or "").strip("/")
+    return f"{bare}/" if bare else ""
+
+
+def publishes_a_tree(it: RunningNode) -> bool:
+    """Does it send the tree of a description?"""
+    return it.facts is not None and it.facts.package == STATE_PUBLISHER
+
+
+def tree_of(it: RunningNode) -> list[Edge] | None:
+    """The transforms of a description under ``frame_prefix``; None where that is not known."""
+    prefix = str(it.value("frame_prefix") or "")
+    root = root_of(it.value(DESCRIPTION))
+    return None if root is None else _below(prefix, edges_in(root))
+
+
+def root_of(text: object) -> etree._Element | None:
+    """The root of a description; None where it is not known."""
+    if not isinstance(text, str) or not text.strip():
+        return None
+    try:
+        return etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
+    except etree.XMLSyntaxError:
+        return None
