@@ -67,6 +67,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
             "fleet.robots.named_twice",
+            "fleet.robots.own_ports",
             "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
             "fleet.robots.srdf_of_another",

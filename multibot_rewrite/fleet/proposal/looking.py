@@ -16,7 +16,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.own_names import ROBOT, filled
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
 from multibot_rewrite.fleet.proposal.searching import text_of
@@ -78,7 +78,7 @@ def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues
 def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
-        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_file(path)
+        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_model(path)
         return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
