@@ -54,8 +54,9 @@ ONE_DEVICE = declare(
     "one-device",
     WARNING,
     what="Two robots have one device: an address, serial number or calibration of their hardware, a "
-    "port or file that only one process can have. A note for what two computers can both have, and for "
-    "a description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address.",
+    "port or file that only one process can have. A note for what two computers can both have (a "
+    "device /dev/ttyUSB0, a port or a folder for output of a node that is not known), and for a "
+    "description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address.",
     why="Both drivers command one arm, or the second one is refused. With another arm's calibration "
     "the tool is millimetres from where tf has it.",
     fix="Give each robot its own: by an argument of its xacro, `arguments` in the fleet file, or its "

@@ -8,7 +8,7 @@ launch/multi_uav_mavros_sitl.launch (1 for each instance).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
@@ -33,10 +33,10 @@ OWN_PORTS = declare(
     "MF845",
     "own-ports",
     NOTE,
-    what="The description names a port that only one robot can have, and each further robot got a "
-    "number of its own.",
-    why="Two plugins cannot open one port: the second robot would have no autopilot, or that of the "
-    "first one.",
+    what="A description or a parameter file names a port that only one robot can have, and each "
+    "further robot got a number of its own.",
+    why="Two plugins or nodes of one computer cannot open one port: the second robot would have "
+    "no autopilot, or that of the first one.",
     fix="Start the program at the other end with the same number: of ArduPilot sim_vehicle.py -I 1 for "
     "the second robot, of PX4 px4 -i 1. A robot whose description has another number keeps it.",
     bad=f"{_FLEET}  - {{name: robot2}}\n",
@@ -98,15 +98,21 @@ def _said(
 ) -> Iterator[Finding]:
     changed = {port.name for _, own, new in each for port in own if new[port.number] != port.number}
     for name in sorted(changed):
-        words = [
-            f"{it.spec.name} {new[port.number]}"
+        given = (
+            (it.spec.name, new[port.number])
             for it, own, new in each
             for port in own
             if port.name == name
-        ]
-        more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
-        message = f"{name} is numbered: {', '.join(words[:_NAMED])}{more}"
-        yield at_robot(OWN_PORTS, robot, message, "start what each robot talks to with its number")
+        )
+        yield at_robot(OWN_PORTS, robot, *said_of_numbers(name, given))
+
+
+def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
+    """Which number each robot got for a port, and what to do; raises nothing."""
+    words = [f"{robot} {number}" for robot, number in given]
+    more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
+    message = f"{name} is numbered: {', '.join(words[:_NAMED])}{more}"
+    return message, "start what each robot talks to with its number"
 
 
 def _free(port: _Port, held: set[int], taken: set[int]) -> int:
