@@ -68,6 +68,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.simulators",
             "fleet.robots.named_twice",
             "fleet.robots.own_ports",
+            "fleet.outputs.given_world",
             "fleet.robots.robot_nodes",
             "fleet.outputs.params_style",
             "fleet.robots.srdf_of_another",
