@@ -28,7 +28,7 @@ _CLASSIC = ("libgazebo_", "libhector_gazebo")
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
 # A robot to expand a xacro for.
-_ANY = "robot1"
+ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
 WORLD = "world"
 
@@ -59,6 +59,11 @@ class Looked(NamedTuple):
     fault: str = ""
 
 
+def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
+    """Its arguments as they are for one robot; raises nothing."""
+    return tuple(filled(dict(it.arguments), ANY).items())
+
+
 def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
     """What a description is; ``given`` are values for arguments of xacros, others that it needs have
     those of ``values``."""
@@ -78,7 +83,7 @@ def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues
 def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
-        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_model(path)
+        text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
         return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
@@ -90,7 +95,7 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
-    filled_in = filled(given, _ANY)
+    filled_in = filled(given, ANY)
     found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
     own = {name: value for name, value in found.for_robots.items() if name not in given}
     known = {one.name for one in found.arguments} | set(found.untried)
@@ -114,7 +119,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     given = dict(it.arguments)
     if it.model:
         return it
-    found = switch_for(it.path, filled(given, _ANY), suits, reach)
+    found = switch_for(it.path, filled(given, ANY), suits, reach)
     if not found:
         return it
     name, value = found
