@@ -110,16 +110,17 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 
 def own_names(robot: Looked) -> frozenset[str]:
-    """Its links and joints: as its arguments make them, without what these put in front, as written."""
+    """Its links and joints: as they are, without what its arguments put in front, as written."""
     made = frozenset(_expanded(robot))
     return made | _plain(robot, made) | _names_in(robot.path)
 
 
-def _plain(robot: Looked, names: Iterable[str]) -> frozenset[str]:
-    given = (it for _, it in filled_for_any(robot) if ANY in it)
-    fronts = tuple(f"{it.rstrip('_/')}{end}" for it in given for end in "_/")
-    plain = (name.removeprefix(front) for front in fronts for name in names)
-    return frozenset(it for it in plain if it)
+def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
+    """The names without what the arguments for its names put in front."""
+    given = [it.rstrip("_/") for _, it in filled_for_any(robot) if ANY in it]
+    fronts = tuple(f"{it}{end}" for it in given for end in "_/")
+    front = {name: next((it for it in fronts if name.startswith(it)), "") for name in names}
+    return frozenset(name.removeprefix(front[name]) or name for name in names)
 
 
 def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[str]]:
@@ -127,7 +128,8 @@ def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[
     xacro; as written where that cannot be expanded."""
     if path.endswith(".xacro"):
         with suppress(InputError):
-            return _semantics(path, filled_for_any(robot))
+            names, groups = _semantics(path, filled_for_any(robot))
+            return _plain(robot, names), _plain(robot, groups)
     data = data_of_file(path)
     return _names_in(path), frozenset(it.decode("utf-8", "replace") for it in _GROUP.findall(data))
 
@@ -145,7 +147,7 @@ def _semantics(
 def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, int]:
     """How many names of the robot and groups of its SRDF the files of each folder have."""
     groups = semantic_names(robot, srdf)[1]
-    own = own_names(robot) | groups | _plain(robot, groups)
+    own = own_names(robot) | groups
     found: dict[str, int] = {}
     for path in paths:
         folder = os.path.dirname(path)
