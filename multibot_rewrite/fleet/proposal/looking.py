@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lxml import etree
 
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -188,6 +189,13 @@ def holds_the_world(it: Looked) -> bool:
     """Is the robot fixed to the world by its own description?"""
     links = it.root.iterfind("link") if it.root is not None else ()
     return any(link.get("name") == WORLD for link in links)
+
+
+def is_placed(it: Looked) -> bool:
+    """Is a real robot fixed to a frame of all robots, such as map, by its own description?"""
+    links = it.root.iterfind("link") if it.root is not None else ()
+    shared = {*WORLD_FRAMES} - {WORLD}
+    return it.simulator == NO_SIMULATOR and any(link.get("name") in shared for link in links)
 
 
 # What gives each robot its own names.
