@@ -36,7 +36,16 @@ from multibot_rewrite.producers.transforms import (
     virtual_lookups,
 )
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
-from multibot_rewrite.system.records import SUBSCRIBES, Edge, Lookup, Node, Place, System
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    Edge,
+    End,
+    Lookup,
+    Node,
+    Place,
+    System,
+)
 
 NONE = Semantics((), ())
 
@@ -63,7 +72,7 @@ def system_before(
     sections = {it.name: it for it in given}
     ends = [
         *(end for node in nodes for end in node_ends(node, sections.get(node.name))),
-        *plugin_ends(reading),
+        *_plugin_ends(reading),
         *(
             end
             for it in bridges
@@ -90,6 +99,15 @@ def system_before(
             lookups=tuple(_lookups(plain, evidence.known, said, sent)),
         ),
     )
+
+
+def _plugin_ends(reading: Reading) -> Iterator[End]:
+    """The ends of plugins; what one with a controller manager would publish its controllers do, which
+    are known by the files that name them."""
+    managers = {it.full_name for it in reading.nodes if it.section.process_wide}
+    for end in plugin_ends(reading):
+        if end.role != PUBLISHES or end.node not in managers:
+            yield end
 
 
 def _control(
