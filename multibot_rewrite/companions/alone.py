@@ -56,15 +56,16 @@ class OneFile(NamedTuple):
 
 
 def rewrite_alone(
-    kind: str, data: bytes, file: str, context: Context, robot: str, first: bool
+    kind: str, data: bytes, file: str, context: Context, robot: str, number: int
 ) -> OneFile:
-    """The file for a robot whose word in names and in the graph is one; what a bridge carries for all
-    robots is in that of the ``first``. Raises InputError for a file that its reader rejects."""
+    """The file for a robot whose word in names and in the graph is one, the ``number``-th after the
+    first; what a bridge carries for all robots is in that of the first. Raises InputError for a file
+    that its reader rejects."""
     if kind == RVIZ:
         text, named, found = _shown(data, file, context, robot)
     else:
-        made, template = _made(kind, data, file, context, first)
-        text = fill_template(template, robot, robot).replace(MODEL_SLOT, robot)
+        made, template = _made(kind, data, file, context, not number)
+        text = fill_template(template, robot, robot, number).replace(MODEL_SLOT, robot)
         named, found = made.file, made.findings
     kept = _kept(named, read_named(kind, text.encode(), file, _of(context, robot)), robot)
     return OneFile(text, named, found, kept)

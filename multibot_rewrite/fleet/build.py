@@ -94,11 +94,16 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += gaps
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
         kept, told = sorted_out(
-            [*in_style(plan, files), *cell_outputs(plan, files), *yarp_files(plan.robots)]
+            [
+                *in_style(plan, files),
+                *cell_outputs(plan, files),
+                *yarp_files(plan.robots),
+                *world_file(plan),
+            ]
         )
         planned = _portable_plan(plan, fleet)
         tables = _tables(plan, fleet, planned)
-        more = (*tables, *moveit_parameters(plan, files), *world_file(plan))
+        more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         starts = fleet_starts(plan, each, configs, files, brought)

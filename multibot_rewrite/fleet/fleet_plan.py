@@ -18,6 +18,7 @@ from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
+from multibot_rewrite.fleet.robots.own_ports import with_own_ports
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -69,7 +70,7 @@ def plan_fleet(
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = [
             placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
-            for it in rewrite_robots(file.robots, read)
+            for it in with_own_ports(rewrite_robots(file.robots, read))
             for own in [said.get(it.spec.name, ())]
         ]
         file = file._replace(robots=tuple(it.spec for it in robots))

@@ -183,7 +183,7 @@ def _for_robot(
     context: Context,
     job: Job | None,
 ) -> RewrittenFile:
-    made = rewrite_alone(kind, data, file, context, robot, robot == robots[0])
+    made = rewrite_alone(kind, data, file, context, robot, robots.index(robot))
     named = made.file._replace(
         robots=frozenset(robots), own=frozenset(robots if len(robots) == 1 else ())
     )

@@ -72,6 +72,8 @@ the release lacks, it is renamed all the same; only its default is not inserted.
                where they have it; ``doubles_as_is``: the same without a slash
     off        must be false
     no_prefix  puts a prefix before frames, ~ is the namespace; must be /, which is no prefix
+    port       a number that one node on a computer can have: further robots get a higher one
+    output     a file or folder that the node writes: it gets the robot's name
     exclusive  two robots cannot have the same
     keep       not a name of a robot, whatever it looks like
 

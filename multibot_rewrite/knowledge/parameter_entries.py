@@ -35,7 +35,10 @@ PREFIX_KINDS = ("joint_prefix", "gpio_prefix", "joint_stem")
 RUN_TIME = {"doubles": "", "doubles_as_is": "/"}
 OTHER_KINDS = ("stem", "link_prefix", *PREFIX_KINDS, "words", "text", "pattern", *RUN_TIME)
 SWITCH_KINDS = ("off", "no_prefix")
-KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive", "keep")
+# What one node has for itself: no other one can have its port, write its file, or be told the same.
+PORT = "port"
+OWN_KINDS = (PORT, "output", "exclusive")
+KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, *OWN_KINDS, "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.
 SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
 PARAMETER_KEYS = (

@@ -9,7 +9,7 @@ from functools import lru_cache
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary
-from multibot_rewrite.knowledge.parameter_entries import has_default
+from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, has_default
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import every_release, with_file
 
@@ -148,7 +148,7 @@ def _anywhere(nodes: Iterable[KnownNode], guessing: re.Pattern[str]) -> Iterator
         if kind == "keep" and guessed and guessed.lastgroup == "interface":
             continue
         if (
-            kind != "exclusive"
+            kind not in OWN_KINDS
             and len({it.kind for it in params}) == 1
             and (sure or (guessed and guessed.lastgroup == kind))
         ):

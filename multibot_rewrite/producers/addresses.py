@@ -8,12 +8,16 @@ from functools import lru_cache
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.producers import evidence
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
-_EXCLUSIVE = "exclusive"
+_DEVICE = lazy_compile(r"/dev/\S+|v?can\d+")
+# Those below are of services of the system.
+_FREE_PORTS = 1024
 _OFF = ("", "false", "no", "off")
 # Of hardware that is not there.
 _MOCKS = ("mock_components/", "fake_components/")
@@ -38,11 +42,25 @@ def of_hardware(root: _Element, node: str, place: Place) -> Iterator[Address]:
 def of_parameters(
     node: str, params: Mapping[str, Param], values: Mapping[str, Given]
 ) -> Iterator[Address]:
-    """What the parameters of a node name and no other node can have."""
+    """What the parameters of a node name and no other node can have, or none on that computer."""
     for name, given in values.items():
         text = str(given.value).strip()
-        if name in params and params[name].kind == _EXCLUSIVE and text.lower() not in _OFF:
+        known = params.get(name)
+        if known and known.kind in OWN_KINDS and text.lower() not in _OFF:
             yield Address(OWN, name, text, node, given.place)
+        elif not known and is_held(name, text):
+            yield Address(COMPUTER, name, text, node, given.place)
+
+
+def is_held(name: str, text: str) -> bool:
+    """Does a parameter of a node that is not known name what one process of a computer has: a device, a
+    port, a file that it writes?"""
+    word = name.rpartition(".")[2]
+    if _DEVICE.fullmatch(text):
+        return True
+    if word == "port" or word.endswith("_port"):
+        return text.isdecimal() and int(text) >= _FREE_PORTS
+    return bool(text) and word in _data()["written"]
 
 
 def _known() -> Mapping[str, str]:

@@ -468,3 +468,14 @@ def test_a_file_of_another_robot_is_told_at_its_first_name() -> None:
     (found,) = run(text, context())[1]
     assert (found.code, found.level, found.line) == ("MB875", "error", 2)
     assert found.message.startswith("3 of the 3 names in this file are in no description: a, b")
+
+
+@pytest.mark.parametrize("prefix", ["$(var tf_prefix)", "<robot_namespace>_", "${prefix}"])
+def test_what_a_launch_file_puts_in_front_is_the_robots_name(prefix: str) -> None:
+    """launch_ros ParameterFile fills it in: such a file has no joint of the description in it."""
+    limits = "joint_limits:\n  {}j1: {{has_velocity_limits: true}}\n"
+    it = context()
+    assert text_of(limits.format(prefix), it) == text_of(limits.format(""), it)
+    joints = 'controller_list: []\narm:\n  joints: ["{}j1"]\ncontroller_names: [arm]\n'
+    assert "j1" in text_of(joints.format(""), it)
+    assert text_of(joints.format(prefix), it) == text_of(joints.format(""), it)

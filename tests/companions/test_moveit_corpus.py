@@ -6,6 +6,7 @@ What is expected is worked out here from the parsed text; nothing of it comes fr
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -86,9 +87,14 @@ def scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
         yield from scalars(value)
 
 
+# What a launch file fills in with the robot's own prefix: it is out of a name that has the robot's.
+STANDS = re.compile(r"(?:\$\((?:arg|var) \w+\)|\$\{\w+\}|<\w+>)[_/]?(?=\w)")
+
+
 def allowed(layout: str, old: str, names: Names) -> set[str]:
     """All that a scalar may become."""
-    found = {old}
+    plain = STANDS.sub("", old, count=1)
+    found = {old, plain, *(allowed(layout, plain, names) if plain != old else ())}
     prefix = layout in ("L2", "L3")
     for kind, separator in (("joint", "_"), ("link", "/"), ("frame", "/"), ("group", "_")):
         renamed = layout in ("L2", "L4") or (layout == "L3" and kind != "group")

@@ -657,7 +657,7 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
         ("other", "x_topic: /x", "MB901", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MB881", "not rewritten"),
         ("robot_state_publisher", "frame_prefix: a/", "MB882", "already have"),
-        ("ekf_filter_node", "debug_out_file: /tmp/x", "MB412", "the same for all robots"),
+        ("rtabmap", "database_path: /tmp/x", "MB412", "the same for all robots"),
         ("amcl", "scan_topic: $(var s)", "MB105", "a launch file must replace it"),
         ("amcl", "scan_topic:", "MB868", "rcl rejects"),
         ("amcl", "base_frame_id: |\n      base_link", "MB876", "on one line"),

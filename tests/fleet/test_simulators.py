@@ -10,6 +10,7 @@ from plans import optional, own
 
 from multibot_rewrite import InputError
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -156,3 +157,24 @@ def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
 def test_another_word_is_refused_with_its_line(value: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"fleet.yaml:6: .*simulator"):
         plan_of(tmp_path, f"simulator: {value}\n")
+
+
+def test_no_controller_sent_joint_states_before_a_rewrite_either(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """doosan dsr_description2: gazebo_ros2_control beside parameters without a controller_manager. It
+    publishes no joint states itself (ros2_controllers joint_state_broadcaster does)."""
+    (tmp_path / "arm.urdf").write_text("""<robot name="arm"><link name="base"/><link name="upper"/>
+<joint name="j" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<gazebo><plugin name="control" filename="libgazebo_ros2_control.so"/></gazebo></robot>""")
+    (tmp_path / "params.yaml").write_text(
+        "move:\n  ros__parameters: {type: forward_command_controller/ForwardCommandController}\n"
+    )
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: frames-per-robot\ndistro: humble\nsimulator: gazebo\ndescription: arm.urdf\n"
+        "companions: {params: params.yaml}\nrobots: [{name: robot1}]\n"
+    )
+    main(["plan", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "plan.yaml")])
+    said = capsys.readouterr().err
+    assert "which no node publishes any more" not in said and "MG316" in said

@@ -11,6 +11,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.sites import Site, site_at, slot_of
 from multibot_rewrite.companions.yaml_text import is_text, pairs
@@ -111,10 +112,10 @@ def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
     slot = slot_of(node)
     found = _EVALUATOR.fullmatch(slot.value) if kind == "words" else None
     if found is None:
-        yield Site(kind, slot.value, "", slot)
+        yield Site(kind, without_robot(slot.value), "", slot)
         return
     for it in _NAME.finditer(slot.value, *found.span("names")):
-        yield Site(found["kind"], it[0], "", slot, it.start(), len(it[0]))
+        yield Site(found["kind"], without_robot(it[0]), "", slot, it.start(), len(it[0]))
 
 
 def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
@@ -124,7 +125,9 @@ def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -
     marks, rule = match
     walk.claimed.add(id(key))
     slot = slot_of(key)
-    walk.found.extend(Site(kind, text, "", slot, at, len(text)) for at, text, kind in marks)
+    walk.found.extend(
+        Site(kind, without_robot(text), "", slot, at, len(text)) for at, text, kind in marks
+    )
     _below(value, rule, walk)
 
 
@@ -148,7 +151,7 @@ def _rest(
 ) -> _Match | None:
     marks, rule = head
     if rule == KEEP:
-        known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
+        known = all(_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
         return head if known else None
     below = _resolved(word, at, value, rule, names) if isinstance(rule, Mapping) else None
     return ((*marks, *below[0]), below[1]) if below else None
@@ -161,11 +164,16 @@ def _exact(
     if word in rules and word[:1] not in ("<", "*"):
         return (), rules[word]
     for kind, telling, rule in _wild(rules):
-        if kind in KINDS and is_declared(names, kind, word):
+        if kind in KINDS and _declared(names, kind, word):
             return ((at, word, kind),), rule
         if telling and value is not None and _tells(value, telling):
             return ((at, word, kind),), rule
     return None
+
+
+def _declared(names: CompanionNames, kind: str, word: str) -> bool:
+    """Does the description declare it, without what a launch file puts in front (``$(var prefix)``)?"""
+    return is_declared(names, kind, without_robot(word))
 
 
 def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:

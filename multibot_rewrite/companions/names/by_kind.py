@@ -9,7 +9,7 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, number_slot
 from multibot_rewrite.knowledge.stacks import is_apart
 
 Speller = Callable[[Context, str], str]
@@ -184,6 +184,21 @@ def _own_prefix(context: Context, kind: str) -> str:
     return next((it for it in texts if it), "")
 
 
+def port(_: Context, value: str) -> str:
+    """A port that one node on a computer can have; 0 is any."""
+    return number_slot(int(value)) if value.isdecimal() and int(value) else value
+
+
+def output(_: Context, value: str) -> str:
+    """A file or folder that a node writes: ``/tmp/pose.txt`` is ``/tmp/pose_robot1.txt``."""
+    head, slash, name = value.rstrip("/").rpartition("/")
+    stem, dot, ending = name.rpartition(".")
+    if not name.strip(".~") or not is_filled(value):
+        return value
+    named = f"{stem}_{TAG_SLOT}{dot}{ending}" if stem else f"{name}_{TAG_SLOT}"
+    return f"{head}{slash}{named}"
+
+
 def _declared(word: str) -> Speller:
     return lambda context, value: spell(context.names, word, value)
 
@@ -204,6 +219,8 @@ SPELLERS: Mapping[str, Speller] = {
     "doubles_as_is": before_frames("/"),
     "component": component,
     "words": words,
+    "port": port,
+    "output": output,
     **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
 }
 

@@ -13,7 +13,7 @@ from multibot_rewrite.companions.names.placeholders import is_robot, without_rob
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
-from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
+from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import (
     Branch,
     KnownNode,
@@ -38,7 +38,7 @@ _PREFIXES = ("link_prefix", *PREFIX_KINDS)
 # Names below a namespace.
 _BELOW = ("topic", "service", "node", "namespace")
 # ~ is no text for YAML.
-_ANY_TYPE = ("off", "no_prefix", "exclusive")
+_ANY_TYPE = ("off", "no_prefix", *OWN_KINDS)
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 

@@ -110,7 +110,7 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     for word in section.opens:
-        kind, when, path, usual = split_opens(word)
+        kind, _, when, path, usual = split_opens(word)
         if not path or (when and not holds(host, when)):
             continue
         values = [it for it in given_at(host, path) if it]

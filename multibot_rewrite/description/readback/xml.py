@@ -53,20 +53,21 @@ def child_text(element: _Element, tag: str) -> str | None:
 def values_at(element: _Element, path: str) -> Iterator[str]:
     """The values at a path of the vocabulary, empty ones too: each attribute or text that is there."""
     steps, attribute = split_path(path)
-    for found in _below(element, steps):
+    for found in elements_at(element, steps):
         value = found.get(attribute) if attribute else text_of(found)
         if value is not None:
             yield value.strip()
 
 
-def _below(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]:
+def elements_at(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]:
+    """The elements at the steps of a path below an element."""
     if not steps:
         yield element
         return
     tag, attribute, wanted = split_step(steps[0])
     for child in element.iterchildren(tag):
         if not attribute or child.get(attribute, "") == wanted:
-            yield from _below(child, steps[1:])
+            yield from elements_at(child, steps[1:])
 
 
 def is_on(text: str | None, usual: bool) -> bool:

@@ -64,15 +64,27 @@ class Argument(NamedTuple):
     def value(self) -> str:
         """What gives every robot its own names by this argument; empty where it is not for that.
 
-        It is for that if it is empty by default, and goes before or behind names or is a namespace.
+        It is for that if it goes before or behind names or is a namespace, and is empty by default or
+        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name.
         """
         ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
         spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
-        if self.default.strip(_SEPARATORS) not in _NOTHING or not (ends or spaces):
+        if not (self.is_empty or self.is_everywhere) or not (ends or spaces):
             return ""
         before = "_" if ends.get(POSTFIX) == "" else ""
         after = "_" if ends.get(PREFIX) == "" else ""
         return f"{before}{ROBOT}{after}"
+
+    @property
+    def is_empty(self) -> bool:
+        """Does it name nobody by default? Raises nothing."""
+        return self.default.strip(_SEPARATORS) in _NOTHING
+
+    @property
+    def is_everywhere(self) -> bool:
+        """Is it in every link and joint? Raises nothing."""
+        parts = [use for use in self.uses if use.kind in PARTS]
+        return bool(parts) and all(use.names == use.total for use in parts)
 
 
 class XacroArguments(NamedTuple):

@@ -83,12 +83,18 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
-    data = read_file(path)
-    if b"<include" in data:  # few have one
-        from multibot_rewrite.description.sources.included_models import with_includes
+    return SourceText(read_model(path), path, (path,))
 
-        data = with_includes(data, path)
-    return SourceText(data, path, (path,))
+
+def read_model(path: str) -> bytes:
+    """The bytes of a description that is no xacro, with the models that it includes; raises as
+    ``read_file``."""
+    data = read_file(path)
+    if b"<include" not in data:  # few have one
+        return data
+    from multibot_rewrite.description.sources.included_models import with_includes
+
+    return with_includes(data, path)
 
 
 def _encoded(text: str) -> bytes:

@@ -22,7 +22,10 @@ from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_checked
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
-PATHS = ("include", "description", "simulated", "srdf", "nodes", "vocabulary")
+PATHS = (
+    *("include", "description", "simulated", "srdf", "nodes", "vocabulary"),
+    "simulator_world",
+)
 Places = Mapping[Path, tuple[str, int]]
 
 

@@ -114,7 +114,8 @@ class FleetFile(NamedTuple):
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
     ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations.
     ``installed`` is where the results are when they are used, empty for where
-    they are written."""
+    they are written. ``simulator_world`` is the user's world for it, which the file names at
+    ``world_place``."""
 
     file: str
     policy: Policy
@@ -134,6 +135,8 @@ class FleetFile(NamedTuple):
     cell: Cell | None = None
     shape: str = ""
     zenoh: Setup | None = None
+    simulator_world: str = ""
+    world_place: tuple[str, int] = ("", 1)
 
 
 def read_fleet(
@@ -176,6 +179,8 @@ def read_fleet(
         cell_of(read, naming),
         data.get("shape", ""),
         zenoh_of(read),
+        data.get("simulator_world", ""),
+        read.places.get(("simulator_world",), (read.file, 1)),
     )
 
 
@@ -196,7 +201,7 @@ def _files(read: FleetData) -> Iterator[str]:
     """The files of a fleet that are no robot's own."""
     data = read.data
     described = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
-    given = (data.get("nodes", ""), *described)
+    given = (data.get("nodes", ""), data.get("simulator_world", ""), *described)
     yield from filter(None, (*read.files, *given, *listed(data.get("vocabulary", []))))
 
 

@@ -6,8 +6,10 @@ the hardware class of ``<ros2_control>``, and often the plugins of the simulator
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from itertools import islice
 
 from lxml.etree import _Element
 
@@ -24,6 +26,9 @@ _OTHER = {"true": "false", "True": "False", "1": "0"}
 _OTHERS = {**_OTHER, **{off: on for on, off in _OTHER.items()}}
 # A hardware class that is no simulator's known one, and called as if it were a vendor's own.
 _SIMULATED = lazy_compile(r"gazebo|gz|ign|sim|mujoco|isaac")
+# A hardware class, such as an argument has for its value, and those of simulators.
+_CLASS = lazy_compile(r"\w+(?:/|::)\w*(?:System|Hardware|Interface)\w*")
+_CLASSES = tuple(it for simulator in SIMULATORS for it in simulator.hardware)
 # Arguments that are tried.
 MOST = 8
 # Does a description, expanded with some arguments, suit?
@@ -83,7 +88,8 @@ def switch_for(
 
 
 def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Arguments that are called so and are true or false, each with its other value."""
+    """Arguments with a value that may switch: one that is called so and is true or false, one that is
+    compared with other words (``mode == 'gazebo'``), one that is a hardware class."""
     declared: dict[str, str] = {}
     for file, data in sources.items():
         for it in read_document(data, file).root.iter("{*}arg"):
@@ -91,3 +97,23 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
     every = {**declared, **given}
     named = [it for it in every if _NAME.search(it.lower()) and every[it] in _OTHERS]
     yield from ((it, _OTHERS[every[it]]) for it in named[:MOST])
+    text = b"\n".join(sources.values()).decode("utf-8", "replace")
+    words = (
+        (name, word)
+        for name, value in every.items()
+        if value and value not in _OTHERS
+        for word in (*_compared(name, text), *(_classes(text) if _CLASS.fullmatch(value) else ()))
+        if word != value
+    )
+    yield from islice(words, MOST)
+
+
+def _classes(text: str) -> list[str]:
+    """The hardware classes of simulators, those of a package whose plugin is there first."""
+    return sorted(_CLASSES, key=lambda it: it.partition("/")[0] not in text)
+
+
+def _compared(name: str, text: str) -> list[str]:
+    """The words that an argument is compared with, those of a simulator or its hardware first."""
+    found = re.findall(rf"""\b{re.escape(name)}\s*==\s*["']([\w-]+)["']""", text)
+    return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)

@@ -66,6 +66,6 @@ def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> Robot
 
 def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:
     """The world of the build, else that of Gazebo."""
-    if GZ not in simulators:
-        return ""
-    return File(world_file.FILE) if world_file.FILE in paths else "empty.sdf"
+    if simulators and world_file.FILE in paths:
+        return File(world_file.FILE)
+    return "empty.sdf" if GZ in simulators else ""

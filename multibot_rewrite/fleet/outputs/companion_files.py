@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
@@ -12,7 +12,13 @@ from multibot_rewrite.companions.formats import made_for_any
 from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
+from multibot_rewrite.companions.sites import found_in
+from multibot_rewrite.companions.template import (
+    NAMESPACE_SLOT,
+    NUMBER_STEP,
+    TAG_SLOT,
+    fill_template,
+)
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -21,9 +27,10 @@ from multibot_rewrite.fleet.outputs.output_file import (
     params_of,
     path_for,
 )
+from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS, said_of_numbers
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
@@ -49,9 +56,28 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
                 made.file.memo[Beside] = Beside(evidence.given, evidence.known)
                 found = (*made.findings, *judged_once(of_fleet(plan, made.file, group.robots)))
                 yield from (_with_names_of(group.robots[0], it) for it in found)
+                numbers = _numbers(plan, key, path)
+                yield from _numbered(made.file, numbers)
                 for robot in group.robots:
-                    text = fill_template(made.template, robot.spec.namespace, robot.spec.tag)
+                    spec = robot.spec
+                    number = numbers[spec.name]
+                    text = fill_template(made.template, spec.namespace, spec.tag, number)
                     yield OutputFile(path_for(robot, path), text.encode(), (path,))
+
+
+def _numbers(plan: FleetPlan, key: str, path: str) -> dict[str, int]:
+    """The robots that have a file, counted from 0."""
+    having = (it for it in plan.robots if path in it.spec.companions.get(key, ()))
+    return {it.spec.name: at for at, it in enumerate(having)}
+
+
+def _numbered(file: NamedFile, numbers: Mapping[str, int]) -> Iterator[Finding]:
+    """The ports that robots get numbers of their own for."""
+    for site in file.names if len(numbers) > 1 else ():
+        if site.kind == PORT and site.text.isdecimal() and int(site.text):
+            given = {name: int(site.text) + at * NUMBER_STEP for name, at in numbers.items()}
+            message, hint = said_of_numbers(site.key, given.items())
+            yield found_in(file.file, site.slot, OWN_PORTS, message, hint)
 
 
 def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion:

@@ -7,12 +7,16 @@ in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.outputs.given_world import own_world
+from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.outputs.spawn import is_classic, is_simulated
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.worlds import SYSTEMS
 
 FILE = "world.sdf"
@@ -64,24 +68,49 @@ _WORLD = """\
 """
 
 
-def world_file(plan: FleetPlan) -> Iterator[OutputFile]:
-    """The world, where a robot in gz-sim has a sensor that the empty one does not run."""
+def world_file(plan: FleetPlan) -> FilesAndFindings:
+    """The world of the fleet file with what the robots need; else an empty one, where a robot in gz-sim
+    has a sensor that Gazebo's own does not run. Raises InputError for a file that is no world."""
     robots = [it for it in plan.robots if is_simulated(it) and not is_classic(it)]
+    ours = _needed(robots)
+    given = plan.file.simulator_world
+    kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
+    if given:
+        simulated = [it for it in plan.robots if is_simulated(it)]
+        systems = "".join(_system(kind, *it) for it in _lacking(given, ours).items())
+        data, findings = own_world(given, simulated, systems, *plan.file.world_place)
+        yield OutputFile(FILE, data, (given,))
+        yield from findings
+    elif ours:
+        systems = "".join(_system(kind, *it) for it in {**_ALWAYS, **ours}.items())
+        place = _PLACE if "navsat" in ours else ""
+        yield OutputFile(FILE, _WORLD.format(systems=systems, place=place).encode())
+
+
+def _needed(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
+    """The systems for the sensors of these robots; one that brings a system would run it twice."""
     roots = [it.member.inventory.document.root for it in robots]
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
     needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))
-    # A robot that brings a system itself would run it twice.
     brought = [it.get("filename") or "" for root in roots for it in root.iter("plugin")]
-    ours = {
+    return {
         library: name
         for library, name in needed.items()
         if not any(f"-{library}-system" in it for it in brought)
     }
-    if ours:
-        kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
-        systems = "".join(_system(kind, *it) for it in {**_ALWAYS, **ours}.items())
-        place = _PLACE if "navsat" in ours else ""
-        yield OutputFile(FILE, _WORLD.format(systems=systems, place=place).encode())
+
+
+def _lacking(path: str, ours: Mapping[str, str]) -> Mapping[str, str]:
+    """The systems that a world lacks; to one that names none those are added that Gazebo gives it."""
+    world = read_document(read_file(path), path).root.find("world")
+    plugins = world.iterchildren("plugin") if world is not None else ()
+    there = [it.get("filename") or "" for it in plugins]
+    lacking = {
+        library: name
+        for library, name in ours.items()
+        if not any(f"-{library}-system" in it for it in there)
+    }
+    return lacking if there or not lacking else {**_ALWAYS, **lacking}
 
 
 def _system(kind: str, library: str, name: str) -> str:

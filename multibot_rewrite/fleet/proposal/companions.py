@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -17,6 +17,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
+    best_folders,
     hundredths_known,
     moveit_of_others,
     of_others,
@@ -72,7 +73,8 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     every = without(found, left)
     left |= _with_others_names(robot, every)
     found = without(every, left)
-    files = {kind: tuple(_of_kind(kind, robot, found, left)) for kind in KINDS if kind != "params"}
+    kinds = (it for it in KINDS if it not in ("params", "moveit"))
+    files = {kind: tuple(_of_kind(kind, robot, getattr(found, kind), left)) for kind in kinds}
     sections = dict(_sections(_nearest(robot, found.params, found.launch), release, left))
     idle = _controllers_of_others(robot, sections)
     left |= idle | _bridges_of_others(robot, found)
@@ -83,7 +85,7 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     left |= {it: "another SRDF was taken" for it in found.srdf if it not in srdf}
     others = moveit_of_others(srdf[0], every) if srdf else {}
     left |= others
-    files["moveit"] = tuple(it for it in files["moveit"] if srdf and it not in others)
+    files["moveit"] = tuple(_moveit(robot, found, "".join(srdf), left)) if srdf else ()
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
     return Companions(chosen, "".join(srdf), dict(_stacks(robot, nodes, "".join(srdf))), left)
@@ -107,11 +109,25 @@ def _bridges_of_others(robot: Looked, found: Found) -> dict[str, str]:
     return dict.fromkeys(found.bridge, "the description has nothing for a simulator")
 
 
-def _of_kind(kind: str, robot: Looked, found: Found, left: dict[str, str]) -> Iterator[str]:
-    """The files of a kind, nearest first; of equal base names, or where one is enough, only one."""
+def _moveit(robot: Looked, found: Found, srdf: str, left: dict[str, str]) -> Iterator[str]:
+    """MoveIt's files of the folder with most names of the robot and its groups, then of others."""
+    every = tuple(it for it in found.moveit if it not in left)
+    known = best_folders(robot, srdf, every)
+    yield from _of_kind("moveit", robot, every, left, lambda it: -known[os.path.dirname(it)])
+
+
+def _of_kind(
+    kind: str,
+    robot: Looked,
+    every: Sequence[str],
+    left: dict[str, str],
+    rank: Callable[[str], int] = lambda _: 0,
+) -> Iterator[str]:
+    """The files of a kind by their rank, nearest first; of equal base names, or where one is enough,
+    only one."""
     taken: dict[str, str] = {}
-    every = getattr(found, kind)
-    for path in _best_known(robot, every) if kind == "rviz" else _nearest(robot, every):
+    near = _best_known(robot, every) if kind == "rviz" else _nearest(robot, every)
+    for path in sorted(near, key=rank):
         key = kind if kind in ONE else os.path.basename(path)
         if key in taken:
             left[path] = f"{os.path.basename(taken[key])} of another folder was taken"

@@ -149,4 +149,5 @@ def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:
         own = _of_member(member, folder) if len(it.members) > 1 else ()
         keys = {key: value for key, (value, _) in own}
         for name in member.names:
-            yield {"name": name, **keys, "pose": dict(it.poses[name])}
+            pose = {"pose": dict(it.poses[name])} if name in it.poses else {}
+            yield {"name": name, **keys, **pose}

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lxml import etree
 
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -16,7 +17,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.own_names import ROBOT, filled
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
 from multibot_rewrite.fleet.proposal.searching import text_of
@@ -28,7 +29,7 @@ _CLASSIC = ("libgazebo_", "libhector_gazebo")
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
 # A robot to expand a xacro for.
-_ANY = "robot1"
+ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
 WORLD = "world"
 
@@ -59,6 +60,11 @@ class Looked(NamedTuple):
     fault: str = ""
 
 
+def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
+    """Its arguments as they are for one robot; raises nothing."""
+    return tuple(filled(dict(it.arguments), ANY).items())
+
+
 def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
     """What a description is; ``given`` are values for arguments of xacros, others that it needs have
     those of ``values``."""
@@ -78,7 +84,7 @@ def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues
 def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
-        text = expand(path, filled(given, _ANY), None, reach) if xacro else read_file(path)
+        text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
         return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
@@ -90,7 +96,7 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
-    filled_in = filled(given, _ANY)
+    filled_in = filled(given, ANY)
     found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
     own = {name: value for name, value in found.for_robots.items() if name not in given}
     known = {one.name for one in found.arguments} | set(found.untried)
@@ -114,7 +120,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     given = dict(it.arguments)
     if it.model:
         return it
-    found = switch_for(it.path, filled(given, _ANY), suits, reach)
+    found = switch_for(it.path, filled(given, ANY), suits, reach)
     if not found:
         return it
     name, value = found
@@ -183,6 +189,13 @@ def holds_the_world(it: Looked) -> bool:
     """Is the robot fixed to the world by its own description?"""
     links = it.root.iterfind("link") if it.root is not None else ()
     return any(link.get("name") == WORLD for link in links)
+
+
+def is_placed(it: Looked) -> bool:
+    """Is a real robot fixed to a frame of all robots, such as map, by its own description?"""
+    links = it.root.iterfind("link") if it.root is not None else ()
+    shared = {*WORLD_FRAMES} - {WORLD}
+    return it.simulator == NO_SIMULATOR and any(link.get("name") in shared for link in links)
 
 
 # What gives each robot its own names.

@@ -5,15 +5,21 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from functools import lru_cache
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.fleet.proposal.looking import ANY, Looked, filled_for_any
 from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, home_of
 
 # Descriptions whose names are looked at.
 MOST = 60
 _NAMED = re.compile(rb"""<(?:link|joint)\b[^>]*?\bname\s*=\s*["']([^"']+)["']""")
+_GROUP = re.compile(rb"""<group\b[^>]*?\bname\s*=\s*["']([^"']+)["']""")
 _FILLED_IN = re.compile(r"\$[({][^)}]*[)}]")
 _KEY = re.compile(rb"^[ \t-]*[\w./-]+:", re.MULTILINE)
 _WORD = re.compile(r"[\w.-]+")
@@ -93,9 +99,60 @@ LEAST = 50
 def hundredths_known(robot: Looked, path: str) -> int:
     """How many of a hundred links and joints that an SRDF names, or an RViz config shows, are the
     robot's; all of a file that names none."""
-    named = names_shown(path) if path.endswith(".rviz") else _names_in(path)
-    own = frozenset(_expanded(robot)) | _names_in(robot.path)
+    if path.endswith(".rviz"):
+        named = names_shown(path)
+    else:
+        named, groups = semantic_names(robot, path)
+        if not named | groups:  # a file of macros
+            return 0
+    own = own_names(robot)
     return 100 * len(named & own) // len(named) if named else 100
+
+
+def own_names(robot: Looked) -> frozenset[str]:
+    """Its links and joints: as they are, without what its arguments put in front, as written."""
+    made = frozenset(_expanded(robot))
+    return made | _plain(robot, made) | _names_in(robot.path)
+
+
+def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
+    """The names without what the arguments for its names put in front."""
+    given = [it.rstrip("_/") for _, it in filled_for_any(robot) if ANY in it]
+    fronts = tuple(f"{it}{end}" for it in given for end in "_/")
+    front = {name: next((it for it in fronts if name.startswith(it)), "") for name in names}
+    return frozenset(name.removeprefix(front[name]) or name for name in names)
+
+
+def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[str]]:
+    """The links and joints that an SRDF names, and its groups: with the robot's arguments, if it is a
+    xacro; as written where that cannot be expanded."""
+    if path.endswith(".xacro"):
+        with suppress(InputError):
+            names, groups = _semantics(path, filled_for_any(robot))
+            return _plain(robot, names), _plain(robot, groups)
+    data = data_of_file(path)
+    return _names_in(path), frozenset(it.decode("utf-8", "replace") for it in _GROUP.findall(data))
+
+
+@lru_cache(maxsize=MOST)
+def _semantics(
+    path: str, given: tuple[tuple[str, str], ...]
+) -> tuple[frozenset[str], frozenset[str]]:
+    data = expand(path, dict(given), None, BOUNDED)
+    found = (it.decode("utf-8", "replace") for it in _NAMED.findall(data))
+    groups = (it.decode("utf-8", "replace") for it in _GROUP.findall(data))
+    return frozenset(found) - {*SENT_FRAMES}, frozenset(groups)
+
+
+def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, int]:
+    """How many names of the robot and groups of its SRDF the files of each folder have."""
+    groups = semantic_names(robot, srdf)[1]
+    own = own_names(robot) | groups
+    found: dict[str, int] = {}
+    for path in paths:
+        folder = os.path.dirname(path)
+        found[folder] = found.get(folder, 0) + len(_words(path).all & own)
+    return found
 
 
 def names_shown(path: str) -> frozenset[str]:

@@ -22,6 +22,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     NeededValues,
     holds_the_world,
     in_its_world,
+    is_placed,
     look,
     with_model,
     with_own_arguments,
@@ -111,11 +112,12 @@ def worlds_of(members: Sequence[Member]) -> dict[str, Choice]:
 
 
 def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[str, float]]:
-    """A place for each robot, in a row along y, so many metres ``apart``; with 0 as they are wide."""
+    """A place for each robot, in a row along y, so many metres ``apart``; with 0 as they are wide. None
+    for a real one whose description has its place in the map."""
     found: dict[str, dict[str, float]] = {}
     y = before = 0.0
     for member in members:
-        for name in member.names:
+        for name in () if is_placed(member.looked) else member.names:
             if found:
                 y += apart or ceil((before + member.radius + _GAP) / _STEP) * _STEP
             before = member.radius

@@ -17,6 +17,7 @@ from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.nodes import rules_of
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.sources.own_names import NameTexts
 from multibot_rewrite.description.steps.collect import Inventory, collect
@@ -26,8 +27,7 @@ from multibot_rewrite.description.steps.document import Document, read_document
 class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
     holds and starts. ``described`` is what robot_state_publisher gets; where the simulator gets another
-    file, all else is of that. ``source`` is the description before, ``vocabulary`` what is known of
-    plugins,
+    file, all else is of that. ``source`` is the description before, ``tree`` what is known of plugins,
     ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
     that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
     arguments of its xacro make, by what they are without. ``handed_on`` are the remap rules of a
@@ -40,12 +40,17 @@ class Member(NamedTuple):
     inventory: Inventory
     reading: Reading
     source: Document
-    vocabulary: Vocabulary
+    tree: Tree
     shared: tuple[Finding, ...]
     unread: tuple[Finding, ...]
     read: tuple[str, ...]
     plain: NameTexts
     handed_on: tuple[RemapRule, ...] = ()
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """What is known of plugins; raises nothing."""
+        return self.tree.vocabulary
 
 
 def member(
@@ -70,9 +75,16 @@ def member(
     job = source.prepared.job
     handed_on = () if real else tuple(_handed_on(source.template.inventory))
     words = (shared, unread, job.read.files, job.own.plain, handed_on)
-    return Member(
-        source.robot, tag, described or written, written, reading, document, tree.vocabulary, *words
-    )
+    return Member(source.robot, tag, described or written, written, reading, document, tree, *words)
+
+
+def with_text(it: Member, data: bytes) -> Member:
+    """The robot with another text of what the simulator gets."""
+    file = it.inventory.document.file
+    written = collect(read_document(data, file), it.tree)
+    described = written if it.described is it.inventory else it.described
+    reading = read(data, file, it.vocabulary)
+    return it._replace(described=described, inventory=written, reading=reading)
 
 
 def _handed_on(inventory: Inventory) -> Iterator[RemapRule]:

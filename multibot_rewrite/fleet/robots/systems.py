@@ -38,7 +38,16 @@ from multibot_rewrite.producers.transforms import (
     virtual_lookups,
 )
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
-from multibot_rewrite.system.records import SUBSCRIBES, Edge, End, Lookup, Node, Place, System
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    Edge,
+    End,
+    Lookup,
+    Node,
+    Place,
+    System,
+)
 
 NONE = Semantics((), ())
 
@@ -93,10 +102,19 @@ def _ends_of(
     sections = {it.name: it for it in given}
     for node in nodes:
         yield from node_ends(node, sections.get(node.name))
-    yield from plugin_ends(reading)
+    yield from _plugin_ends(reading)
     for it in _documents(robot, "bridge"):
         for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file)):
             yield from either_way(row)
+
+
+def _plugin_ends(reading: Reading) -> Iterator[End]:
+    """The ends of plugins; what one with a controller manager would publish its controllers do, which
+    are known by the files that name them."""
+    managers = {it.full_name for it in reading.nodes if it.section.process_wide}
+    for end in plugin_ends(reading):
+        if end.role != PUBLISHES or end.node not in managers:
+            yield end
 
 
 def _control(

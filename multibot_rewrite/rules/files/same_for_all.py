@@ -17,7 +17,8 @@ from multibot_rewrite.companions.params.sections import ParamSection, scalars
 from multibot_rewrite.companions.rviz.read_config import GRAPH_NAMESPACE, RvizItem, text_of
 from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
 from multibot_rewrite.companions.sites import Site
-from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
+from multibot_rewrite.producers.addresses import is_held
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.given import given_in
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark, remark_at
@@ -26,16 +27,30 @@ _TWO = ("robot1", "robot2")
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 _OFF = ("false", "no", "off")
+_OWN_VALUE = "set it for each robot, in a parameter file that is loaded after this one"
 
 
 @of_robots
 def _exclusive(file: NamedFile) -> Iterator[Remark]:
-    """Each parameter that is set and that only one node can have so."""
+    """Each parameter that is set and that only one node can have so, in a file for several robots."""
+    if file.is_for_one:
+        return
+    # Of a fleet each robot gets a number of its own.
+    kinds = ("exclusive",) if file.is_certain else ("exclusive", PORT)
     for site in file.names:
-        if site.kind == "exclusive" and site.text and site.text.lower() not in _OFF:
-            message = f"{site.key} {site.text} is the same for all robots"
-            hint = "set it for each robot, in a parameter file that is loaded after this one"
-            yield remark(site, message, hint)
+        if site.kind in kinds and site.text and site.text.lower() not in _OFF:
+            yield remark(site, _same(site.key, site.text), _OWN_VALUE)
+    known = {site.slot.start for site in file.names if site.kind in OWN_KINDS}
+    for section, _ in file.pages:
+        for key, value in () if section.shared else scalars(section.body):
+            text = str(value.value)
+            if value.start_mark.index not in known and is_held(key.value, text):
+                hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
+                yield remark_at(value, _same(key.value, text), hint, NOTE)
+
+
+def _same(key: str, text: str) -> str:
+    return f"{key} {text} is the same for all robots"
 
 
 @rule(

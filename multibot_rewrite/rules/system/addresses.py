@@ -14,7 +14,7 @@ from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, 
 _ADVICE = {
     DEVICE: "one device has one driver: give each robot its own",
     CALIBRATION: "each device has its own: name the file that was measured with this one",
-    COMPUTER: "the second driver on a computer cannot open them: give each robot its own",
+    COMPUTER: "the second one on a computer cannot open it: give each robot its own, or a computer",
     OWN: "only one node can have it: give each robot its own",
 }
 

@@ -205,3 +205,16 @@ def test_wrong_use_is_one_line(
     err = capfd.readouterr().err
     assert said in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("links", "value"), [(("${p}_base", "${p}_arm"), "{robot}"), (("${p}_base", "arm"), "")]
+)
+def test_a_default_in_every_name_stands_where_the_robots_name_goes(
+    links: tuple[str, str], value: str, write: Path
+) -> None:
+    """lbr_description: robot_name is lbr, and every link and joint begins with it."""
+    names = "".join(f'<link name="{it}"/>' for it in links)
+    body = '<xacro:arg name="robot_name" default="lbr"/><xacro:property name="p" '
+    made = found(written(write, f'{body}value="$(arg robot_name)"/>{names}'))
+    assert made.for_robots == ({"robot_name": value} if value else {})

@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import rewrite, strip
+from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_models import VARIABLES, with_includes
+from multibot_rewrite.fleet.proposal.looking import NeededValues, look
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -178,3 +180,10 @@ def printed(file: Path, home: str) -> list[str]:
     done = subprocess.run(run, capture_output=True, text=True, check=True, env=env)
     lines = (it.replace("-0", "0").strip() for it in done.stdout.splitlines())
     return re.findall(r"<.*|[^\s<].*", "\n".join(it for it in lines if it))
+
+
+def test_init_takes_a_model_whose_links_are_included(rover: Path) -> None:
+    """sdformat: the links of an included model are the model's; MID has none of its own."""
+    mid = rover.parent.parent / "mid" / "model.sdf"
+    looked = look(str(mid), {}, Reach(), NeededValues(()))
+    assert (looked.links, looked.fault) == (2, "")

@@ -260,3 +260,29 @@ def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
     (tmp_path / "zebra.urdf").write_text(robot("zebra", "z1", "z2"))
     (tmp_path / "up.launch.py").write_text("urdf = 'zebra.urdf'\n")
     assert taken(tmp_path)["description"] == "zebra.urdf"
+
+
+def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) -> None:
+    """As xarm_moveit_config: an SRDF of macros has no name in its text, one makes two robots, one
+    has the macros alone; each arm has a folder of MoveIt's files with the same names."""
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    body = robot("${p}digger", "${p}dig").partition(">")[2]
+    head = f'<robot name="digger" {space}><xacro:arg name="prefix" default=""/>'
+    given = '<xacro:property name="p" value="$(arg prefix)"/>'
+    (tmp_path / "digger.urdf.xacro").write_text(f"{head}{given}{body}")
+    (tmp_path / "macro.srdf.xacro").write_text(
+        f'<robot name="m" {space}><xacro:macro name="arm" params="p"><group name="${{p}}arm">'
+        '<joint name="${p}dig"/></group></xacro:macro></robot>'
+    )
+    include = '<xacro:include filename="macro.srdf.xacro"/>'
+    calls = '<xacro:arm p="L_"/><xacro:arm p="R_"/>'
+    (tmp_path / "both.srdf.xacro").write_text(f'<robot name="b" {space}>{include}{calls}</robot>')
+    call = f'{include}<xacro:arm p="$(arg prefix)"/></robot>'
+    (tmp_path / "one.srdf.xacro").write_text(f"{head}{call}")
+    for name, joint in (("a", "pull"), ("b", "dig")):
+        (tmp_path / name).mkdir()
+        limits = f"joint_limits: {{{joint}: {{has_velocity_limits: true, max_velocity: 1.0}}}}\n"
+        (tmp_path / name / "joint_limits.yaml").write_text(limits)
+    fleet = taken(tmp_path)
+    assert fleet["srdf"] == "one.srdf.xacro"
+    assert fleet["companions"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])

@@ -462,3 +462,15 @@ def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
     (tmp_path / "the_crane.urdf").write_text(CRANE)
     assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"
+
+
+def test_a_robot_that_its_description_has_in_the_map_gets_no_pose(tmp_path: Path) -> None:
+    """go2_ros2_sdk go2.urdf: robot_state_publisher sends map -> odom, so a pose has no place in tf."""
+    joint = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
+    joints = joint.format("a", "map", "odom") + joint.format("b", "odom", "base_link")
+    links = "".join(f'<link name="{it}"/>' for it in ("map", "odom", "base_link"))
+    (tmp_path / "dog.urdf").write_text(f'<robot name="dog">{links}{joints}</robot>')
+    file = tmp_path / "fleet.yaml"
+    assert main(["init", str(tmp_path / "dog.urdf"), "-n", "2", "--yes", "-o", str(file)]) == 0
+    assert yaml.safe_load(file.read_text())["robots"] == [{"name": "robot1"}, {"name": "robot2"}]
+    assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0

@@ -121,3 +121,36 @@ def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
         "robots:\n  - {name: robot1}\n"
     )
     assert main(["build", str(file), "-o", str(folder / "out")]) == 0
+
+
+IF, UNLESS = '<xacro:if value="$(arg {switch})">', '<xacro:unless value="$(arg {switch})">'
+
+
+@pytest.mark.parametrize("word", ["gazebo", "sim"])
+def test_a_word_that_a_xacro_compares_is_a_switch(word: str, folder: Path) -> None:
+    """lbr_description has mode: mock, gazebo or hardware."""
+    made = '<xacro:property name="mode" value="$(arg mode)"/>\n  <xacro:property name="mass">'
+    text = ROVER.replace('<xacro:property name="mass">', made)
+    text = text.replace(IF, f"<xacro:if value=\"${{{{mode == '{word}'}}}}\">")
+    text = text.replace(UNLESS, f"<xacro:unless value=\"${{{{mode == '{word}'}}}}\">")
+    text = text.format(switch="mode", default="mock")
+    (folder / "rover.urdf.xacro").write_text(text)
+    assert fleet_of(folder)["arguments"] == {"mode": word}
+
+
+@pytest.mark.parametrize(
+    ("plugin", "hardware"),
+    [
+        ("gz_ros2_control-system", "gz_ros2_control/GazeboSimSystem"),
+        ("libgazebo_ros2_control.so", "gazebo_ros2_control/GazeboSystem"),
+    ],
+)
+def test_a_hardware_class_that_is_an_argument(plugin: str, hardware: str, folder: Path) -> None:
+    """xarm_description: ros2_control_plugin is the class; a plugin loads those of its own package."""
+    head, _, rest = ROVER.partition("      " + IF)
+    text = f"{head}      <plugin>$(arg driver)</plugin>\n{rest.partition('</xacro:unless>')[2]}"
+    text = text.format(switch="driver", default="acme_hardware/AcmeSystemHardware")
+    text = text.replace("gz_ros2_control-system", plugin)
+    text = text.replace("gz_ros2_control::GazeboSimROS2ControlPlugin", "control")
+    (folder / "rover.urdf.xacro").write_text(text)
+    assert fleet_of(folder)["arguments"] == {"driver": hardware}

@@ -69,7 +69,7 @@ _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
 _OPENS = lazy_compile(
-    r"nothing|model|namespace|world|unknown|(address|file):(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
+    r"nothing|model|namespace|world|unknown|(address|file)(?:\+([1-9]\d*))?:(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
 )
 _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
@@ -236,7 +236,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     if wrong:
         raise VocabularyError(
             f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
-            "address:PATH=DEFAULT or file:PATH"
+            "address:PATH=DEFAULT, address+STEP:PATH=DEFAULT or file:PATH"
         )
     tuple(wired_topics(place, {key: value}))
     settings[key] = value
@@ -303,9 +303,9 @@ def is_step(text: str) -> bool:
 
 
 def split_opens(word: str) -> tuple[str, ...]:
-    """Kind, conditions, path and default of a word of ``opens:``; empty for one without a path."""
+    """Kind, step, conditions, path and default of a word of ``opens:``; empty without a path."""
     found = _OPENS.fullmatch(word)
-    return found.groups(default="") if found else ("", "", "", "")
+    return found.groups(default="") if found else ("", "", "", "", "")
 
 
 @lru_cache(maxsize=PATHS)

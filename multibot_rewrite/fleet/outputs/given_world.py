@@ -1,0 +1,253 @@
+"""``world.sdf`` from a world of the user's: without the robot that it has, since the launch file spawns
+each of the fleet; what names that robot names those of the fleet.
+
+A block of a plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-sim) is there for each
+robot; a parameter of the plugin itself can name one robot only, and names the first.
+Sources: gz-sim examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.sources.included_models import model_file
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.document import (
+    Document,
+    read_document,
+    tag_end,
+    text_slot,
+)
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+
+_SCOPE = "::"
+_BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"
+_WORLD = '<sdf version="1.8"><world name="w">\n{}</world></sdf>\n'
+WORLD_ROBOT = declare(
+    "MF846",
+    "robot-of-the-world",
+    NOTE,
+    what="The world of the fleet has the robot in it, or a plugin that names it. The robot is left "
+    "out, a block that names it is written for each robot. A warning where a plugin can name one robot "
+    "alone: it is told of the first.",
+    why="The launch file spawns each robot at its pose. A robot that the world has as well would stand "
+    "beside them with names that no node uses.",
+    fix="Nothing for a note. Of a plugin for one robot check that the first one is meant.",
+    bad="simulator: gazebo\ndistro: jazzy\ndescription: rover.sdf\n"
+    "simulator_world: lake.sdf\nrobots: [{name: robot1}]\n",
+    good="simulator: gazebo\ndistro: jazzy\ndescription: rover.sdf\n"
+    "simulator_world: sea.sdf\nrobots: [{name: robot1}]\n",
+    line=4,
+    formats=("fleet",),
+    beside={
+        "rover.sdf": '<sdf version="1.8"><model name="rover"><link name="base"/></model></sdf>\n',
+        "lake.sdf": _WORLD.format("<include><uri>model://rover</uri></include>\n"),
+        "sea.sdf": _WORLD.format("<model name='buoy'><link name='link'/></model>\n"),
+    },
+)
+
+
+class _Kind(NamedTuple):
+    """Robots of one description, what that is called in the world, and its files."""
+
+    robots: Sequence[RewrittenRobot]
+    names: frozenset[str]
+    files: frozenset[str]
+
+
+class _Text(NamedTuple):
+    """The world as it is read, where its elements start, and the places of the fleet file."""
+
+    document: Document
+    starts: Mapping[_Element, int]
+    file: str
+    line: int
+
+
+def own_world(
+    path: str, robots: Sequence[RewrittenRobot], systems: str, file: str, line: int
+) -> tuple[bytes, list[Finding]]:
+    """The world for these robots with the ``systems`` that it lacks, and what is said of it in this
+    ``line`` of the fleet file. Raises InputError for a file that is no world."""
+    document = read_document(read_file(path), path)
+    world = document.root.find("world")
+    if world is None:
+        raise InputError(f"{path}:1: there is no <world> in it; simulator_world takes an SDF world")
+    starts = dict(zip(document.elements, document.starts, strict=True))
+    it = _Text(document, starts, file, line)
+    at = tag_end(document.source, starts[world])
+    edits = [Edit(at, at, b"\n" + systems.rstrip("\n").encode(), None)] if systems else []
+    edits += _own_paths(it)
+    findings: list[Finding] = []
+    for kind in _kinds(robots):
+        gone = [one for one in world.iterchildren("include", "model") if _is(one, kind, path)]
+        names = kind.names | {name for one in gone if (name := _name(one))}
+        for one in gone:
+            edits.append(Edit(*_span(it, one), b"", None))
+            findings.append(_said(it, one, f"the world's {_name(one)!r} is left out", NOTE))
+        inside = {below for one in gone for below in one.iter()}
+        for plugin in world.iter("plugin"):
+            if plugin not in inside:
+                for edit in _in_plugin(it, plugin, kind._replace(names=names)):
+                    (edits if isinstance(edit, Edit) else findings).append(edit)  # type: ignore[arg-type]
+    return b"".join(cut(document.source, _apart(edits))), findings
+
+
+def _apart(edits: Sequence[Edit]) -> Iterator[Edit]:
+    """In order, without those inside of another one."""
+    end = 0
+    for edit in sorted(edits, key=lambda it: (it.start, -it.end)):
+        if edit.start >= end:
+            end = edit.end
+            yield edit
+
+
+def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
+    found: dict[str, list[RewrittenRobot]] = {}
+    for it in robots:
+        found.setdefault(it.spec.simulated or it.spec.description, []).append(it)
+    for alike in found.values():
+        root = alike[0].member.source.root
+        model = root if root.tag == "robot" else next(root.iter("model"), root)
+        spec = alike[0].spec
+        files = (os.path.realpath(one) for one in (spec.description, spec.simulated) if one)
+        names = {model.get("name", ""), *_prefix(root)} - {""}
+        yield _Kind(alike, frozenset(names), frozenset(files))
+
+
+def _prefix(root: _Element) -> Iterator[str]:
+    """What stands before all links, as in wamv/base_link, is the name that its launch spawns it by."""
+    links = [it.get("name", "") for it in root.iter("link") if it.get("name")]
+    first = {it.partition("/")[0] for it in links if "/" in it}
+    if len(first) == 1 and all("/" in it for it in links):
+        yield from first
+
+
+def _is(one: _Element, kind: _Kind, path: str) -> bool:
+    """Is this model of the world the robot?"""
+    uri = text_at(one, "uri")
+    found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
+    if found and os.path.realpath(found) in kind.files:
+        return True
+    return _name(one) in kind.names
+
+
+def _name(one: _Element) -> str:
+    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
+
+
+def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
+    blocks = [one for one in plugin.iterchildren("*") if len(one) and _names(one, kind)]
+    for block in blocks:
+        start, end = _span(it, block)
+        texts = [_block(it, block, kind, robot) for robot in kind.robots]
+        yield Edit(start, end, b"\n".join(texts), None)
+    leaves = [one for one in plugin.iterchildren("*") if not len(one)]
+    named = [one for one in leaves if _new(text_of(one), kind.robots[0], kind.names, False)]
+    for one in leaves:
+        new = _new(text_of(one), kind.robots[0], kind.names, bool(named))
+        slot = text_slot(it.document.source, it.starts[one], text_of(one)) if new else None
+        if slot:
+            yield Edit(*slot, new.encode(), None)
+    if named and len(kind.robots) > 1:
+        who = plugin.get("name") or plugin.get("filename") or "plugin"
+        first = kind.robots[0].spec.name
+        message = (
+            f"{who} of the world names one robot in <{named[0].tag}>: it is told of {first} alone"
+        )
+        yield _said(it, named[0], message, WARNING)
+
+
+def _names(block: _Element, kind: _Kind) -> bool:
+    return any(
+        _new(text_of(one), kind.robots[0], kind.names, False)
+        for one in block.iter("*")
+        if not len(one)
+    )
+
+
+def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
+    """The block for one robot; its own name, if it has one, is made the robot's."""
+    source = it.document.source
+    start, end = _span(it, block)
+    edits = []
+    for one in block.iter("*"):
+        text = text_of(one) if not len(one) else ""
+        new = _new(text, robot, kind.names, True)
+        slot = text_slot(source, it.starts[one], text) if new else None
+        edits += [Edit(slot[0] - start, slot[1] - start, new.encode(), None)] if slot else []
+    own = re.compile(rb"""\bname\s*=\s*["']([^"'<]*)""").search(
+        source, start, tag_end(source, start)
+    )
+    if own and robot is not kind.robots[0]:
+        at = own.end(1) - start
+        edits.append(Edit(at, at, f"_{robot.spec.name}".encode(), None))
+    return b"".join(cut(source[start:end], sorted(edits)))
+
+
+def _new(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
+    """What a value becomes for a robot, empty for one that does not name it; of what is ``tied`` to the
+    robot links and joints are its own."""
+    model, scope, rest = value.partition(_SCOPE)
+    if value in names:
+        return robot.spec.model
+    if scope and model in names:
+        return _SCOPE.join((robot.spec.model, *(_part(it, robot) for it in rest.split(_SCOPE))))
+    made = value
+    for name in names:
+        made = re.sub(_BELOW_MODEL.format(re.escape(name)), rf"\g<1>{robot.spec.model}", made)
+    if made == value and tied:
+        made = _part(value, robot)
+    return made if made != value else ""
+
+
+def _part(value: str, robot: RewrittenRobot) -> str:
+    for kind in ("link", "joint", "sensor"):
+        if is_declared(robot.names, kind, value):
+            return spell(robot.names, kind, value)
+    return value
+
+
+def _own_paths(it: _Text) -> Iterator[Edit]:
+    """A path beside the world is looked up beside its copy, else."""
+    folder = os.path.dirname(os.path.abspath(it.document.file))
+    for one in it.document.root.iter("uri", "filename"):
+        text = text_of(one)
+        path = os.path.join(folder, text)
+        if text and "://" not in text and os.path.exists(path):
+            slot = text_slot(it.document.source, it.starts[one], text)
+            if slot:
+                yield Edit(*slot, f"file://{path}".encode(), None)
+
+
+def _span(it: _Text, one: _Element) -> tuple[int, int]:
+    """Where an element starts and ends."""
+    source, start, depth = it.document.source, it.starts[one], 0
+    tag = str(one.tag).encode()
+    start_tag = rb"""<%s(?=[\s/>])(?:[^>"']|"[^"]*"|'[^']*')*>""" % tag
+    pattern = re.compile(rb"<!--.*?-->|</%s\s*>|" % tag + start_tag, re.DOTALL)
+    for found in pattern.finditer(source, start):
+        if found[0].startswith(b"</"):
+            depth -= 1
+        elif not found[0].startswith(b"<!--") and not found[0].endswith(b"/>"):
+            depth += 1
+        if depth == 0 and not found[0].startswith(b"<!--"):
+            return start, found.end()
+    return start, start
+
+
+def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:
+    place = f"{it.document.file}:{one.sourceline}"
+    hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
+    return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line, column=1)

@@ -1,0 +1,96 @@
+"""What one node has for itself: ports and files that it writes, as build gives them to each robot.
+
+rosbridge_suite rosbridge_websocket.py binds ``port``, robot_localization ros_filter.cpp writes
+``debug_out_file``, nav2_waypoint_follower photo_at_waypoint.cpp makes ``save_dir``: two nodes of one
+computer must differ in each, and keep what does not name the place.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+URDF = '<robot name="rover"><link name="base_link"/></robot>'
+PARAMS = """\
+rosbridge_websocket:
+  ros__parameters:
+    port: {port}
+waypoint_follower:
+  ros__parameters:
+    waypoint_task_executor_plugin: photo
+    photo:
+      plugin: "nav2_waypoint_follower::PhotoAtWaypoint"
+      save_dir: /tmp/photos
+ekf_filter_node:
+  ros__parameters:
+    debug_out_file: "~/logs/ekf.debug.txt"
+camera:
+  ros__parameters:
+    device: /dev/video0
+    save_path: /tmp/pictures
+    stream_port: 8554
+    width: 8554
+"""
+
+
+def _built(folder: Path, robots: str, port: str = "9090") -> tuple[dict[str, str], list[Finding]]:
+    (folder / "rover.urdf").write_text(URDF)
+    (folder / "params.yaml").write_text(PARAMS.format(port=port))
+    (folder / "fleet.yaml").write_text(
+        f"layout: both\ndistro: jazzy\ndescription: rover.urdf\nrobots:\n{robots}"
+        "companions: {params: params.yaml}\n"
+    )
+    made = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})), str(folder))
+    return {it.path: it.text for it in made.files}, list(made.findings)
+
+
+def _of(text: str, node: str) -> dict[str, object]:
+    (found,) = (
+        body["ros__parameters"] for name, body in yaml.safe_load(text).items() if node in name
+    )
+    return dict(found)
+
+
+THREE = "".join(f"  - {{name: robot{at}}}\n" for at in (1, 2, 3))
+
+
+@pytest.mark.parametrize("port", ["9090", "'9090'"])
+def test_each_robot_has_a_port_and_files_of_its_own(tmp_path: Path, port: str) -> None:
+    texts, said = _built(tmp_path, THREE, port)
+    each = [texts[f"robot{at}/params.yaml"] for at in (1, 2, 3)]
+    kind = type(yaml.safe_load(port))
+    numbers = [_of(it, "rosbridge")["port"] for it in each]
+    assert numbers == [kind(it) for it in (9090, 9100, 9110)]
+    folders = {_of(it, "waypoint")["photo"]["save_dir"] for it in each}  # type: ignore[index]
+    assert folders == {f"/tmp/photos_robot{at}" for at in (1, 2, 3)}
+    files = {_of(it, "ekf")["debug_out_file"] for it in each}
+    assert files == {f"~/logs/ekf.debug_robot{at}.txt" for at in (1, 2, 3)}
+    (note,) = (it for it in said if it.code == "MF845")
+    assert (note.line, note.level) == (3, NOTE)
+    assert "robot1 9090, robot2 9100, robot3 9110" in note.message
+
+
+def test_what_a_strange_node_opens_stays_and_is_said(tmp_path: Path) -> None:
+    texts, said = _built(tmp_path, THREE)
+    own = yaml.safe_load(PARAMS.format(port=1))["camera"]["ros__parameters"]
+    assert all(_of(texts[f"robot{at}/params.yaml"], "camera") == own for at in (1, 2, 3))
+    told = {(it.message.split()[0], it.level) for it in said if it.code == "MB412"}
+    assert told == {("device", NOTE), ("save_path", NOTE), ("stream_port", NOTE)}
+
+
+def test_a_file_of_one_robot_keeps_its_port(tmp_path: Path) -> None:
+    (tmp_path / "other.yaml").write_text(PARAMS.format(port="9191"))
+    other = "  - {name: robot1}\n  - {name: robot2, companions: {params: other.yaml}}\n"
+    texts, said = _built(tmp_path, other)
+    ports = [
+        _of(texts[it], "rosbridge")["port"] for it in ("robot1/params.yaml", "robot2/other.yaml")
+    ]
+    assert ports == [9090, 9191]
+    assert not [it for it in said if it.code in ("MF845", "MB412")]

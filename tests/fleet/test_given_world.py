@@ -1,0 +1,113 @@
+"""A world of the user's: without the robot that it has, with the names of the fleet's robots.
+
+The shapes are those of osrf/vrx vrx_gz/worlds (``wind_obj`` of USVWind.cc, several are read; one
+``vehicle`` of ScoringPlugin.cc) and of ArduPilot's iris_runway.sdf; a name leads to what gz-sim's
+entitiesFromScopedName reads it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.cli.multibot import main
+
+BOAT = """<sdf version="1.9"><model name="boat"><link name="hull"/>
+<link name="mast"><sensor name="imu" type="imu"/></link></model></sdf>"""
+WORLD = """<?xml version="1.0"?>
+<sdf version="1.9">
+  <world name="lake">
+    <plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
+    <!-- <include><uri>boat</uri></include> -->
+    <include>
+      <uri>model://boat</uri> <!-- </include> -->
+      <pose>1 2 3 0 0 0</pose>
+    </include>
+    <include><uri>meshes</uri><name>buoy</name></include>
+    <model name="hull"><link name="hull"/></model>
+    <plugin filename="libUSVWind.so" name="vrx::USVWind">
+      <wind_obj><name>boat</name><link_name>hull</link_name><gain>1</gain></wind_obj>
+      <wind_obj><name>buoy</name><link_name>hull</link_name></wind_obj>
+      <rate>10</rate>
+    </plugin>
+    <plugin filename="libScoring.so" name="Scoring"><vehicle>boat</vehicle></plugin>
+    <plugin filename="gz-sim-x-system" name="x"><enable>boat::hull</enable>
+      <topic>/model/boat/pose</topic><other>hull</other></plugin>
+  </world>
+</sdf>
+"""
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Path:
+    (tmp_path / "boat").mkdir()
+    (tmp_path / "boat" / "model.sdf").write_text(BOAT)
+    config = "<model><sdf version='1.9'>model.sdf</sdf></model>"
+    (tmp_path / "boat" / "model.config").write_text(config)
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "lake.sdf").write_text(WORLD)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: both\ndistro: jazzy\nsimulator: gazebo\nsimulator_world: lake.sdf\n"
+        "description: boat/model.sdf\nrobots:\n"
+        "  - {name: r1, pose: {y: 0}}\n  - {name: r2, model: second, pose: {y: 5}}\n"
+    )
+    return tmp_path / "fleet.yaml"
+
+
+def _built(fleet: Path) -> etree._Element:
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    return etree.parse(str(fleet.parent / "out" / "world.sdf")).getroot()
+
+
+def _texts(root: etree._Element, tag: str) -> list[str]:
+    return [it.text or "" for it in root.iter(tag)]
+
+
+def test_plugins_of_the_world_name_the_robots(fleet: Path) -> None:
+    root = _built(fleet)
+    named = [(it.findtext("name"), it.findtext("link_name")) for it in root.iter("wind_obj")]
+    assert named == [("r1", "hull/r1"), ("second", "hull/r2"), ("buoy", "hull")]
+    assert _texts(root, "vehicle") == ["r1"]
+    assert _texts(root, "enable") == ["r1::hull/r1"]
+    assert _texts(root, "topic") == ["/model/r1/pose"]
+    assert _texts(root, "gain") == ["1", "1"] and _texts(root, "rate") == ["10"]
+
+
+def test_the_robot_of_the_world_is_left_out_and_all_else_stays(fleet: Path) -> None:
+    root = _built(fleet)
+    (buoy,) = root.iter("include")
+    assert buoy.findtext("name") == "buoy"
+    # A path beside the world, which the copy no longer lies beside.
+    assert buoy.findtext("uri") == f"file://{fleet.parent / 'meshes'}"
+    assert [it.get("name") for it in root.iter("model")] == ["hull"]
+    assert [it.getparent().get("name") for it in root.iter("link")] == ["hull"]
+
+
+def test_the_sensors_of_the_robots_run_in_it(fleet: Path) -> None:
+    """gz-sim: sensors of a world without their system send nothing; physics is there already."""
+    files = [it.get("filename") for it in _built(fleet).iter("plugin")]
+    assert files.count("gz-sim-imu-system") == 1 and files.count("gz-sim-physics-system") == 1
+
+
+def test_what_is_said_of_it(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _built(fleet)
+    said = capsys.readouterr().err
+    assert "fleet.yaml:4:1: note: MF846 the world's 'boat' is left out" in said
+    assert "MF846 Scoring of the world names one robot in <vehicle>: it is told of r1 alone" in said
+    assert "USVWind" not in said
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [(BOAT, "no <world>"), ("<sdf", "lake.sdf:1"), (None, "lake.sdf does not exist")],
+)
+def test_what_is_no_world(
+    fleet: Path, text: str | None, wanted: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = fleet.parent / "lake.sdf"
+    world.write_text(text) if text else world.unlink()
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 2
+    assert wanted in capsys.readouterr().err
+    assert not (fleet.parent / "out").exists()

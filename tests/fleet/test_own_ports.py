@@ -1,0 +1,81 @@
+"""Ports of simulated robots: the numbers that the autopilots of the second and third instance take.
+
+Expected: ArduPilot libraries/AP_HAL_SITL/SITL_cmdline.cpp raises its ports by 10 for each instance
+(``-I``), PX4-Autopilot launch/multi_uav_mavros_sitl.launch has ``14560 + id`` for udp and
+``4560 + id`` for tcp, gazebo_mavlink_interface.cpp takes 14560 and 4560 where the model says nothing.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+ARDUPILOT = '<plugin name="a" filename="ArduPilotPlugin"><fdm_port_in>9002</fdm_port_in></plugin>'
+MAVLINK = '<plugin name="m" filename="libgazebo_mavlink_interface.so">{}</plugin>'
+MODEL = '<sdf version="1.6"><model name="drone"><link name="base"/>{}</model></sdf>'
+
+
+def _built(
+    folder: Path, plugins: dict[str, str], distro: str = "jazzy"
+) -> tuple[list[str], list[Finding]]:
+    """The texts of the robots' models, and what is said."""
+    for name, plugin in plugins.items():
+        (folder / f"{name}.sdf").write_text(MODEL.format(plugin))
+    robots = "".join(f"  - {{name: {it}, description: {it}.sdf}}\n" for it in plugins)
+    (folder / "fleet.yaml").write_text(
+        f"layout: both\ndistro: {distro}\nsimulator: gazebo\nrobots:\n{robots}"
+    )
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    made = make_outputs(plan, str(folder / "out"))
+    texts = {it.path: it.text for it in made.files}
+    said = [*made.findings, *plan.fleet.table.problems]
+    return [texts[f"{name}/{name}.sdf"] for name in plugins], said
+
+
+def _ports(texts: list[str], tag: str) -> list[str | None]:
+    return [etree.fromstring(it.encode()).findtext(f".//plugin/{tag}") for it in texts]
+
+
+def test_an_autopilot_of_each_instance_meets_its_model(tmp_path: Path) -> None:
+    texts, said = _built(tmp_path, dict.fromkeys(("a", "b", "c"), ARDUPILOT))
+    assert _ports(texts, "fdm_port_in") == ["9002", "9012", "9022"]
+    (note,) = (it for it in said if it.code == "MF845")
+    assert note.message == "fdm_port_in is numbered: a 9002, b 9012, c 9022"
+    assert not [it for it in said if it.level == ERROR]
+
+
+@pytest.mark.parametrize(("tcp", "tag", "first"), [("0", "udp", 14560), ("1", "tcp", 4560)])
+def test_a_port_that_the_model_leaves_to_its_default(
+    tmp_path: Path, tcp: str, tag: str, first: int
+) -> None:
+    plugin = MAVLINK.format(f"<use_tcp>{tcp}</use_tcp>")
+    texts, _ = _built(tmp_path, {"a": plugin, "b": plugin}, "humble")
+    assert _ports(texts, f"mavlink_{tag}_port") == [None, str(first + 1)]
+
+
+def test_numbers_that_differ_stay_and_are_not_given_again(tmp_path: Path) -> None:
+    other = ARDUPILOT.replace("9002", "9012")
+    texts, _ = _built(tmp_path, {"a": ARDUPILOT, "b": other, "c": ARDUPILOT})
+    assert _ports(texts, "fdm_port_in") == ["9002", "9012", "9022"]
+
+
+def test_two_ports_of_one_robot_stay_two(tmp_path: Path) -> None:
+    two = MAVLINK.format("<mavlink_udp_port>14560</mavlink_udp_port>")
+    two += two.replace("14560", "14561").replace('"m"', '"n"')
+    texts, _ = _built(tmp_path, {"a": two, "b": two}, "humble")
+    roots = [etree.fromstring(it.encode()) for it in texts]
+    ports = [it.text for root in roots for it in root.iter("mavlink_udp_port")]
+    assert len({*ports}) == 4 and ports[:2] == ["14560", "14561"]
+
+
+def test_a_fleet_of_robots_with_ports_of_their_own_says_nothing(tmp_path: Path) -> None:
+    texts, said = _built(tmp_path, {"a": ARDUPILOT, "b": ARDUPILOT.replace("9002", "9300")})
+    assert _ports(texts, "fdm_port_in") == ["9002", "9300"]
+    assert "MF845" not in {it.code for it in said}
