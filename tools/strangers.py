@@ -1,6 +1,7 @@
 """``python -m tools.strangers FOLDER``: what a new user would get with public robots.
 
-FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name. Each is given to
+FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name, at the branch that is
+called as its release where there is one. Each is given to
 ``multibot init``, what that wrote to ``multibot build``, and the built folder to the drive test, with
 ROS_DISTRO as the repository's users have it. Printed is a table; times are those of the processor.
 """
@@ -34,7 +35,7 @@ LONGEST = 200
 
 
 class Stranger(NamedTuple):
-    """A repository of the list; ``half`` is "work" or "last"."""
+    """A repository of the list; ``half`` is "work", "last" or "fresh"."""
 
     name: str
     kind: str
@@ -180,7 +181,7 @@ def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "last"), default="work")
+    parser.add_argument("--half", choices=("work", "last", "fresh"), default="work")
     parser.add_argument("--only", default="", help="a part of the names")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")
