@@ -1,5 +1,5 @@
-"""A built folder as it would run: launch, or a stand-in for it, executes its launch file, each program opens what the
-sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
+"""A built folder as it would run: launch, or a stand-in for it, executes its launch file, each program
+opens what the sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
 
 No module of the package is imported here: what it wrote is judged.
 """

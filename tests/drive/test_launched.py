@@ -18,8 +18,8 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(
         not importlib.util.find_spec("launch_ros"),
-        reason="launch is the judge of the stand-in; source ROS, or put the sources of ros2/launch and "
-        "ros2/launch_ros on PYTHONPATH (CONTRIBUTING.md)",
+        reason="launch is the judge of the stand-in; source ROS, or put the sources of ros2/launch, "
+        "ros2/launch_ros and osrf/osrf_pycommon on PYTHONPATH",
     ),
 ]
 FLEETS = sorted((ROOT / "examples").glob("*/fleet.yaml"))
