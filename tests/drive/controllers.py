@@ -16,7 +16,10 @@ CLAIMS = {
     "diff_drive_controller": (("left_wheel_names", "right_wheel_names"), "velocity"),
     "joint_trajectory_controller": (("joints",), ""),
     "forward_command_controller": (("joints",), ""),
-    "joint_group_position_controller": (("joints",), "position"),
+    **{
+        f"joint_group_{it}_controller": (("joints",), it)
+        for it in ("position", "velocity", "effort")
+    },
 }
 
 

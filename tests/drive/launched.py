@@ -1,9 +1,9 @@
 """What the real launch starts of a built launch file: ``python launched.py FILE [NAME:=VALUE ...]``.
 
 It prints what ``started.py`` prints, which stands in where launch is not installed. No program runs:
-launch is the judge of actions, conditions, substitutions, parameters and rules (``launch_recorder.py``).
-Packages need not be installed: a launch file of another package is noted with its arguments. Needs launch
-and launch_ros.
+launch is the judge of actions, conditions, substitutions, parameters and rules
+(``launch_recorder.py``). Packages need not be installed: a launch file of another package is noted with
+its arguments. Needs launch and launch_ros.
 """
 
 from __future__ import annotations

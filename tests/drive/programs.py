@@ -28,6 +28,11 @@ NODES = {
     "lifecycle_manager": "lifecycle_manager",
     "teleop_node": "teleop_twist_joy_node",
 }
+# Controllers that are another with one interface (velocity_controllers/src/*.cpp and its neighbours).
+SAME = dict.fromkeys(
+    (f"joint_group_{it}_controller" for it in ("position", "velocity", "effort")),
+    "forward_command_controller",
+)
 # Nodes inside a program, with a namespace of their own (nav2_costmap_2d/src/costmap_2d_ros.cpp).
 COSTMAPS = {"controller_server": "local_costmap", "planner_server": "global_costmap"}
 # The class whose parameters a node has.
@@ -81,12 +86,12 @@ def node_of(executable: str) -> str:
 
 
 def is_known(node: str, release: str) -> bool:
-    return node in table(release)
+    return SAME.get(node, node) in table(release)
 
 
 def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opened]:
     """The ends of a node with these parameters."""
-    for row in table(release).get(node, ()):
+    for row in table(release).get(SAME.get(node, node), ()):
         name = led_by(node, row, values)
         met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
         if False not in met:

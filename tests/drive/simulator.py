@@ -131,8 +131,33 @@ def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
         if gazebo.plugin_key(it) in JOINTS and "physics" not in (running(model, world) or DEFAULT):
             yield robot, "drives", "the world has no physics"
     yield from blind(model, world)
+    yield from unheard(model, world)
+    for it in model.root.iter("plugin"):
+        if it.get("filename") in gazebo.GONE:
+            why = f"Gazebo has no {it.get('filename')} in ROS 2: nothing moves the joints"
+            yield robot, "starts", why
     if not poses and model.root.tag == "robot":
         yield from still(model)
+
+
+def unheard(model: Model, world: World) -> Iterator[Broken]:
+    """What an autopilot sends and no system of its robot hears."""
+    ends = list(ends_of(model, world))
+    heard = {it.topic for it in ends if it.role == "hears"}
+    for it in ends:
+        if it.what == gazebo.AUTOPILOT and it.topic not in heard:
+            yield model.robot, "drives", f"{it.what} sends {it.topic}, which nothing of it hears"
+
+
+def one_port(models: Iterable[Model]) -> Iterator[Broken]:
+    """Autopilots of two robots on one port (ArduPilotPlugin.cc: bind fails for the second)."""
+    first: dict[str, str] = {}
+    for model in models:
+        for it in model.kept.plugins:
+            if gazebo.plugin_key(it) == gazebo.AUTOPILOT:
+                port = gazebo.text(it, "fdm_port_in") or "9002"
+                if first.setdefault(port, model.robot) != model.robot:
+                    yield model.robot, "starts", f"{first[port]} has its port {port}, too"
 
 
 def idle(model: Model, values: Iterable[Mapping[str, Any]]) -> Iterator[Broken]:

@@ -13,7 +13,7 @@ from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
 from trees import LOOKED_UP, TF, Edge, connected, whole
-from twins import Fault, models_twice, twins
+from twins import Fault, models_twice, topics_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
@@ -40,7 +40,7 @@ DRIVING = (
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
     found = [Fault(*it) for it in fleet.faults]
-    found += [*twins(fleet), *models_twice(fleet)]
+    found += [*twins(fleet), *models_twice(fleet), *topics_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
