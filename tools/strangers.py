@@ -144,7 +144,14 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
         return ("drive: wrong in silence" if silent else "drive: the build says what is wrong"), why
     unknown = next((said for said in does.values() if "unknown" in said), "")
     yes = ", ".join(what for what, said in does.items() if said == "yes")
-    return ("drive: unknown", unknown) if unknown else (f"yes: {yes}", "")
+    return _unread(unknown, told) if unknown else (f"yes: {yes}", "")
+
+
+def _unread(unknown: str, told: str) -> tuple[str, str]:
+    """What nobody has read: the build says each by its name, or not."""
+    names = unknown.removeprefix("unknown: ").split(", ")
+    silent = [it for it in names if it not in told]
+    return ("drive: unknown" if silent else "drive: the build says what is not known"), unknown
 
 
 def _is_told(why: str, told: str) -> bool:

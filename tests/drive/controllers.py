@@ -112,6 +112,8 @@ def controller(
     found.faults.extend((who, it) for it in unclaimed(own, what, values, has))
     rules = manager.rules if not manager.inside or release not in ("lyrical", "rolling") else ()
     ends = tuple(programs.opened(what, values, release))
+    # What nobody has read is called as its file calls it.
+    what = what if programs.is_known(what, release) else str(kind)
     found.nodes.append(Node(who, what, name, manager.namespace, rules, values, ends))
 
 

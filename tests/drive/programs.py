@@ -98,6 +98,18 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
             yield Opened(row["role"], name, row["type"], "<" not in name and None not in met)
 
 
+def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
+    """The inputs of twist_mux (src/twist_mux.cpp, getTopicHandles), and what it sends where its
+    parameter says that commands are stamped."""
+    stamped = values.get("use_stamped") is True
+    kind = f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}"
+    for key, it in values.items():
+        if re.fullmatch(r"topics\..+\.topic", key):
+            yield Opened("subscribes", str(it), kind)
+    if stamped:
+        yield Opened("publishes", "cmd_vel_out", kind)
+
+
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
     """The name that a parameter gives, or that of the code."""
     if row["name"] == "<either>joint_states":  # joint_state_broadcaster.cpp

@@ -105,6 +105,12 @@ def classic(fleet: Fleet) -> set[str]:
 
 def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
     """The robots whose drives move when something is sent on a topic."""
+    topics = carried(fleet, topic, kind)
+    return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
+
+
+def carried(fleet: Fleet, topic: str, kind: str) -> set[tuple[str, str]]:
+    """The topics and types on which a command is sent again by those that pass it on."""
     plain = {it.fqn: it.what for it in fleet.nodes}
     topics, queue = {(topic, kind)}, [(topic, kind)]
     while queue:
@@ -116,15 +122,11 @@ def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
         }
         for it in fleet.ends:
             out = it.name, it.type
-            if (
-                it.node in through
-                and it.role == "publishes"
-                and it.type in COMMANDS
-                and out not in topics
-            ):
+            sent = it.node in through and it.role == "publishes" and it.type in COMMANDS
+            if sent and out not in topics:
                 topics.add(out)
                 queue.append(out)
-    return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
+    return topics
 
 
 def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
@@ -143,11 +145,10 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
     if said and said not in {topic for _, topic, _ in own}:
         whom = set().union(*(reached(fleet, said, kind) for kind in COMMANDS))
         if whom != {robot}:
-            yield Fault(
-                robot,
-                "drives",
-                f"the line for its reader sends to {said}: that moves {sorted(whom)}",
-            )
+            why = f"the line for its reader sends to {said}: that moves {sorted(whom)}"
+            last = {name for kind in COMMANDS for name, _ in carried(fleet, said, kind)} - {said}
+            through = f"; it goes on to {', '.join(sorted(last))}" if last else ""
+            yield Fault(robot, "drives", why + through)
     for it in senders(fleet, robot):
         whom = reached(fleet, it.name, it.type)
         if whom != {robot}:
