@@ -78,12 +78,13 @@ def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
     words = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
     made = run([*MULTIBOT, "init", str(checkout), *words], release)
     if named := _NAMED.search(made.err):
-        row = _built(it, run([*MULTIBOT, "init", named[1], *words], release), fleet, release)
+        again = run([*MULTIBOT, "init", named[1], *words], release)
+        row = _built(it, again, fleet, release, checkout)
         return row._replace(word=f"asks which robot; the first: {row.word}", init=made.seconds)
-    return _built(it, made, fleet, release)
+    return _built(it, made, fleet, release, checkout)
 
 
-def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
+def _built(it: Stranger, made: Ran, fleet: Path, release: str, checkout: Path) -> Row:
     """Build what init has written, and drive it."""
     if made.code:
         return Row(it, _word(made, "init"), _first(made), made.seconds, 0.0)
@@ -92,7 +93,8 @@ def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
     driven = run([sys.executable, str(DRIVE), str(out), "--json"], release)
-    return Row(it, *_driven(driven, built.err + built.out), made.seconds, built.seconds)
+    word, why = _driven(driven, built.err + built.out)
+    return Row(it, word, _with_owners(why, checkout), made.seconds, built.seconds)
 
 
 def run(command: Sequence[str], release: str) -> Ran:
@@ -152,6 +154,29 @@ def _unread(unknown: str, told: str) -> tuple[str, str]:
     names = unknown.removeprefix("unknown: ").split(", ")
     silent = [it for it in names if it not in told]
     return ("drive: unknown" if silent else "drive: the build says what is not known"), unknown
+
+
+def _with_owners(why: str, checkout: Path) -> str:
+    """What nobody has read, each with the package of the checkout that has its sources."""
+    if not why.startswith("unknown: "):
+        return why
+    return ", ".join(f"{it} ({_owner(it, checkout)})" for it in why[len("unknown: ") :].split(", "))
+
+
+def _owner(name: str, checkout: Path) -> str:
+    """The package whose CMakeLists.txt builds a library, or whose XML exports a class."""
+    words = name.removeprefix("lib").removesuffix(".so")
+    for pattern in ("CMakeLists.txt", "*.xml", "setup.py"):
+        for file in sorted(checkout.rglob(pattern)):
+            if file.is_file() and words in file.read_text(errors="replace"):
+                return f"of {_package(file.parent, checkout)}"
+    return "of no package here"
+
+
+def _package(folder: Path, checkout: Path) -> str:
+    above = [folder, *folder.parents]
+    has = (it for it in above if (it / "package.xml").is_file() or it == checkout)
+    return next(has, checkout).name
 
 
 def _is_told(why: str, told: str) -> bool:
