@@ -29,7 +29,7 @@ RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy
 # How a question which description is meant ends: a user names the one that is meant.
 _NAMED = re.compile(r"name one: multibot init (\S+)")
 # Seconds after which a command is ended.
-PATIENCE = 300
+PATIENCE = 1800
 # Letters of a reason in the table.
 LONGEST = 200
 

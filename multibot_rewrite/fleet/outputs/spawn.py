@@ -21,6 +21,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.spelling.bridged_topics import model_name
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
@@ -248,7 +249,7 @@ robots:
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     """The first plugin that names the robot's own model, and not by the name it is spawned with."""
     inventory = robot.member.inventory
-    own = inventory.document.root.get("name", "")
+    own = model_name(inventory)
     if own == robot.spec.model:
         return
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
