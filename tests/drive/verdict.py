@@ -147,8 +147,10 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
         if whom != {robot}:
             why = f"the line for its reader sends to {said}: that moves {sorted(whom)}"
             last = {name for kind in COMMANDS for name, _ in carried(fleet, said, kind)} - {said}
-            through = f"; it goes on to {', '.join(sorted(last))}" if last else ""
-            yield Fault(robot, "drives", why + through)
+            why += f"; it goes on to {', '.join(sorted(last))}" if last else ""
+            heard_on = ", ".join(sorted({topic for _, topic, _ in own}))
+            why += f"; its drive hears {heard_on}" if heard_on else ""
+            yield Fault(robot, "drives", why)
     for it in senders(fleet, robot):
         whom = reached(fleet, it.name, it.type)
         if whom != {robot}:
