@@ -27,8 +27,12 @@ FRAMES = {
 }
 SLOT = re.compile(r"\{([\w/]+)\}")
 AUTOPILOT = "ArduPilotPlugin"
-# gazebo_ros_pkgs has it for ROS 1 alone: its folder in the branch ros2 is empty.
-GONE = ("libgazebo_ros_control.so",)
+# What is of ROS 1 alone, with what a robot does not do: its folder is empty in gazebo_ros_pkgs' branch
+# ros2, or is left out by COLCON_IGNORE in every branch of ros_gz for ROS 2.
+GONE = {
+    "libgazebo_ros_control.so": ("starts", "nothing moves its joints"),
+    "RosGzPointCloud": ("sees", "no point cloud comes of it"),
+}
 TABLES = ("gz_systems.tsv", "classic_plugins.tsv")
 # Plugins with a controller manager inside.
 CONTROL = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")

@@ -133,9 +133,10 @@ def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
     yield from blind(model, world)
     yield from unheard(model, world)
     for it in model.root.iter("plugin"):
-        if it.get("filename") in gazebo.GONE:
-            why = f"Gazebo has no {it.get('filename')} in ROS 2: nothing moves the joints"
-            yield robot, "starts", why
+        file = it.get("filename", "")
+        if file in gazebo.GONE:
+            word, what = gazebo.GONE[file]
+            yield robot, word, f"no package of ROS 2 has {file}: {what}"
     if not poses and model.root.tag == "robot":
         yield from still(model)
 
