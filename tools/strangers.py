@@ -181,7 +181,7 @@ def _package(folder: Path, checkout: Path) -> str:
 
 def _is_told(why: str, told: str) -> bool:
     """Does the build name the topic, node or frame that this is about, as a whole word?"""
-    names = re.findall(r"/?[\w/]*[/_]\w+", why)
+    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", why)
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}

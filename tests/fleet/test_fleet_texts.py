@@ -226,6 +226,24 @@ def test_topics_of_a_model_of_sdf_follow_it_too(
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
+OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("name", "inside", "told"),
+    [
+        ("gazebo_ros_control", "", True),
+        ("gazebo_ros2_control", "", False),
+        # gazebo_ros_pkgs has it for both: its parameters of ROS 1 are another finding.
+        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", False),
+    ],
+)
+def test_a_plugin_of_ros_1_is_told(fleet: Any, name: str, inside: str, told: bool) -> None:
+    _, findings = spawn.spawns(fleet("L1", body=OLD.format(name, inside)))
+    said = [it.message for it in findings if it.code == "MF713"]
+    assert [f"lib{name}.so" in it for it in said] == ([True, True] if told else [])
+
+
 def test_two_gz_topics_on_one_ros_topic_are_reported() -> None:
     text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
     assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]
