@@ -188,7 +188,8 @@ def blind(model: Model, world: World) -> Iterator[Broken]:
     have = [it.get("name") for _, it in model.kept.sensors]
     for it in model.root.iter("sensor"):
         if it.get("name") not in have and it.getparent().tag in ("gazebo", "link", "joint"):
-            yield model.robot, "sees", f"Gazebo drops the sensor {it.get('name')}"
+            on = it.getparent().get("reference") or it.getparent().get("name")
+            yield model.robot, "sees", f"Gazebo drops the sensor {it.get('name')} with {on}"
     systems = running(model, world)
     for _, it in model.kept.sensors:
         need = NEEDS.get(kind_of(it))

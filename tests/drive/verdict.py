@@ -269,13 +269,15 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
-    """Odometry that begins at a frame where another robot's begins: the two are laid on each other."""
+    """Odometry that begins at a frame where another robot's begins: the two are laid on each other.
+    What OdometryPublisher.cc sends is the pose in the world, and begins nowhere."""
     plain = {it.fqn: it.what for it in fleet.nodes}
     names = {model: who for who, model in fleet.models.items()}
     begins = {
         (names.get(it.robot, it.robot), it.topic, it.parent)
         for it in fleet.edges
-        if it.node.startswith("gz ") or plain.get(it.node) in DRIVING
+        if (it.node.startswith("gz ") and not it.node.endswith(" odometry-publisher"))
+        or plain.get(it.node) in DRIVING
     }
     for who, topic, frame in sorted(begins):
         if who != robot and (robot, topic, frame) in begins:
