@@ -36,7 +36,13 @@ GONE = {
 TABLES = ("gz_systems.tsv", "classic_plugins.tsv")
 # Plugins with a controller manager inside.
 CONTROL = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
-SENSORS = {"lidar": "gpu_lidar", "ray": "gpu_lidar", "gpu_ray": "gpu_lidar", "gps": "navsat"}
+SENSORS = {
+    "depth": "depth_camera",
+    "lidar": "gpu_lidar",
+    "ray": "gpu_lidar",
+    "gpu_ray": "gpu_lidar",
+    "gps": "navsat",
+}
 
 
 class GzEnd(NamedTuple):
