@@ -1,6 +1,7 @@
 """``python -m tools.strangers FOLDER``: what a new user would get with public robots.
 
-FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name. Each is given to
+FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name, at the branch that is
+called as its release where there is one. Each is given to
 ``multibot init``, what that wrote to ``multibot build``, and the built folder to the drive test, with
 ROS_DISTRO as the repository's users have it. Printed is a table; times are those of the processor.
 """
@@ -28,13 +29,13 @@ RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy
 # How a question which description is meant ends: a user names the one that is meant.
 _NAMED = re.compile(r"name one: multibot init (\S+)")
 # Seconds after which a command is ended.
-PATIENCE = 300
+PATIENCE = 1800
 # Letters of a reason in the table.
 LONGEST = 200
 
 
 class Stranger(NamedTuple):
-    """A repository of the list; ``half`` is "work" or "last"."""
+    """A repository of the list; ``half`` is "work", "last" or "fresh"."""
 
     name: str
     kind: str
@@ -77,12 +78,13 @@ def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
     words = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
     made = run([*MULTIBOT, "init", str(checkout), *words], release)
     if named := _NAMED.search(made.err):
-        row = _built(it, run([*MULTIBOT, "init", named[1], *words], release), fleet, release)
+        again = run([*MULTIBOT, "init", named[1], *words], release)
+        row = _built(it, again, fleet, release, checkout)
         return row._replace(word=f"asks which robot; the first: {row.word}", init=made.seconds)
-    return _built(it, made, fleet, release)
+    return _built(it, made, fleet, release, checkout)
 
 
-def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
+def _built(it: Stranger, made: Ran, fleet: Path, release: str, checkout: Path) -> Row:
     """Build what init has written, and drive it."""
     if made.code:
         return Row(it, _word(made, "init"), _first(made), made.seconds, 0.0)
@@ -91,7 +93,8 @@ def _built(it: Stranger, made: Ran, fleet: Path, release: str) -> Row:
     if built.code:
         return Row(it, _word(built, "build"), _first(built), made.seconds, built.seconds)
     driven = run([sys.executable, str(DRIVE), str(out), "--json"], release)
-    return Row(it, *_driven(driven, built.err + built.out), made.seconds, built.seconds)
+    word, why = _driven(driven, built.err + built.out)
+    return Row(it, word, _with_owners(why, checkout), made.seconds, built.seconds)
 
 
 def run(command: Sequence[str], release: str) -> Ran:
@@ -143,12 +146,42 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
         return ("drive: wrong in silence" if silent else "drive: the build says what is wrong"), why
     unknown = next((said for said in does.values() if "unknown" in said), "")
     yes = ", ".join(what for what, said in does.items() if said == "yes")
-    return ("drive: unknown", unknown) if unknown else (f"yes: {yes}", "")
+    return _unread(unknown, told) if unknown else (f"yes: {yes}", "")
+
+
+def _unread(unknown: str, told: str) -> tuple[str, str]:
+    """What nobody has read: the build says each by its name, or not."""
+    names = unknown.removeprefix("unknown: ").split(", ")
+    silent = [it for it in names if it not in told]
+    return ("drive: unknown" if silent else "drive: the build says what is not known"), unknown
+
+
+def _with_owners(why: str, checkout: Path) -> str:
+    """What nobody has read, each with the package of the checkout that has its sources."""
+    if not why.startswith("unknown: "):
+        return why
+    return ", ".join(f"{it} ({_owner(it, checkout)})" for it in why[len("unknown: ") :].split(", "))
+
+
+def _owner(name: str, checkout: Path) -> str:
+    """The package whose CMakeLists.txt builds a library, or whose XML exports a class."""
+    words = name.removeprefix("lib").removesuffix(".so")
+    for pattern in ("CMakeLists.txt", "*.xml", "setup.py"):
+        for file in sorted(checkout.rglob(pattern)):
+            if file.is_file() and words in file.read_text(errors="replace"):
+                return f"of {_package(file.parent, checkout)}"
+    return "of no package here"
+
+
+def _package(folder: Path, checkout: Path) -> str:
+    above = [folder, *folder.parents]
+    has = (it for it in above if (it / "package.xml").is_file() or it == checkout)
+    return next(has, checkout).name
 
 
 def _is_told(why: str, told: str) -> bool:
     """Does the build name the topic, node or frame that this is about, as a whole word?"""
-    names = re.findall(r"/?[\w/]*[/_]\w+", why)
+    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", why)
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}
@@ -180,7 +213,7 @@ def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "last"), default="work")
+    parser.add_argument("--half", choices=("work", "last", "fresh"), default="work")
     parser.add_argument("--only", default="", help="a part of the names")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")

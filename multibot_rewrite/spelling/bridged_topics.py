@@ -80,6 +80,12 @@ def plugin_libraries(inventory: Inventory) -> list[str]:
     return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
 
 
+def model_name(inventory: Inventory) -> str:
+    """What a description calls its model: <robot> itself, in SDF the first <model>."""
+    root = inventory.document.root
+    return next(root.iter("robot", "model"), root).get("name", "")
+
+
 def is_for_classic(inventory: Inventory) -> bool:
     """Is a description for Gazebo Classic, whose topics no bridge can reach?"""
     known = plugin_libraries(inventory)
@@ -96,7 +102,7 @@ def _robot_topics(
         if sensor.get("type") not in elsewhere:
             yield from _sensor(sensor, robot)
     # With bare frames the spawner must give the model the robot's name, or two models collide.
-    model = inventory.document.root.get("name", "") if "model" in naming.separators else robot
+    model = model_name(inventory) if "model" in naming.separators else robot
     read = any(is_model_namespace(claim.site) for claim in inventory.claims)
     for host in inventory.hosts:
         section = host.node.section

@@ -16,7 +16,10 @@ CLAIMS = {
     "diff_drive_controller": (("left_wheel_names", "right_wheel_names"), "velocity"),
     "joint_trajectory_controller": (("joints",), ""),
     "forward_command_controller": (("joints",), ""),
-    "joint_group_position_controller": (("joints",), "position"),
+    **{
+        f"joint_group_{it}_controller": (("joints",), it)
+        for it in ("position", "velocity", "effort")
+    },
 }
 
 
@@ -29,6 +32,7 @@ class Manager(NamedTuple):
     sections: list[Mapping[str, Any]]
     rules: tuple[tuple[str, str], ...]
     inside: bool
+    gone: str = ""
 
 
 class Found(NamedTuple):
@@ -74,7 +78,8 @@ def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
                 ros = it.find("ros")
                 rules = () if ros is None else tuple(gazebo.rules_of(ros))
                 name = gazebo.text(it, "controller_manager_name") or "controller_manager"
-                yield Manager(who, space, name, sections, rules, True)
+                gone = ", ".join(f.name for f in files if not f.is_file())
+                yield Manager(who, space, name, sections, rules, True, gone)
 
 
 def manager_of(start: Mapping[str, Any]) -> str:
@@ -100,7 +105,8 @@ def controller(
     fqn = f"{manager.namespace.rstrip('/')}/{manager.name}"
     kind = programs.parameters_of(fqn, manager.sections).get(f"{name}.type")
     if not kind:
-        found.faults.append((who, f"{fqn} has no type for {name}"))
+        gone = f": {manager.gone} is not there" if manager.gone else ""
+        found.faults.append((who, f"{fqn} has no type for {name}{gone}"))
         return
     what = str(kind).split("/")[0]
     what = what if programs.is_known(what, release) else snake(str(kind).rpartition("/")[2])
@@ -109,6 +115,8 @@ def controller(
     found.faults.extend((who, it) for it in unclaimed(own, what, values, has))
     rules = manager.rules if not manager.inside or release not in ("lyrical", "rolling") else ()
     ends = tuple(programs.opened(what, values, release))
+    # What nobody has read is called as its file calls it.
+    what = what if programs.is_known(what, release) else str(kind)
     found.nodes.append(Node(who, what, name, manager.namespace, rules, values, ends))
 
 

@@ -1,5 +1,5 @@
-"""A built folder as it would run: a stand-in executes its launch file, each program opens what the
-sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
+"""A built folder as it would run: launch, or a stand-in for it, executes its launch file, each program
+opens what the sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
 
 No module of the package is imported here: what it wrote is judged.
 """
@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -69,11 +70,17 @@ class Fleet(NamedTuple):
 def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
     """What the launch file starts; a file that raises is a fault of the folder."""
     words = [f"robots:={robot}"] if robot else []
-    command = [sys.executable, str(HERE / "started.py"), str(file), *words]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    child = HERE / ("launched.py" if find_spec("launch_ros") else "started.py")
+    return run(child, file, *words)
+
+
+def run(child: Path, file: Path, *words: str) -> Mapping[str, Any]:
+    """What a child says that a launch file starts."""
+    command = [sys.executable, str(child), str(file), *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr.strip().splitlines()[-1])
-    found: Mapping[str, Any] = json.loads(done.stdout)
+    found: Mapping[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return found
 
 
@@ -124,6 +131,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
     posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
     broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
+    broken += simulator.one_port(there)
     for it in there:
         broken += simulator.idle(
             it, [each.values for each in found.nodes if each.robot == it.robot]

@@ -6,6 +6,7 @@ The tables beside this file were read in the sources of gz-sim, gz-sensors and g
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -24,10 +25,24 @@ FRAMES = {
     ),
     "": ("frame_id", "child_frame_id", "{model}/odom", "{model}/{link}"),
 }
+SLOT = re.compile(r"\{([\w/]+)\}")
+AUTOPILOT = "ArduPilotPlugin"
+# What is of ROS 1 alone, with what a robot does not do: its folder is empty in gazebo_ros_pkgs' branch
+# ros2, or is left out by COLCON_IGNORE in every branch of ros_gz for ROS 2.
+GONE = {
+    "libgazebo_ros_control.so": ("starts", "nothing moves its joints"),
+    "RosGzPointCloud": ("sees", "no point cloud comes of it"),
+}
 TABLES = ("gz_systems.tsv", "classic_plugins.tsv")
 # Plugins with a controller manager inside.
 CONTROL = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
-SENSORS = {"lidar": "gpu_lidar", "ray": "gpu_lidar", "gpu_ray": "gpu_lidar", "gps": "navsat"}
+SENSORS = {
+    "depth": "depth_camera",
+    "lidar": "gpu_lidar",
+    "ray": "gpu_lidar",
+    "gpu_ray": "gpu_lidar",
+    "gps": "navsat",
+}
 
 
 class GzEnd(NamedTuple):
@@ -75,8 +90,11 @@ def plugin_key(element: etree._Element) -> str:
 
 def of_plugin(plugin: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
     """What gz-sim opens for a plugin of a model; ``link`` is the canonical one."""
-    words = {"model": model, "world": world, "link": link}
-    words |= {"joint_name": text(plugin, "joint_name"), "joint_index": "0"}
+    turns = text(plugin, "use_angvel_cmd") in ("true", "1")
+    words = {"model": model, "world": world, "link": link, "joint_index": "0"}
+    words |= {"cmd": "cmd_vel" if turns else "cmd_thrust", "state": "force" if turns else "ang_vel"}
+    for name in ("namespace", "robotNamespace"):
+        words[name] = text(plugin, name) or model
     yield from of_rows(plugin, plugin_key(plugin), words)
 
 
@@ -92,20 +110,51 @@ def of_sensor(sensor: etree._Element, model: str, world: str, link: str) -> Iter
 
 def of_rows(element: etree._Element, key: str, words: Mapping[str, str]) -> Iterator[GzEnd]:
     for row in rows("gz_systems.tsv"):
-        if row["plugin"] == key:
-            topic = given(element, row["element"]) or row["default"].format(**words)
+        if row["plugin"] == key and row["role"] != "-":
             frames = frames_of(element, key, words) if row["type"] == "gz.msgs.Pose_V" else ("", "")
-            kind = row["type"]
-            yield GzEnd(words["model"], row["role"], valid(topic), kind, key, frames)
+            end = GzEnd(words["model"], row["role"], "", row["type"], key, frames)
+            if key == AUTOPILOT:
+                yield from (end._replace(topic=valid(it)) for it in commanded(element))
+            else:
+                named = given(element, row["element"], words)
+                topic = named or SLOT.sub(lambda it: value(element, it[1], words), row["default"])
+                yield end._replace(topic=valid(topic))
 
 
-def given(element: etree._Element, path: str) -> str:
-    """The topic of an element; ``topic/points`` is below it, ``topic/..`` a camera_info beside it."""
-    tag, _, below = path.partition("/")
-    found = text(element, tag)
-    if not found or not below:
+def commanded(autopilot: etree._Element) -> list[str]:
+    """The topics on which an autopilot sends to the systems of its model (ArduPilotPlugin.cc)."""
+    controls = [it for it in autopilot.iterfind("control") if text(it, "type") == "COMMAND"]
+    return [text(it, "cmd_topic") for it in controls if text(it, "cmd_topic")]
+
+
+def given(element: etree._Element, path: str, words: Mapping[str, str]) -> str:
+    """The topic that an element gives, the first that is there of ``a|b``; ``topic/points`` is below
+    that of topic, ``topic/..`` a camera_info beside it, ``{a}/{b}`` is made of elements or words."""
+    made = (
+        below(element, it) if "{" not in it else joined(element, it, words)
+        for it in path.split("|")
+    )
+    return next((it for it in made if it), "")
+
+
+def below(element: etree._Element, path: str) -> str:
+    tag, _, rest = path.partition("/")
+    found = text(element, tag) if tag else ""
+    if not found or not rest:
         return found
-    return f"{found.rpartition('/')[0]}/camera_info" if below == ".." else f"{found}/{below}"
+    return f"{found.rpartition('/')[0]}/camera_info" if rest == ".." else f"{found}/{rest}"
+
+
+def joined(element: etree._Element, path: str, words: Mapping[str, str]) -> str:
+    """Nothing where the element does not have its own part of it."""
+    own = [it for it in SLOT.findall(path) if it not in ("cmd", "state", "model")]
+    if not any(text(element, it) for it in own[-1:]):
+        return ""
+    return SLOT.sub(lambda it: value(element, it[1], words), path)
+
+
+def value(element: etree._Element, name: str, words: Mapping[str, str]) -> str:
+    return words.get(name) or text(element, name)
 
 
 def frames_of(element: etree._Element, key: str, words: Mapping[str, str]) -> tuple[str, str]:
@@ -148,14 +197,15 @@ def strangers(
     for who in (it for it in roots if it in models):
         for it in roots[who].iter("plugin"):
             # A hardware class of ros2_control has no file: its controller manager loads it.
-            if it.getparent().tag == "hardware":
+            if it.getparent().tag == "hardware" or it.get("filename", "") in ("", *GONE):
                 continue
             ours = any(word in it.get("filename", "") for word in CONTROL)
             if not ours and plugin_key(it) not in known:
                 yield who, it.get("filename", "")
         for it in roots[who].iter("sensor"):
             kind = it.get("type", "")
-            if f"sensor {SENSORS.get(kind, kind)}" not in known:
+            inside = it.getparent().tag in ("ros2_control", "hardware")
+            if not inside and f"sensor {SENSORS.get(kind, kind)}" not in known:
                 yield who, f"sensor {kind}"
 
 

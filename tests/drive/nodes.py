@@ -58,6 +58,7 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         values |= programs.parameters_of(fqn, sections_of(it))
         values |= {"": it["arguments"]} if it["arguments"] else {}
         ends = tuple(programs.opened(what, values, given.release))
+        ends += tuple(programs.muxed(values)) if what == "twist_mux" else ()
         yield Node(who, what, name, space, plain, values, ends)
         costmap = programs.COSTMAPS.get(what)
         if costmap:

@@ -50,6 +50,8 @@ SIMULATED = [
             "no topic of ROS reaches its drive"),
     Spoiled("launch_tutorial", BRIDGE, 'ros_topic_name: "/robot1/cmd_vel"',
             'ros_topic_name: "/cmd_vel"', "robot1", "drives", "that moves []"),
+    Spoiled("launch_tutorial", "robot2/rover.urdf", "<topic>robot2/cmd_vel",
+            "<topic>robot1/cmd_vel", "robot2", "drives", "robot1 hears /robot1/cmd_vel, too"),
     Spoiled("launch_tutorial", LAUNCH, "'-name', name", "'-name', 'robot1'",
             "robot2", "starts", "two models are called"),
 ]  # fmt: skip

@@ -28,6 +28,11 @@ NODES = {
     "lifecycle_manager": "lifecycle_manager",
     "teleop_node": "teleop_twist_joy_node",
 }
+# Controllers that are another with one interface (velocity_controllers/src/*.cpp and its neighbours).
+SAME = dict.fromkeys(
+    (f"joint_group_{it}_controller" for it in ("position", "velocity", "effort")),
+    "forward_command_controller",
+)
 # Nodes inside a program, with a namespace of their own (nav2_costmap_2d/src/costmap_2d_ros.cpp).
 COSTMAPS = {"controller_server": "local_costmap", "planner_server": "global_costmap"}
 # The class whose parameters a node has.
@@ -81,16 +86,28 @@ def node_of(executable: str) -> str:
 
 
 def is_known(node: str, release: str) -> bool:
-    return node in table(release)
+    return SAME.get(node, node) in table(release)
 
 
 def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opened]:
     """The ends of a node with these parameters."""
-    for row in table(release).get(node, ()):
+    for row in table(release).get(SAME.get(node, node), ()):
         name = led_by(node, row, values)
         met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
         if False not in met:
             yield Opened(row["role"], name, row["type"], "<" not in name and None not in met)
+
+
+def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
+    """The inputs of twist_mux (src/twist_mux.cpp, getTopicHandles), and what it sends where its
+    parameter says that commands are stamped."""
+    stamped = values.get("use_stamped") is True
+    kind = f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}"
+    for key, it in values.items():
+        if re.fullmatch(r"topics\..+\.topic", key):
+            yield Opened("subscribes", str(it), kind)
+    if stamped:
+        yield Opened("publishes", "cmd_vel_out", kind)
 
 
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:

@@ -131,8 +131,34 @@ def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
         if gazebo.plugin_key(it) in JOINTS and "physics" not in (running(model, world) or DEFAULT):
             yield robot, "drives", "the world has no physics"
     yield from blind(model, world)
+    yield from unheard(model, world)
+    for it in model.root.iter("plugin"):
+        file = it.get("filename", "")
+        if file in gazebo.GONE:
+            word, what = gazebo.GONE[file]
+            yield robot, word, f"no package of ROS 2 has {file}: {what}"
     if not poses and model.root.tag == "robot":
         yield from still(model)
+
+
+def unheard(model: Model, world: World) -> Iterator[Broken]:
+    """What an autopilot sends and no system of its robot hears."""
+    ends = list(ends_of(model, world))
+    heard = {it.topic for it in ends if it.role == "hears"}
+    for it in ends:
+        if it.what == gazebo.AUTOPILOT and it.topic not in heard:
+            yield model.robot, "drives", f"{it.what} sends {it.topic}, which nothing of it hears"
+
+
+def one_port(models: Iterable[Model]) -> Iterator[Broken]:
+    """Autopilots of two robots on one port (ArduPilotPlugin.cc: bind fails for the second)."""
+    first: dict[str, str] = {}
+    for model in models:
+        for it in model.kept.plugins:
+            if gazebo.plugin_key(it) == gazebo.AUTOPILOT:
+                port = gazebo.text(it, "fdm_port_in") or "9002"
+                if first.setdefault(port, model.robot) != model.robot:
+                    yield model.robot, "starts", f"{first[port]} has its port {port}, too"
 
 
 def idle(model: Model, values: Iterable[Mapping[str, Any]]) -> Iterator[Broken]:
@@ -162,7 +188,8 @@ def blind(model: Model, world: World) -> Iterator[Broken]:
     have = [it.get("name") for _, it in model.kept.sensors]
     for it in model.root.iter("sensor"):
         if it.get("name") not in have and it.getparent().tag in ("gazebo", "link", "joint"):
-            yield model.robot, "sees", f"Gazebo drops the sensor {it.get('name')}"
+            on = it.getparent().get("reference") or it.getparent().get("name")
+            yield model.robot, "sees", f"Gazebo drops the sensor {it.get('name')} with {on}"
     systems = running(model, world)
     for _, it in model.kept.sensors:
         need = NEEDS.get(kind_of(it))

@@ -156,7 +156,7 @@ def started(action: Kept, kind: str, context: Context) -> Iterator[Words]:
     if kind == "ExecuteProcess":
         yield {"command": [text_of(it, context) for it in action.words["cmd"]]}
     elif kind in ACTIONS:
-        yield {**node_of(action, context), "lifecycle": kind == "LifecycleNode"}
+        yield node_of(action, context)
     elif kind != "LoadComposableNodes":
         raise ValueError(f"the stand-in does not know {kind}")
     for part in action.words.get("composable_node_descriptions", ()):

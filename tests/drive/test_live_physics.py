@@ -37,7 +37,7 @@ def drove(found: dict[str, Any], one: dict[str, Any], other: dict[str, Any]) -> 
     assert moved(found, other["name"]) == pytest.approx([0, 0, 0], abs=0.02)
     for it, there in ((one, (x, y)), (other, (0, 0))):
         said = found["said"][it["name"]]
-        for kind in ("odom", *(("tf",) if importlib.util.find_spec("tf2_msgs") else ())):
+        for kind in ("odom", "tf"):
             assert said[kind][:2] == it["frames"]
             assert said[kind][2:] == pytest.approx(there, abs=0.05)
 

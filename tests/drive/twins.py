@@ -32,3 +32,15 @@ def models_twice(fleet: Fleet) -> Iterator[Fault]:
         if model in first:
             yield Fault(robot, "starts", f"two models are called {model}")
         first.setdefault(model, robot)
+
+
+def topics_twice(fleet: Fleet) -> Iterator[Fault]:
+    """A gz topic that two models hear, or on which both send: nothing tells them apart. Transforms of
+    all robots may be on one."""
+    robots = {model: robot for robot, model in fleet.models.items()}
+    first: dict[tuple[str, str], str] = {}
+    for it in fleet.gz:
+        other = first.setdefault((it.role, it.topic), it.model)
+        if other != it.model and it.type != "gz.msgs.Pose_V":
+            word = "drives" if it.role == "hears" else "sees"
+            yield Fault(robots[it.model], word, f"{robots[other]} {it.role} {it.topic}, too")

@@ -13,7 +13,7 @@ from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
 from trees import LOOKED_UP, TF, Edge, connected, whole
-from twins import Fault, models_twice, twins
+from twins import Fault, models_twice, topics_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
@@ -40,7 +40,7 @@ DRIVING = (
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
     found = [Fault(*it) for it in fleet.faults]
-    found += [*twins(fleet), *models_twice(fleet)]
+    found += [*twins(fleet), *models_twice(fleet), *topics_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
@@ -105,6 +105,12 @@ def classic(fleet: Fleet) -> set[str]:
 
 def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
     """The robots whose drives move when something is sent on a topic."""
+    topics = carried(fleet, topic, kind)
+    return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
+
+
+def carried(fleet: Fleet, topic: str, kind: str) -> set[tuple[str, str]]:
+    """The topics and types on which a command is sent again by those that pass it on."""
     plain = {it.fqn: it.what for it in fleet.nodes}
     topics, queue = {(topic, kind)}, [(topic, kind)]
     while queue:
@@ -116,15 +122,11 @@ def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
         }
         for it in fleet.ends:
             out = it.name, it.type
-            if (
-                it.node in through
-                and it.role == "publishes"
-                and it.type in COMMANDS
-                and out not in topics
-            ):
+            sent = it.node in through and it.role == "publishes" and it.type in COMMANDS
+            if sent and out not in topics:
                 topics.add(out)
                 queue.append(out)
-    return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
+    return topics
 
 
 def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
@@ -143,11 +145,12 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
     if said and said not in {topic for _, topic, _ in own}:
         whom = set().union(*(reached(fleet, said, kind) for kind in COMMANDS))
         if whom != {robot}:
-            yield Fault(
-                robot,
-                "drives",
-                f"the line for its reader sends to {said}: that moves {sorted(whom)}",
-            )
+            why = f"the line for its reader sends to {said}: that moves {sorted(whom)}"
+            last = {name for kind in COMMANDS for name, _ in carried(fleet, said, kind)} - {said}
+            why += f"; it goes on to {', '.join(sorted(last))}" if last else ""
+            heard_on = ", ".join(sorted({topic for _, topic, _ in own}))
+            why += f"; its drive hears {heard_on}" if heard_on else ""
+            yield Fault(robot, "drives", why)
     for it in senders(fleet, robot):
         whom = reached(fleet, it.name, it.type)
         if whom != {robot}:
@@ -266,13 +269,15 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def one_start(fleet: Fleet, robot: str) -> Iterator[Fault]:
-    """Odometry that begins at a frame where another robot's begins: the two are laid on each other."""
+    """Odometry that begins at a frame where another robot's begins: the two are laid on each other.
+    What OdometryPublisher.cc sends is the pose in the world, and begins nowhere."""
     plain = {it.fqn: it.what for it in fleet.nodes}
     names = {model: who for who, model in fleet.models.items()}
     begins = {
         (names.get(it.robot, it.robot), it.topic, it.parent)
         for it in fleet.edges
-        if it.node.startswith("gz ") or plain.get(it.node) in DRIVING
+        if (it.node.startswith("gz ") and not it.node.endswith(" odometry-publisher"))
+        or plain.get(it.node) in DRIVING
     }
     for who, topic, frame in sorted(begins):
         if who != robot and (robot, topic, frame) in begins:

@@ -209,6 +209,41 @@ def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> N
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_topics_of_a_model_of_sdf_follow_it_too(
+    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    body = DRIVE.removeprefix("<gazebo>").removesuffix("</gazebo>")
+    sdf = f'<sdf version="1.9"><model name="X1"><link name="base"/>{body}</model></sdf>'
+    Path("x1.sdf").write_text(sdf)
+    side = "postfix" if layout == "L4" else "prefix"
+    robots = "robots:\n- {name: r1}\n- {name: r2, namespace: two, model: second}\n"
+    Path("fleet.yaml").write_text(f"layout: {layout}\naffix: {side}\ndescription: x1.sdf\n{robots}")
+    plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
+    carried, _ = generated_bridge(plan.fleet.inventories, plan.fleet.naming)
+    found = [it.gz for it in as_spawned(carried, plan.robots) if it.gz.startswith("/model/")]
+    assert {name.split("/")[2] for name in found} == {"r1", "second"}
+
+
+OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("name", "inside", "told"),
+    [
+        ("gazebo_ros_control", "", True),
+        ("gazebo_ros2_control", "", False),
+        # gazebo_ros_pkgs has it for both: its parameters of ROS 1 are another finding.
+        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", False),
+    ],
+)
+def test_a_plugin_of_ros_1_is_told(fleet: Any, name: str, inside: str, told: bool) -> None:
+    _, findings = spawn.spawns(fleet("L1", body=OLD.format(name, inside)))
+    said = [it.message for it in findings if it.code == "MF713"]
+    assert [f"lib{name}.so" in it for it in said] == ([True, True] if told else [])
+
+
 def test_two_gz_topics_on_one_ros_topic_are_reported() -> None:
     text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
     assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]

@@ -36,6 +36,7 @@ from multibot_rewrite.spelling.bridged_topics import (
     UnbridgedTopic,
     as_yaml,
     bridged_topics,
+    model_name,
 )
 
 BRIDGE = "bridge.yaml"
@@ -207,7 +208,7 @@ def as_spawned(
 
 def _spawned(it: BridgedTopic, robot: RewrittenRobot) -> BridgedTopic:
     # If frames stay bare, the generated name is the robot's, not that of the description.
-    inner = robot.member.inventory.document.root.get("name", "")
+    inner = model_name(robot.member.inventory)
     found = GZ_MODEL.fullmatch(it.gz)
     if not found or found["model"] not in (inner, robot.spec.namespace):
         return it

@@ -21,6 +21,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.spelling.bridged_topics import model_name
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
@@ -53,7 +54,7 @@ class Spawn(NamedTuple):
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
-    looks for the robot by another name."""
+    looks for the robot by another name or is of ROS 1."""
     made: list[Spawn] = []
     findings: list[Finding] = []
     for robot in plan.robots:
@@ -61,6 +62,7 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
         findings += _half(robot)
         findings += _other_models(robot)
+        findings += _of_ros_1(robot)
     return tuple(made), tuple(findings)
 
 
@@ -245,10 +247,54 @@ robots:
 )
 
 
+_CONTROLLED = """\
+<robot name="arm">
+  <link name="base_link"/>
+  <gazebo><plugin name="control" filename="lib{}.so"/></gazebo>
+</robot>
+"""
+PLUGIN_OF_ROS_1 = declare(
+    "MF713",
+    "plugin-of-ros-1",
+    WARNING,
+    what="A plugin of a simulated robot is known of ROS 1 alone.",
+    why="No package of ROS 2 has its library: the simulator says that it cannot load it and goes on "
+    "without it, so nothing moves the joints, or a sensor sends nothing.",
+    fix="Put the plugin of ROS 2 in its place, as gazebo_ros2_control for gazebo_ros_control, or "
+    "delete it.",
+    bad="robots:\n  - {name: robot1, description: old.urdf}\n",
+    good="robots:\n  - {name: robot1, description: new.urdf}\n",
+    line=2,
+    formats=("fleet",),
+    beside={
+        "old.urdf": _CONTROLLED.format("gazebo_ros_control"),
+        "new.urdf": _CONTROLLED.format("gazebo_ros2_control"),
+    },
+)
+
+
+def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
+    """The plugins that no section of ROS 2 has."""
+    hint = "put the plugin of ROS 2 in its place, or delete it"
+    for name in dict.fromkeys(_old_plugins(robot)):
+        message = f"robot {robot.spec.name!r}: plugin {name} is of ROS 1: it is not loaded"
+        yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
+
+
+def _old_plugins(robot: RewrittenRobot) -> Iterator[str]:
+    known = robot.member.vocabulary
+    for host in robot.member.inventory.hosts:
+        section = host.node.section
+        if section is None or section.type != "plugin" or section.ros != "1":
+            continue
+        if all(it.ros == "1" for it in known.find("plugin", section.names[0])):
+            yield host.element.get("filename") or section.names[0]
+
+
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     """The first plugin that names the robot's own model, and not by the name it is spawned with."""
     inventory = robot.member.inventory
-    own = inventory.document.root.get("name", "")
+    own = model_name(inventory)
     if own == robot.spec.model:
         return
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
