@@ -29,7 +29,7 @@ from multibot_rewrite.cli.rewrite_use import (
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.companions.kinds import is_beside
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import given, not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source, read_whole
@@ -134,6 +134,7 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "", loads: s
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
-    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    proved = " ".join(filter(None, ["proved", given(first.findings)]))
+    end = f"rewritten, not proved: {', '.join(why)}" if why else proved
     end += facts_of_release(first.distro, loads)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -21,7 +21,7 @@ from multibot_rewrite.description.rewriters.own_defaults import (
 )
 from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
-from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     split_path,
@@ -77,7 +77,30 @@ def _insertions(
     found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
+    if section.helper and naming.separators and naming.topics != NAMESPACE:
+        found += _apart(host, section, declared, naming, home)
     return found
+
+
+def _apart(
+    host: etree._Element,
+    section: VocabularySection,
+    declared: Declared,
+    naming: Naming,
+    home: etree._Element | None,
+) -> Iterator[Insertion]:
+    """A namespace for a node that takes no rules, and one rule that keeps the plugin's own node out of
+    it: rules for all nodes would be those of the first robot in the process."""
+    parent, wrap = (host, "ros") if home is None else (home, "")
+    if home is not None and home.find("namespace") is not None:
+        return
+    site = next(it for it in section.sites if it.kinds[:1] == ("node",) and it.default)
+    name = text_at(host, site.path) or site.default
+    name = respelled(name, spell_default(site, name, declared, naming), ROBOT_SLOT)
+    xml = f"<namespace>/{ROBOT_SLOT}</namespace>"
+    yield Insertion(parent, wrap, xml, "node", section.helper, f"/{ROBOT_SLOT}")
+    xml = f"<remapping>{name}:__ns:=/</remapping>"
+    yield Insertion(parent, wrap, xml, "node", section.helper, name, shared=False)
 
 
 def lacks_namespace(
@@ -102,6 +125,8 @@ def without(item: Insertion, release: str) -> str:
         return "all but controllers, whose rules are their spawner's, would share"
     if item.shared:
         return "all robots would share"
+    if item.kind == "node":
+        return "its namespace would be that of"
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 
 

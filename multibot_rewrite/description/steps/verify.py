@@ -287,10 +287,17 @@ def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
 def a_slot_each(it: Evidence) -> None:
     """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
     values = "".join(it.expected).count(ROBOT_SLOT)
-    wanted = values + len(list(_inserted_names(it))) + len(it.markers)
+    wanted = values + len(list(_inserted_names(it))) + len(it.markers) + _own_namespaces(it)
     if it.slots != wanted:
         file = it.inventory.document.file
         raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
+
+
+def _own_namespaces(it: Evidence) -> int:
+    """How many inserted namespaces are the robot's where the layout has none."""
+    if "namespace" in it.naming.separators:
+        return 0
+    return sum(claim.value == f"/{it.robot}" for claim, _ in it.added)
 
 
 def strips_to_source(it: Evidence) -> None:

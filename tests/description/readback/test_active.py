@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite import rewrite
+from multibot_rewrite import rewrite, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.checks.verdict import GIVEN, given
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
+from multibot_rewrite.description.readback.meeting import NOT_TAKEN
 from multibot_rewrite.description.readback.nodes import as_valid_topic
+from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
@@ -212,8 +215,39 @@ def simulated(command: str) -> str:
 def test_an_arm_sends_no_odometry(distro: str) -> None:
     """ros2_controllers: those that send odometry claim velocity commands of their wheels
     (diff_drive_controller.cpp, command_interface_configuration)."""
-    assert why(simulated("position"), "tf-per-robot", distro) == ()
-    assert bool(why(simulated("velocity"), "tf-per-robot", distro)) == (distro == "lyrical")
+    arm = rewrite(simulated("position"), "robot1", layout="tf-per-robot", distro=distro)
+    base = rewrite(simulated("velocity"), "robot1", layout="tf-per-robot", distro=distro)
+    assert arm.not_proved == base.not_proved == ()
+    assert [it.code for it in arm.findings] == []
+    # The controllers of Lyrical take no rules but those of their spawner: the summary says it.
+    assert [it.code for it in base.findings] == ["MR105"] * (distro == "lyrical")
+    assert given(base.findings) == GIVEN[NOT_TAKEN] * (distro == "lyrical")
+
+
+def test_a_node_without_rules_gets_a_namespace_in_every_layout() -> None:
+    """gz_ros2_control_plugin.cpp:361 makes gz_ros_control without arguments, in ros/namespace; :446 the
+    controller manager in the same, with the arguments of the plugin. A rule for the manager alone keeps
+    it where the layout has it (rcl remap.c: a rule with a node's name is for that node)."""
+    made = rewrite(simulated("velocity"), "robot1", distro="jazzy")
+    assert made.not_proved == ()
+    assert "<namespace>/robot1</namespace>" in made.text
+    assert "<remapping>controller_manager_robot1:__ns:=/</remapping>" in made.text
+    found = [
+        it.name
+        for it in read(made.data, "", load_vocabulary((), "jazzy")).names
+        if it.kind == "node"
+    ]
+    assert found == ["/controller_manager_robot1", "/robot1/gz_ros_control"]
+    assert strip(made.data, "robot1", distro="jazzy") == simulated("velocity").encode()
+
+
+def test_a_namespace_of_the_file_is_no_robots_own() -> None:
+    text = simulated("velocity").replace(
+        "</parameters>", "</parameters><ros><namespace>/x</namespace></ros>"
+    )
+    assert why(text) == ("1 node shared by all robots",)
+    # What the hint says.
+    assert why(text, "both") == ()
 
 
 # ---------------------------------------------------------------- what is left
