@@ -11,6 +11,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
 from multibot_rewrite.description.rewriters.own_defaults import (
     MODEL,
     SENSOR,
@@ -77,9 +78,28 @@ def _insertions(
     found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
+    if section.ros == "1" and naming.separators:
+        found += _of_ros_1(host, section, naming)
     if section.helper and naming.separators and naming.topics != NAMESPACE:
         found += _apart(host, section, declared, naming, home)
     return found
+
+
+def _of_ros_1(
+    host: etree._Element, section: VocabularySection, naming: Naming
+) -> Iterator[Insertion]:
+    """The namespace of a ROS 1 plugin that is the root, or the model's name, which the text does not
+    say. Without namespaces only those need one that have relative names in their code."""
+    for site in section.sites if naming.topics == NAMESPACE or has_own_names(section) else ():
+        there = host.find(site.path) if site.kinds == ("namespace",) and not site.default else host
+        if there is host or (there is not None and (text_of(there) or site.empty == "model")):
+            continue
+        if there is not None:
+            made = _insertion(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
+            yield _filling(made, there, site.path)
+        elif naming.topics == NAMESPACE:
+            made = _insertion(host, site.path, "model", MODEL, f"/{ROBOT_SLOT}")
+            yield made._replace(shared=False)
 
 
 def _apart(
@@ -125,7 +145,7 @@ def without(item: Insertion, release: str) -> str:
         return "all but controllers, whose rules are their spawner's, would share"
     if item.shared:
         return "all robots would share"
-    if item.kind == "node":
+    if item.kind in ("node", "model"):
         return "its namespace would be that of"
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 

@@ -20,7 +20,11 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from lxml.etree import _Element
+
+    from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 
 MODEL, INCLUDE = "model", "include"
 # Sections of these elements, and where their namespace is.
@@ -55,6 +59,35 @@ def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim
 def _subtopic(site: Site) -> Site:
     """The same one each time: the proof knows sites by identity."""
     return site._replace(kinds=("subtopic",))
+
+
+def own_namespaces(
+    claims: list[Claim], hosts: Iterable[tuple[_Element, VocabularySection]]
+) -> list[Claim]:
+    """The claims as they are in a layout without namespaces: that of a ROS 1 plugin with relative names
+    in its code is a word like any other. No rule moves these names: a node of gzserver has none of its
+    own (roscpp names.cpp), so only the namespace keeps robots apart."""
+    fixed = {it for it, section in hosts if section.ros == "1" and has_own_names(section)}
+    if not fixed:
+        return claims
+    return [
+        claim._replace(site=_word(claim.site))
+        if claim.site.kinds == ("namespace",)
+        and claim.element.getparent() in fixed
+        and claim.value.strip("/ ")
+        else claim
+        for claim in claims
+    ]
+
+
+def has_own_names(section: VocabularySection) -> bool:
+    """Does the code of a plugin have names that its namespace alone moves?"""
+    return any(it.name[:1] not in "/{" for it in section.wired)
+
+
+@cache
+def _word(site: Site) -> Site:
+    return site._replace(kinds=("stem",), namespaced=False)
 
 
 def stands_below(claim: Claim) -> bool:

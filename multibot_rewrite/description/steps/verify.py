@@ -206,6 +206,8 @@ def robots_own(it: Evidence) -> None:
 def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
     """The names in inserted elements that the naming changes, and whether a namespace reaches them."""
     for claim, names in it.added:
+        if _is_own_namespace(claim, it):
+            continue
         reach = claim.site.namespaced
         for name in names:
             if not name.kind or affix(it.naming, name.kind, name.text, reach) is not None:
@@ -287,17 +289,16 @@ def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
 def a_slot_each(it: Evidence) -> None:
     """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
     values = "".join(it.expected).count(ROBOT_SLOT)
-    wanted = values + len(list(_inserted_names(it))) + len(it.markers) + _own_namespaces(it)
+    wanted = values + len(list(_inserted_names(it))) + len(it.markers)
+    wanted += sum(_is_own_namespace(claim, it) for claim, _ in it.added)
     if it.slots != wanted:
         file = it.inventory.document.file
         raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
 
 
-def _own_namespaces(it: Evidence) -> int:
-    """How many inserted namespaces are the robot's where the layout has none."""
-    if "namespace" in it.naming.separators:
-        return 0
-    return sum(claim.value == f"/{it.robot}" for claim, _ in it.added)
+def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
+    """Is it the namespace that a plugin needs in a layout that has none?"""
+    return "namespace" not in it.naming.separators and claim.value == f"/{it.robot}"
 
 
 def strips_to_source(it: Evidence) -> None:

@@ -218,8 +218,8 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     what="A remap rule of a control plugin has an absolute target, or the robots' topics differ "
     "only by such rules.",
     why="On Humble gazebo_ros2_control and ign_ros2_control apply their remap rules to the whole "
-    "Gazebo process: the first robot's rule also moves the second robot's topic, to the first one's name. "
-    "Since Jazzy the controller manager of each robot has its own rules.",
+    "Gazebo process: the first robot's rule also moves the second robot's topic, to the first one's "
+    "name. Since Jazzy the controller manager of each robot has its own rules.",
     fix="Use a relative target, which ends in each robot's own namespace; separate the robots by "
     "namespaces.",
     bad="<gazebo>\n"
