@@ -24,14 +24,13 @@ from multibot_rewrite.base.rosnames import (
 )
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.parameters import sends_odometry, switched_off, values_of
-from multibot_rewrite.description.readback.sections import ROS_1
 from multibot_rewrite.description.readback.wired import wired_of
 from multibot_rewrite.description.readback.xml import child_text, text_of, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE = "topic", "service"
-# What a plugin of ROS 1 sends on the one topic that all have: its frames alone keep robots apart.
+# What a plugin sends that no rule reaches, on the one topic that all have: frames keep robots apart.
 TRANSFORMS = "transforms on"
 _NOT_VALID = lazy_compile("@|~|//|:=")
 # Elements whose topics are those of Gazebo's transport.
@@ -349,7 +348,7 @@ def _coded(
     for wired, path in wired_of(host, section):
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
-            if wired.name in TF_TOPICS and section.ros == ROS_1:
+            if wired.name in TF_TOPICS:
                 kind = TRANSFORMS
             name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
             yield kind, name, path or wired.name

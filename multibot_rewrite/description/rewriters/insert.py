@@ -11,7 +11,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
+from multibot_rewrite.description.rewriters.model_namespaces import has_own_names, is_of_ros_1
 from multibot_rewrite.description.rewriters.own_defaults import (
     MODEL,
     SENSOR,
@@ -78,7 +78,7 @@ def _insertions(
     found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
-    if section.ros == "1" and naming.separators:
+    if is_of_ros_1(section) and naming.separators:
         found += _of_ros_1(host, section, naming)
     if section.helper and naming.separators and naming.topics != NAMESPACE:
         found += _apart(host, section, declared, naming, home)
@@ -109,17 +109,20 @@ def _apart(
     naming: Naming,
     home: etree._Element | None,
 ) -> Iterator[Insertion]:
-    """A namespace for a node that takes no rules, and one rule that keeps the plugin's own node out of
-    it: rules for all nodes would be those of the first robot in the process."""
-    parent, wrap = (host, "ros") if home is None else (home, "")
-    if home is not None and home.find("namespace") is not None:
+    """A namespace for a node that takes no rules, and one rule that keeps the plugin's own node where
+    it is: rules for all nodes would be those of the first robot in the process."""
+    if any(it.source == "__ns" and it.node for it in rules_in(home)):
         return
+    parent, wrap = (host, "ros") if home is None else (home, "")
+    given = "" if home is None else text_at(home, "namespace").strip("/")
+    if not given:
+        made = _insertion(parent, "namespace", "node", section.helper, f"/{ROBOT_SLOT}")
+        there = parent.find("namespace") if home is not None else None
+        yield made._replace(wrap=wrap) if there is None else _filling(made, there, "namespace")
     site = next(it for it in section.sites if it.kinds[:1] == ("node",) and it.default)
     name = text_at(host, site.path) or site.default
     name = respelled(name, spell_default(site, name, declared, naming), ROBOT_SLOT)
-    xml = f"<namespace>/{ROBOT_SLOT}</namespace>"
-    yield Insertion(parent, wrap, xml, "node", section.helper, f"/{ROBOT_SLOT}")
-    xml = f"<remapping>{name}:__ns:=/</remapping>"
+    xml = f"<remapping>{name}:__ns:=/{given}</remapping>"
     yield Insertion(parent, wrap, xml, "node", section.helper, name, shared=False)
 
 

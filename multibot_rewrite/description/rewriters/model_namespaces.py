@@ -20,7 +20,7 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
     from lxml.etree import _Element
 
@@ -64,25 +64,33 @@ def _subtopic(site: Site) -> Site:
 def own_namespaces(
     claims: list[Claim], hosts: Iterable[tuple[_Element, VocabularySection]]
 ) -> list[Claim]:
-    """The claims as they are in a layout without namespaces: that of a ROS 1 plugin with relative names
-    in its code is a word like any other. No rule moves these names: a node of gzserver has none of its
-    own (roscpp names.cpp), so only the namespace keeps robots apart."""
-    fixed = {it for it, section in hosts if section.ros == "1" and has_own_names(section)}
-    if not fixed:
-        return claims
-    return [
-        claim._replace(site=_word(claim.site))
-        if claim.site.kinds == ("namespace",)
-        and claim.element.getparent() in fixed
-        and claim.value.strip("/ ")
-        else claim
-        for claim in claims
-    ]
+    """The claims as they are in a layout without namespaces: that of a plugin is a word like any other
+    where nothing else keeps robots apart, which is so of relative names in the code of a ROS 1 plugin
+    (a node of gzserver has no rules of its own, roscpp names.cpp) and of a ``helper``."""
+    fixed = {it for it, section in hosts if section.helper or has_own_names(section)}
+    return [_word_of(it, fixed) for it in claims] if fixed else claims
+
+
+def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
+    if (
+        claim.site.kinds != ("namespace",)
+        or claim.site.form != "whole"
+        or not claim.value.strip("/ ")
+    ):
+        return claim
+    plugin = next(claim.element.iterancestors("plugin"), None)
+    return claim._replace(site=_word(claim.site)) if plugin in plugins else claim
 
 
 def has_own_names(section: VocabularySection) -> bool:
-    """Does the code of a plugin have names that its namespace alone moves?"""
-    return any(it.name[:1] not in "/{" for it in section.wired)
+    """Does the code of a ROS 1 plugin have names that its namespace alone moves?"""
+    return is_of_ros_1(section) and any(it.name[:1] not in "/{" for it in section.wired)
+
+
+def is_of_ros_1(section: VocabularySection) -> bool:
+    """Does it read the settings of ROS 1, and no <ros>?"""
+    paths = {it.path for it in section.sites}
+    return "robotNamespace" in paths and "ros/namespace" not in paths
 
 
 @cache

@@ -85,26 +85,13 @@ def test_the_last_hardware_block_counts() -> None:
 
 
 def test_the_same_text_for_all_with_something_active_is_not_proved() -> None:
-    text = robot(plugin("gazebo_ros_control"))
+    sensor = '<sensor name="s" type="rgbd_camera"><camera/></sensor>'
+    text = robot(f'<gazebo reference="a">{sensor}</gazebo>')
     assert why(text, "tf-per-robot") == ("1 description the same for all robots",)
     assert why(text, "both") == ()
 
 
 # ---------------------------------------------------------------- ROS 1
-
-
-@pytest.mark.parametrize(
-    ("namespace", "services"),
-    [
-        # gazebo_ros_control_plugin.cpp:85 (03d279ae): absent is the name of the model.
-        ("", 0),
-        ("<robotNamespace/>", 4),
-        ("<robotNamespace>/limo</robotNamespace>", 4),
-    ],
-)
-def test_the_namespace_of_gazebo_ros_control(namespace: str, services: int) -> None:
-    found = why(robot(plugin("gazebo_ros_control", namespace)), "postfix")
-    assert found == ((f"{services} services shared by all robots",) if services else ())
 
 
 def test_drives_of_ros_1_send_to_one_tf() -> None:
@@ -241,16 +228,47 @@ def test_a_node_without_rules_gets_a_namespace_in_every_layout() -> None:
     assert strip(made.data, "robot1", distro="jazzy") == simulated("velocity").encode()
 
 
-def test_a_namespace_of_the_file_is_no_robots_own() -> None:
-    text = simulated("velocity").replace(
-        "</parameters>", "</parameters><ros><namespace>/x</namespace></ros>"
-    )
-    assert why(text) == ("1 node shared by all robots",)
-    # What the hint says.
-    assert why(text, "both") == ()
+def test_a_namespace_of_the_file_is_the_helpers_alone() -> None:
+    """The controller manager stays in the namespace that it had."""
+    ros = "</parameters><ros><namespace>/x</namespace></ros>"
+    text = simulated("velocity").replace("</parameters>", ros)
+    made = rewrite(text, "robot1", distro="jazzy")
+    found = [it.name for it in read(made.data, "", load_vocabulary((), "jazzy")).names]
+    assert {"/x/controller_manager_robot1", "/x_robot1/gz_ros_control"} < set(found)
+    assert made.not_proved == ()
+    assert strip(made.data, "robot1", distro="jazzy") == text.encode()
 
 
-# ---------------------------------------------------------------- what is left
+def control_of_ros_1(namespace: str) -> str:
+    return robot(plugin("gazebo_ros_control", namespace))
+
+
+@pytest.mark.parametrize(
+    ("namespace", "layout", "expected"),
+    [
+        ("<robotNamespace>/a</robotNamespace>", "postfix", "/a_robot1"),
+        ("<robotNamespace>/a</robotNamespace>", "tf-per-robot", "/robot1/a"),
+        ("<robotNamespace/>", "postfix", "/robot1"),
+        ("<robotNamespace/>", "tf-per-robot", "/robot1"),
+        ("", "tf-per-robot", "/robot1"),
+    ],
+)
+def test_ros_1_controllers_are_apart_by_their_namespace(
+    namespace: str, layout: str, expected: str
+) -> None:
+    """gazebo_ros_control_plugin.cpp:85-91: an absent namespace is the model's name, an empty one the
+    root; :154 NodeHandle(robot_namespace_), below which controller_manager has its services."""
+    made = rewrite(control_of_ros_1(namespace), "robot1", layout=layout)
+    assert made.not_proved == ()
+    assert f"<robotNamespace>{expected}</robotNamespace>" in made.text
+    assert strip(made.data, "robot1", layout=layout) == control_of_ros_1(namespace).encode()
+
+
+def test_ros_1_has_one_tf() -> None:
+    """tf2_ros transform_broadcaster.cpp advertises /tf: frames alone keep robots apart."""
+    drive = plugin("gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace>")
+    assert why(robot(drive), "postfix", "") == ()
+    assert why(robot(drive), "tf-per-robot", "") == ("1 topic shared by all robots",)
 
 
 # Sections of which nobody has looked up what they open, by type: a number that only falls.
