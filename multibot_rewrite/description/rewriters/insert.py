@@ -11,7 +11,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.model_namespaces import has_own_names, is_of_ros_1
+from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
 from multibot_rewrite.description.rewriters.own_defaults import (
     MODEL,
     SENSOR,
@@ -78,7 +78,7 @@ def _insertions(
     found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
-    if is_of_ros_1(section) and naming.separators:
+    if naming.separators:
         found += _of_ros_1(host, section, naming)
     if section.helper and naming.separators and naming.topics != NAMESPACE:
         found += _apart(host, section, declared, naming, home)
@@ -89,15 +89,15 @@ def _of_ros_1(
     host: etree._Element, section: VocabularySection, naming: Naming
 ) -> Iterator[Insertion]:
     """The namespace of a ROS 1 plugin that is the root, or the model's name, which the text does not
-    say. Without namespaces only those need one that have relative names in their code."""
-    for site in section.sites if naming.topics == NAMESPACE or has_own_names(section) else ():
-        there = host.find(site.path) if site.kinds == ("namespace",) and not site.default else host
-        if there is host or (there is not None and (text_of(there) or site.empty == "model")):
+    say; with namespaces both, else the first alone."""
+    for site in section.sites if has_own_names(section) else ():
+        if site.kinds != ("namespace",) or site.default:
             continue
-        if there is not None:
+        there = host.find(site.path)
+        if there is not None and not text_of(there) and site.empty != "model":
             made = _insertion(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
             yield _filling(made, there, site.path)
-        elif naming.topics == NAMESPACE:
+        elif there is None and naming.topics == NAMESPACE:
             made = _insertion(host, site.path, "model", MODEL, f"/{ROBOT_SLOT}")
             yield made._replace(shared=False)
 
@@ -114,7 +114,7 @@ def _apart(
     if any(it.source == "__ns" and it.node for it in rules_in(home)):
         return
     parent, wrap = (host, "ros") if home is None else (home, "")
-    given = "" if home is None else text_at(home, "namespace").strip("/")
+    given = "" if home is None else text_at(home, "namespace").strip()
     if not given:
         made = _insertion(parent, "namespace", "node", section.helper, f"/{ROBOT_SLOT}")
         there = parent.find("namespace") if home is not None else None
@@ -122,7 +122,7 @@ def _apart(
     site = next(it for it in section.sites if it.kinds[:1] == ("node",) and it.default)
     name = text_at(host, site.path) or site.default
     name = respelled(name, spell_default(site, name, declared, naming), ROBOT_SLOT)
-    xml = f"<remapping>{name}:__ns:=/{given}</remapping>"
+    xml = f"<remapping>{name}:__ns:=/{given.strip('/')}</remapping>"
     yield Insertion(parent, wrap, xml, "node", section.helper, name, shared=False)
 
 
