@@ -205,7 +205,9 @@ def _filled(
 def _node(plugin: etree._Element, paths: Paths, words: Mapping[str, str]) -> Node:
     """The node of a plugin: gazebo_ros node.cpp for ROS 2; roscpp's NodeHandle(namespace) for ROS 1."""
     if _reads_ros(plugin, paths):
-        namespace = "/" + (plugin.findtext("ros/namespace") or "").strip().strip("/")
+        # gazebo_ros node.cpp: the plugin itself has the settings where it has no <ros>.
+        path = "namespace" if plugin.find("ros") is None else "ros/namespace"
+        namespace = "/" + (plugin.findtext(path) or "").strip().strip("/")
         return Node(namespace, plugin.get("name", ""), tuple(_rules(plugin)))
     row = paths.get("robotNamespace")
     there = plugin.find("robotNamespace")
