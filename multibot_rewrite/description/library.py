@@ -250,7 +250,7 @@ def explain(
 
     urdf_declarations = job.urdf_declarations
     document = read_document(job.data, job.file)
-    inventory = collect(document, job.tree, urdf_declarations, naming.layout)
+    inventory = collect(document, job.tree, urdf_declarations, naming.read_as)
     pipeline.check_urdf(inventory, urdf_declarations)
     return explain_line(inventory, job.naming, job.tree, robot, line)
 

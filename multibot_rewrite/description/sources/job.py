@@ -86,7 +86,7 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        tree, layout = self.tree, self.naming.layout
+        tree, layout = self.tree, self.naming.read_as
         own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
         urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []
         return [own, *urdf]

@@ -25,7 +25,8 @@ from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
 SRDF = "srdf.robot"
-USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)
+# As the file has its names: no namespace is a word that a layout renames.
+USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)._replace(namespaced=True)
 
 
 class Host(NamedTuple):

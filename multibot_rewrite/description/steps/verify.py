@@ -86,7 +86,7 @@ def verify(
     beside = spelled_names(urdf_declarations, naming, robot)
     try:
         read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
-        result = collect(read, tree, beside, naming.layout)
+        result = collect(read, tree, beside, naming.read_as)
         mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
     except InputError as error:
