@@ -39,7 +39,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, _, own, _ = self.job
+        data, file, naming, _, urdf, _, _, own, _ = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
