@@ -1,7 +1,8 @@
 """``python -m tools.proved FOLDER...``: of how many public descriptions is a rewrite proved, and why.
 
-Every .urdf, .sdf and .xacro that makes a robot by itself is rewritten for two robots in each layout and
-release. Printed is a table for each kind of robot, then the reasons, most frequent first, with a file.
+A folder is the corpus of the tests, or has checkouts of the repositories of ``proved.tsv``. Every
+.urdf, .sdf and .xacro that makes a robot by itself is rewritten for two robots in each layout and
+release. Printed is a table for each kind of robot, then the reasons, most frequent first.
 """
 
 from __future__ import annotations
