@@ -79,12 +79,9 @@ def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
 
 
 def has_own_names(section: VocabularySection) -> bool:
-    """Does the code of a ROS 1 plugin have names that its namespace alone moves?"""
-    return is_of_ros_1(section) and any(it.name[:1] not in "/{" for it in section.wired)
-
-
-def is_of_ros_1(section: VocabularySection) -> bool:
-    """Does it read the settings of ROS 1, and no <ros>?"""
+    """Has the code of a ROS 1 plugin, which reads no <ros>, names that its namespace alone moves?"""
+    if not any(it.name[:1] not in "/{" for it in section.wired):
+        return False
     paths = {it.path for it in section.sites}
     return "robotNamespace" in paths and "ros/namespace" not in paths
 
