@@ -125,6 +125,11 @@ class Naming(NamedTuple):
     shared_topics: frozenset[str]
     own: OwnNames = NO_OWN_NAMES
 
+    @property
+    def read_as(self) -> Layout:
+        """The layout that a description is read for: with namespaces where topics are below them."""
+        return self.layout._replace(namespaced=self.topics == NAMESPACE)
+
 
 def make_naming(
     layout: str = DEFAULT_LAYOUT,

@@ -110,7 +110,7 @@ def release_doubt(given: str | None = None) -> str:
 
 def facts_of_release(release: str, why: str = "") -> str:
     """The end of a summary: which release it is for, and why; nothing where that is not known."""
-    return f" (ROS 2 {release}{why and f': it loads {why}'})" if release else ""
+    return f" (ROS 2 {release}{why and f': {why}'})" if release else ""
 
 
 @cache  # so many facts, so few words

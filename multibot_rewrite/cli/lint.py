@@ -15,7 +15,6 @@ from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
-    release_of,
     release_told,
 )
 from multibot_rewrite.base.wording import plural
@@ -35,6 +34,7 @@ from multibot_rewrite.cli.walk import check_folder, check_target, find_files, st
 from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
 from multibot_rewrite.companions.kinds import is_linted
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.release_said import release_of_all
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
+# What says a release by the libraries that it loads.
+_ROBOTS = (".urdf", ".xacro", ".sdf")
 CRASHED = "MB001"
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
@@ -62,14 +64,15 @@ def run(options: argparse.Namespace) -> int:
     asked = options.distro or config.distro
     if doubt := release_doubt(asked):
         note(options, f"warning: {doubt}")
-    release = release_of(release_told(asked), b"")
-    config = with_options(config, **given(options), distro=release)
+    config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
+    said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_ROBOTS)))
+    config = config._replace(settings=config.settings._replace(distro=said.release))
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
     if options.write_baseline:
         return _write_baseline(options, findings)
-    return _conclude(options, config, paths, findings)
+    return _conclude(options, config, paths, findings, said.why)
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
@@ -156,6 +159,7 @@ def _conclude(
     config: Configured,
     paths: Sequence[str],
     findings: Sequence[Finding],
+    why: str,
 ) -> int:
     stale = 0
     if config.baseline:
@@ -169,7 +173,7 @@ def _conclude(
         failed = fails(findings, config.fail_on)
     else:
         failed = _report(options, findings, about)
-    end = facts_of_release(config.settings.distro)
+    end = facts_of_release(config.settings.distro, why)
     note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE

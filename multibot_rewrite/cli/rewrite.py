@@ -10,10 +10,8 @@ from itertools import chain
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.releases import (
-    evidence,
     facts_of_release,
     release_doubt,
-    release_told,
 )
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
@@ -29,7 +27,7 @@ from multibot_rewrite.cli.rewrite_use import (
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.companions.kinds import is_beside
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import given, not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source, read_whole
@@ -88,8 +86,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
     deliver(options, results, changes, len(names))
-    why = "" if release_told(options.distro) else evidence(first.prepared.job.data)
-    tell(options, summary(first, names, _own_arguments(options, names), why))
+    tell(options, summary(first, names, _own_arguments(options, names)))
     return DONE
 
 
@@ -118,9 +115,9 @@ def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
     return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
 
 
-def summary(first: Rewrite, robots: list[str], own_arguments: str = "", loads: str = "") -> str:
+def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     """One line: how many names of each kind were renamed, how many the xacro's own arguments have
-    named, and the release with what it ``loads`` that says so."""
+    named, and the release with what says so."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
@@ -134,6 +131,7 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "", loads: s
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
-    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
-    end += facts_of_release(first.distro, loads)
+    proved = " ".join(filter(None, ["proved", given(first.findings)]))
+    end = f"rewritten, not proved: {', '.join(why)}" if why else proved
+    end += facts_of_release(first.distro, first.prepared.job.why)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

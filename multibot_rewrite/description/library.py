@@ -41,7 +41,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, _, own, _ = self.job
+        data, file, naming, _, urdf, _, _, own, _ = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
@@ -253,7 +253,7 @@ def explain(
 
     urdf_declarations = job.urdf_declarations
     document = read_document(job.data, job.file)
-    inventory = collect(document, job.tree, urdf_declarations, naming.layout)
+    inventory = collect(document, job.tree, urdf_declarations, naming.read_as)
     pipeline.check_urdf(inventory, urdf_declarations)
     on_line = partial(explain_line, inventory, job.naming, job.tree, robot)
     if isinstance(source, bytes) or not is_xacro(os.fspath(source)):

@@ -43,7 +43,7 @@ def prepare(
     ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
-    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.layout)
+    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
@@ -70,7 +70,7 @@ def _shared_with_twin(
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
     # What the arguments name gets the twin's name once more: only whether it has it matters.
-    read = collect(read_document(twin, document.file), tree, layout=naming.layout)
+    read = collect(read_document(twin, document.file), tree, layout=naming.read_as)
     edits = make_plan(read, naming).edits
     text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
@@ -152,7 +152,7 @@ def strip(
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.
     """
-    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.layout)
+    inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     renames = make_renames(inventory, naming)
     found = checks.not_rewritten(inventory, renames, robot)
@@ -161,7 +161,7 @@ def strip(
     places = NOWHERE
     if before:
         places = own_places(
-            collect(read_document(before, file), tree, layout=naming.layout), naming
+            collect(read_document(before, file), tree, layout=naming.read_as), naming
         )
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
     again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))

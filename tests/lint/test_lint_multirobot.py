@@ -44,8 +44,7 @@ def remapped(rule: str) -> str:
         (DRIVE.format(remapped("odom:=/")), []),
         (DRIVE.format(remapped("nonsense")), []),
         (DRIVE.format(remapped("")), []),
-        # The process-wide rule is reported once, and under the stronger code.
-        (CONTROL.format(remapped("odom:=/odom")), ["MB426"]),
+        (CONTROL.format(remapped("odom:=/odom")), ["MB401"]),
         (CONTROL.format(remapped("odom:=odom")), []),
         (SENSOR.format("<topic>/imu</topic>"), ["MB402"]),
     ],

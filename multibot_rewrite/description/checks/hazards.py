@@ -15,6 +15,7 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
+from multibot_rewrite.knowledge.controller_ways import controller_way
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
@@ -89,7 +90,10 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Remap rules that hold for every node of the process keep robots apart only by namespaces
-    (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
+    (gazebo_ros2_control_plugin.cpp and ign_ros2_control_plugin.cpp set the global arguments; since
+    Jazzy each manager has its own, gz_ros2_control_plugin.cpp ``options.arguments``)."""
+    if not controller_way(inventory.release).process_wide:
+        return
     if naming.topics != NAMESPACE:
         for section, host in _known_hosts(inventory):
             if not section.process_wide:

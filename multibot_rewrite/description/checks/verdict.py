@@ -31,7 +31,6 @@ REASONS = {
     COMMAND: ("command", SHARED),
     TWO_SERVERS: ("service", SHARED),
     TWO_NODES: ("node", SHARED),
-    NOT_TAKEN: ("plugin", "whose controllers take rules of their spawner alone"),
     FRAMES: ("frame", SHARED),
     OPENED: ("resource", SHARED),
     SAME_TEXT: ("description", "the same for all robots"),
@@ -47,6 +46,15 @@ REASONS = {
     "MB428": ("name", "fixed in a plugin's code"),
     "MB429": ("model namespace", "that not every Gazebo reads"),
 }
+
+# What is proved of a description and hangs on what starts it: a code, and how the summary says it.
+GIVEN = {NOT_TAKEN: "where each controller is spawned with its rules"}
+
+
+def given(findings: Iterable[Finding]) -> str:
+    """What the word ``proved`` takes for granted; empty where that is nothing."""
+    codes = {it.code for it in findings}
+    return ", ".join(words for code, words in GIVEN.items() if code in codes)
 
 
 def not_proved(findings: Iterable[Finding]) -> tuple[str, ...]:

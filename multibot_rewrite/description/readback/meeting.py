@@ -13,7 +13,13 @@ from multibot_rewrite.base.naming import NAMESPACE, TOPIC_KINDS, Naming, is_keyw
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.active import ADDRESS, FILE, RELATIVE
-from multibot_rewrite.description.readback.nodes import ReadEndpoint, ReadNode, full_name, itself
+from multibot_rewrite.description.readback.nodes import (
+    TRANSFORMS,
+    ReadEndpoint,
+    ReadNode,
+    full_name,
+    itself,
+)
 from multibot_rewrite.description.readback.reading import FRAME, NODE, Reading, RuntimeName
 from multibot_rewrite.system.records import ACTION, KINDS, SERVICE
 from multibot_rewrite.system.words import is_order
@@ -32,6 +38,15 @@ _ADVICE = {
     DATA: _ALLOW,
     OPENED: "give each robot a value of its own",
     FRAMES: "set the frame for each robot, or allow it with --shared-frames",
+}
+# The rule that is about a kind of shared name.
+_CODES = {
+    TRANSFORMS: DATA,
+    NODE: TWO_NODES,
+    RELATIVE: TWO_NODES,
+    FRAME: FRAMES,
+    ADDRESS: OPENED,
+    FILE: OPENED,
 }
 
 
@@ -80,6 +95,8 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
         elif it.kind in KINDS:
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
+        elif it.kind == TRANSFORMS:
+            shared = naming.layout.frames
         else:
             shared = it.kind == RELATIVE and naming.topics == NAMESPACE
         if not shared:
@@ -94,7 +111,14 @@ def code_of(name: RuntimeName) -> str:
         return TWO_SERVERS
     if name.kind in TOPIC_KINDS:
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
-    others = {NODE: TWO_NODES, FRAME: FRAMES, ADDRESS: OPENED, FILE: OPENED, RELATIVE: TWO_NODES}
+    others = {
+        TRANSFORMS: DATA,
+        NODE: TWO_NODES,
+        FRAME: FRAMES,
+        ADDRESS: OPENED,
+        FILE: OPENED,
+        RELATIVE: TWO_NODES,
+    }
     return others.get(name.kind, LOOKUP)
 
 
@@ -111,6 +135,8 @@ def said(who: str, *names: RuntimeName) -> str:
 
 def advice(name: RuntimeName) -> str:
     """What to do about a shared name, but for those of controllers."""
+    if name.kind == TRANSFORMS:
+        return "ROS 1 has one /tf: use --layout frames-per-robot"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"

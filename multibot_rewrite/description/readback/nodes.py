@@ -28,6 +28,8 @@ from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE = "topic", "service"
+# What a plugin sends that no rule reaches, on the one topic that all have: frames keep robots apart.
+TRANSFORMS = "transforms on"
 TF_TOPICS = ("/tf", "/tf_static")
 REMAP_FLAGS = ("-r", "--remap")
 PUBLISHES, SERVES = "publishes", "serves"
@@ -64,7 +66,8 @@ class ReadNode(NamedTuple):
 
     ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
     further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
-    parameters of parent and child of a transform it publishes.
+    parameters of parent and child of a transform it publishes. ``helper`` is a node that it starts
+    beside its own.
     """
 
     section: VocabularySection
@@ -76,6 +79,7 @@ class ReadNode(NamedTuple):
     stems: tuple[tuple[str, str], ...]
     frames: tuple[tuple[str, str], ...]
     sends: tuple[tuple[str, str], ...]
+    helper: str = ""
 
     @property
     def full_name(self) -> str:
@@ -100,6 +104,11 @@ def node_of(
     namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
+    helper = f"{namespace.rstrip('/')}/{section.helper}" if section.helper else ""
+    if helper:
+        # The namespace is the helper's; the node is where its own rules place it.
+        name, namespace = bound.node, bound.namespace
+        rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
     endpoints, bare = _endpoints(plugin, section, bound, rules), _bound(name, namespace, ())
     return ReadNode(
@@ -112,6 +121,7 @@ def node_of(
         tuple(_stems(plugin, section, bound)),
         frames,
         tuple(_sends(plugin, section, frames, links)),
+        helper,
     )
 
 

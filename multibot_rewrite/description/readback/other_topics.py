@@ -9,7 +9,14 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
-from multibot_rewrite.description.readback.nodes import SERVES, SERVICE, TOPIC, holds_topic
+from multibot_rewrite.description.readback.nodes import (
+    SERVES,
+    SERVICE,
+    TF_TOPICS,
+    TOPIC,
+    TRANSFORMS,
+    holds_topic,
+)
 from multibot_rewrite.description.readback.parameters import switched_off, values_of
 from multibot_rewrite.description.readback.wired import wired_of
 from multibot_rewrite.description.readback.xml import values_at
@@ -80,6 +87,8 @@ def _coded(
     for wired, path in wired_of(host, section):
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
+            if wired.name in TF_TOPICS:
+                kind = TRANSFORMS
             name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
             yield kind, name, path or wired.name
 

@@ -134,6 +134,8 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         if node.name:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
+        if node.helper:
+            yield RuntimeName(NODE, node.helper, "plugin", node.number, "its own node")
         above = {path for path, _ in node.stems}
         for it in node.endpoints:
             # What is below a stem is named by it.

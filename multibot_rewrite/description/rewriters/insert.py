@@ -12,6 +12,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
 from multibot_rewrite.description.rewriters.own_defaults import (
     MODEL,
     SENSOR,
@@ -22,7 +23,7 @@ from multibot_rewrite.description.rewriters.own_defaults import (
 )
 from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
-from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     split_path,
@@ -76,7 +77,52 @@ def _insertions(
     found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
+    if naming.separators:
+        found += _of_ros_1(host, section, naming)
+    if section.helper and naming.separators and naming.topics != NAMESPACE:
+        found += _apart(host, section, declared, naming, home)
     return found
+
+
+def _of_ros_1(
+    host: etree._Element, section: VocabularySection, naming: Naming
+) -> Iterator[Insertion]:
+    """The namespace of a ROS 1 plugin that is the root, or the model's name, which the text does not
+    say; with namespaces both, else the first alone."""
+    for site in section.sites if has_own_names(section) else ():
+        if site.kinds != ("namespace",) or site.default:
+            continue
+        there = host.find(site.path)
+        if there is not None and not text_of(there) and site.empty != "model":
+            made = _insertion(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
+            yield _filling(made, there, site.path)
+        elif there is None and naming.topics == NAMESPACE:
+            made = _insertion(host, site.path, "model", MODEL, f"/{ROBOT_SLOT}")
+            yield made._replace(shared=False)
+
+
+def _apart(
+    host: etree._Element,
+    section: VocabularySection,
+    declared: Declared,
+    naming: Naming,
+    home: etree._Element | None,
+) -> Iterator[Insertion]:
+    """A namespace for a node that takes no rules, and one rule that keeps the plugin's own node where
+    it is: rules for all nodes would be those of the first robot in the process."""
+    if any(it.source == "__ns" and it.node for it in rules_in(home)):
+        return
+    parent, wrap = (host, "ros") if home is None else (home, "")
+    given = "" if home is None else text_at(home, "namespace").strip()
+    if not given:
+        made = _insertion(parent, "namespace", "node", section.helper, f"/{ROBOT_SLOT}")
+        there = parent.find("namespace") if home is not None else None
+        yield made._replace(wrap=wrap) if there is None else _filling(made, there, "namespace")
+    site = next(it for it in section.sites if it.kinds[:1] == ("node",) and it.default)
+    name = text_at(host, site.path) or site.default
+    name = respelled(name, spell_default(site, name, declared, naming), ROBOT_SLOT)
+    xml = f"<remapping>{name}:__ns:=/{given.strip('/')}</remapping>"
+    yield Insertion(parent, wrap, xml, "node", section.helper, name, shared=False)
 
 
 def lacks_namespace(
@@ -101,6 +147,8 @@ def without(item: Insertion, release: str) -> str:
         return "all but controllers, whose rules are their spawner's, would share"
     if item.shared:
         return "all robots would share"
+    if item.kind in ("node", "model"):
+        return "its namespace would be that of"
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 
 

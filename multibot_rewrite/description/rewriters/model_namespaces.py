@@ -20,7 +20,11 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
+    from collections.abc import Container, Iterable
+
     from lxml.etree import _Element
+
+    from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 
 MODEL, INCLUDE = "model", "include"
 # Sections of these elements, and where their namespace is.
@@ -55,6 +59,36 @@ def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim
 def _subtopic(site: Site) -> Site:
     """The same one each time: the proof knows sites by identity."""
     return site._replace(kinds=("subtopic",))
+
+
+def own_namespaces(
+    claims: list[Claim], hosts: Iterable[tuple[_Element, VocabularySection]]
+) -> list[Claim]:
+    """The claims as they are in a layout without namespaces: that of a plugin is a word like any other
+    where nothing else keeps robots apart, which is so of relative names in the code of a ROS 1 plugin
+    (a node of gzserver has no rules of its own, roscpp names.cpp) and of a ``helper``."""
+    fixed = {it for it, section in hosts if section.helper or has_own_names(section)}
+    return [_word_of(it, fixed) for it in claims] if fixed else claims
+
+
+def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
+    if claim.site.kinds != ("namespace",) or claim.site.form != "whole" or not claim.value.strip():
+        return claim
+    plugin = next(claim.element.iterancestors("plugin"), None)
+    return claim._replace(site=_word(claim.site)) if plugin in plugins else claim
+
+
+def has_own_names(section: VocabularySection) -> bool:
+    """Has the code of a ROS 1 plugin, which reads no <ros>, names that its namespace alone moves?"""
+    if not any(it.name[:1] not in "/{" for it in section.wired):
+        return False
+    paths = {it.path for it in section.sites}
+    return "robotNamespace" in paths and "ros/namespace" not in paths
+
+
+@cache
+def _word(site: Site) -> Site:
+    return site._replace(kinds=("stem",), namespaced=False)
 
 
 def stands_below(claim: Claim) -> bool:

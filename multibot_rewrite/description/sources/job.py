@@ -9,7 +9,6 @@ from functools import cache
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, OwnNames
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import release_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -31,6 +30,7 @@ from multibot_rewrite.description.sources.own_names import (
     templates,
 )
 from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_whole
+from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.description.steps.document import read_document
@@ -62,7 +62,7 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count. It holds no parsed document, so it can be pickled."""
+    whose facts count, ``why`` what says it. It holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
@@ -70,6 +70,7 @@ class Job(NamedTuple):
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
     release: str
+    why: str = ""
     own: OwnSource = OF_ALL
     read: FilesRead = NO_FILES
 
@@ -86,7 +87,7 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        tree, layout = self.tree, self.naming.layout
+        tree, layout = self.tree, self.naming.read_as
         own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
         urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []
         return [own, *urdf]
@@ -172,8 +173,8 @@ def reader(
         found = _files_read(args, [own, beside] if beside else [own])
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
-        said = release_of(release, own.data + (beside.data if beside else b""))
-        return Job(own.data, name, naming, vocabulary, pair, said, read=found)
+        said = release_said(release, own.data + (beside.data if beside else b""), own.file)
+        return Job(own.data, name, naming, vocabulary, pair, *said, read=found)
 
     return lambda args: read(frozenset(args.items()))
 

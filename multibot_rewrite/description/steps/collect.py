@@ -11,7 +11,7 @@ from multibot_rewrite.base.naming import DECLARED_KINDS, DEFAULT_LAYOUT, Layout,
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import names_in_topics
-from multibot_rewrite.description.rewriters.model_namespaces import below_models
+from multibot_rewrite.description.rewriters.model_namespaces import below_models, own_namespaces
 from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.description.rewriters.spelling import (
     ResolvedName,
@@ -25,7 +25,8 @@ from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
 SRDF = "srdf.robot"
-USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)
+# As the file has its names: no namespace is a word that a layout renames.
+USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)._replace(namespaced=True)
 
 
 class Host(NamedTuple):
@@ -70,6 +71,9 @@ def collect(
     claims, hosts = _walk(document, tree, format_)
     release = tree.vocabulary.release
     claims = below_models(claims, document.source, release)
+    if not layout.namespaced:
+        served = ((it.element, it.node.section) for it in hosts if it.node.section is not None)
+        claims = own_namespaces(claims, served)
     declared = _declared(claims, urdf_declarations)
     inventory = Inventory(document, claims, hosts, declared, format_, [], release)
     rules = names_in_rules(claims, inventory.served)

@@ -86,7 +86,7 @@ def verify(
     beside = spelled_names(urdf_declarations, naming, robot)
     try:
         read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
-        result = collect(read, tree, beside, naming.layout)
+        result = collect(read, tree, beside, naming.read_as)
         mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
     except InputError as error:
@@ -206,6 +206,8 @@ def robots_own(it: Evidence) -> None:
 def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
     """The names in inserted elements that the naming changes, and whether a namespace reaches them."""
     for claim, names in it.added:
+        if _is_own_namespace(claim, it):
+            continue
         reach = claim.site.namespaced
         for name in names:
             if not name.kind or affix(it.naming, name.kind, name.text, reach) is not None:
@@ -288,9 +290,15 @@ def a_slot_each(it: Evidence) -> None:
     """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
     values = "".join(it.expected).count(ROBOT_SLOT)
     wanted = values + len(list(_inserted_names(it))) + len(it.markers)
+    wanted += sum(_is_own_namespace(claim, it) for claim, _ in it.added)
     if it.slots != wanted:
         file = it.inventory.document.file
         raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
+
+
+def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
+    """Is it the namespace that a plugin needs in a layout that has none?"""
+    return "namespace" not in it.naming.separators and claim.value == f"/{it.robot}"
 
 
 def strips_to_source(it: Evidence) -> None:

@@ -12,6 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.fleet_file import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
@@ -271,6 +272,9 @@ def release_of(robots: Sequence[Looked], wanted: Wanted) -> Choice:
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
+    said = {release_said("", b"", it.path) for it in robots if it.path}
+    if len(said) == 1 and (found := said.pop()).why:
+        return Choice(found.release, found.why)
     return Choice(wanted.release, "the newest long-term ROS release; name yours")
 
 

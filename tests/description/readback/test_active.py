@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite import rewrite
+from multibot_rewrite import rewrite, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.checks.verdict import GIVEN, given
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
+from multibot_rewrite.description.readback.meeting import NOT_TAKEN
 from multibot_rewrite.description.readback.other_topics import as_valid_topic
+from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
@@ -82,26 +85,13 @@ def test_the_last_hardware_block_counts() -> None:
 
 
 def test_the_same_text_for_all_with_something_active_is_not_proved() -> None:
-    text = robot(plugin("gazebo_ros_control"))
+    sensor = '<sensor name="s" type="rgbd_camera"><camera/></sensor>'
+    text = robot(f'<gazebo reference="a">{sensor}</gazebo>')
     assert why(text, "tf-per-robot") == ("1 description the same for all robots",)
     assert why(text, "both") == ()
 
 
 # ---------------------------------------------------------------- ROS 1
-
-
-@pytest.mark.parametrize(
-    ("namespace", "services"),
-    [
-        # gazebo_ros_control_plugin.cpp:85 (03d279ae): absent is the name of the model.
-        ("", 0),
-        ("<robotNamespace/>", 4),
-        ("<robotNamespace>/limo</robotNamespace>", 4),
-    ],
-)
-def test_the_namespace_of_gazebo_ros_control(namespace: str, services: int) -> None:
-    found = why(robot(plugin("gazebo_ros_control", namespace)), "postfix")
-    assert found == ((f"{services} services shared by all robots",) if services else ())
 
 
 def test_drives_of_ros_1_send_to_one_tf() -> None:
@@ -212,11 +202,74 @@ def simulated(command: str) -> str:
 def test_an_arm_sends_no_odometry(distro: str) -> None:
     """ros2_controllers: those that send odometry claim velocity commands of their wheels
     (diff_drive_controller.cpp, command_interface_configuration)."""
-    assert why(simulated("position"), "tf-per-robot", distro) == ()
-    assert bool(why(simulated("velocity"), "tf-per-robot", distro)) == (distro == "lyrical")
+    arm = rewrite(simulated("position"), "robot1", layout="tf-per-robot", distro=distro)
+    base = rewrite(simulated("velocity"), "robot1", layout="tf-per-robot", distro=distro)
+    assert arm.not_proved == base.not_proved == ()
+    assert [it.code for it in arm.findings] == []
+    # The controllers of Lyrical take no rules but those of their spawner: the summary says it.
+    assert [it.code for it in base.findings] == ["MR105"] * (distro == "lyrical")
+    assert given(base.findings) == GIVEN[NOT_TAKEN] * (distro == "lyrical")
 
 
-# ---------------------------------------------------------------- what is left
+def test_a_node_without_rules_gets_a_namespace_in_every_layout() -> None:
+    """gz_ros2_control_plugin.cpp:361 makes gz_ros_control without arguments, in ros/namespace; :446 the
+    controller manager in the same, with the arguments of the plugin. A rule for the manager alone keeps
+    it where the layout has it (rcl remap.c: a rule with a node's name is for that node)."""
+    made = rewrite(simulated("velocity"), "robot1", distro="jazzy")
+    assert made.not_proved == ()
+    assert "<namespace>/robot1</namespace>" in made.text
+    assert "<remapping>controller_manager_robot1:__ns:=/</remapping>" in made.text
+    found = [
+        it.name
+        for it in read(made.data, "", load_vocabulary((), "jazzy")).names
+        if it.kind == "node"
+    ]
+    assert found == ["/controller_manager_robot1", "/robot1/gz_ros_control"]
+    assert strip(made.data, "robot1", distro="jazzy") == simulated("velocity").encode()
+
+
+def test_a_namespace_of_the_file_is_the_helpers_alone() -> None:
+    """The controller manager stays in the namespace that it had."""
+    ros = "</parameters><ros><namespace>/x</namespace></ros>"
+    text = simulated("velocity").replace("</parameters>", ros)
+    made = rewrite(text, "robot1", distro="jazzy")
+    found = [it.name for it in read(made.data, "", load_vocabulary((), "jazzy")).names]
+    assert {"/x/controller_manager_robot1", "/x_robot1/gz_ros_control"} < set(found)
+    assert made.not_proved == ()
+    assert strip(made.data, "robot1", distro="jazzy") == text.encode()
+
+
+def control_of_ros_1(namespace: str) -> str:
+    return robot(plugin("gazebo_ros_control", namespace))
+
+
+@pytest.mark.parametrize(
+    ("namespace", "layout", "expected"),
+    [
+        ("<robotNamespace>/a</robotNamespace>", "postfix", "/a_robot1"),
+        ("<robotNamespace>/a</robotNamespace>", "tf-per-robot", "/robot1/a"),
+        ("<robotNamespace>/</robotNamespace>", "postfix", "/_robot1"),
+        ("<robotNamespace/>", "postfix", "/robot1"),
+        ("<robotNamespace/>", "tf-per-robot", "/robot1"),
+        ("", "tf-per-robot", "/robot1"),
+    ],
+)
+def test_ros_1_controllers_are_apart_by_their_namespace(
+    namespace: str, layout: str, expected: str
+) -> None:
+    """gazebo_ros_control_plugin.cpp:85-91: an absent namespace is the model's name, an empty one the
+    root; :154 NodeHandle(robot_namespace_), below which controller_manager has its services."""
+    made = rewrite(control_of_ros_1(namespace), "robot1", layout=layout)
+    assert made.not_proved == ()
+    assert f"<robotNamespace>{expected}</robotNamespace>" in made.text
+    assert strip(made.data, "robot1", layout=layout) == control_of_ros_1(namespace).encode()
+
+
+def test_ros_1_has_one_tf() -> None:
+    """tf2_ros transform_broadcaster.cpp advertises /tf: frames alone keep robots apart."""
+    drive = plugin("gazebo_ros_diff_drive", "<robotNamespace>/a</robotNamespace>")
+    assert why(robot(drive), "postfix", "") == ()
+    assert why(robot(drive), "tf-per-robot", "") == ("1 topic shared by all robots",)
 
 
 # Sections of which nobody has looked up what they open, by type: a number that only falls.

@@ -140,10 +140,10 @@ def test_a_control_plugin_reads_its_settings_in_ros_alone() -> None:
     """gz_ros2_control_plugin.cpp: <ros> is asked for, nothing beside it is a namespace."""
     inside = "<namespace>/a</namespace><remapping>/tf:=b</remapping>"
     text = plugin("gz_ros2_control-system", inside, "gz_ros2_control::GazeboSimROS2ControlPlugin")
-    assert names(text, "node") == ["/controller_manager"]
+    assert names(text, "node") == ["/controller_manager", "/gz_ros_control"]
     assert "/tf" in names(text)
     within = plugin("libgz_ros2_control-system.so", f"<ros>{inside}</ros>", "x")
-    assert names(within, "node") == ["/a/controller_manager"]
+    assert names(within, "node") == ["/a/controller_manager", "/a/gz_ros_control"]
     assert "/a/b" in names(within, release="jazzy")
     # determine_controller_node_options (ros2_control 6.5.0) gives no controller the manager's rules.
     assert "/tf" in names(within, release="lyrical")

@@ -100,6 +100,7 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
                            topic, service and namespace is missing
     model_namespace: RELEASES  its relative topics stand below the <model namespace> in these (kilted+)
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
+    helper: NAME           a node of this name beside its own, which only its namespace moves
     read: REPOSITORY TAG FOLDER  all that its code reads is here, as it is there: what else is written
                            in it is a mistake
     open: yes | no         with ``read:``: whether it takes anything else, too (default: no)

@@ -39,6 +39,7 @@ SETTINGS = (
     "insert",
     "unique",
     "process_wide",
+    "helper",
     "hardwired",
     "opens",
     "releases",
@@ -85,7 +86,8 @@ class VocabularySection(NamedTuple):
     for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
     its relative topics stand below the namespace of the model. ``releases`` are the words for the only
     releases that have it. ``tags`` are those of the child elements that its rows know. ``opens`` is
-    what it opens beside names, or that it opens nothing, or that this is not known.
+    what it opens beside names, or that it opens nothing, or that this is not known. ``helper`` is a
+    node that it starts beside its own, which only its namespace moves.
     """
 
     type: str
@@ -109,6 +111,7 @@ class VocabularySection(NamedTuple):
     releases: str = ""
     tags: frozenset[str] = frozenset()
     opens: tuple[str, ...] = ()
+    helper: str = ""
 
     @property
     def name(self) -> str:
@@ -204,6 +207,7 @@ def assemble(
         settings.get("releases", ""),
         _tags(sites),
         words("opens"),
+        settings.get("helper", ""),
     )
 
 

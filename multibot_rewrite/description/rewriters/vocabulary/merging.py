@@ -32,6 +32,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
         blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
         select=_either(first, second, "select"),
         unique=_either(first, second, "unique"),
+        helper=_either(first, second, "helper"),
         wired=first.wired + second.wired,
         switches=first.switches + second.switches,
         hardwired=first.hardwired + second.hardwired,

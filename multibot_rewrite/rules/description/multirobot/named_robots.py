@@ -217,21 +217,23 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="A remap rule of a control plugin has an absolute target, or the robots' topics differ "
     "only by such rules.",
-    why="gazebo_ros2_control and gz_ros2_control apply their remap rules to the whole Gazebo "
-    "process: the first robot's rule also moves the second robot's topic, to the first one's name.",
+    why="On Humble gazebo_ros2_control and ign_ros2_control apply their remap rules to the whole "
+    "Gazebo process: the first robot's rule also moves the second robot's topic, to the first one's "
+    "name. Since Jazzy the controller manager of each robot has its own rules.",
     fix="Use a relative target, which ends in each robot's own namespace; separate the robots by "
     "namespaces.",
     bad="<gazebo>\n"
-    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    '  <plugin name="c" filename="ign_ros2_control-system">\n'
     "    <ros><remapping>/tf:=/robot1/tf</remapping></ros>\n"
     "  </plugin>\n"
     "</gazebo>\n",
     good="<gazebo>\n"
-    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    '  <plugin name="c" filename="ign_ros2_control-system">\n'
     "    <ros><remapping>/tf:=tf</remapping></ros>\n"
     "  </plugin>\n"
     "</gazebo>\n",
     line=3,
+    options={"distro": "humble"},
 )
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
     """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""

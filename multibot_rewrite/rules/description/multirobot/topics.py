@@ -12,6 +12,7 @@ from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.rules.description.multirobot.shared import (
     claims_of,
     inserted,
@@ -52,7 +53,8 @@ GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 )
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
     """Absolute ROS names that are not shared by the settings."""
-    wide = process_wide_plugins(subject)
+    has_wide = controller_way(subject.inventory.release).process_wide
+    wide = process_wide_plugins(subject) if has_wide else set()
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
         if name[:1] != "/" or not is_plain(name) or _is_gz(claim):

@@ -1,0 +1,99 @@
+"""Which ROS 2 release a description is for, where nobody said it: by the libraries that it loads, else
+by the CI and the packages of its repository.
+
+Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com ".gitlab-ci.yml"; REP
+149 (package.xml); for the packages REP 2000 and gazebosim.org/docs, "Installing Gazebo with ROS".
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.outside import outside
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import ENDED, NEWEST_LTS, OF_OLD, RELEASES, evidence
+
+# Folders above a description in which the top of its repository is looked for.
+HIGHEST = 6
+_CI = (".github/workflows", ".gitlab-ci.yml")
+_LINE = lazy_compile(rb"(?i)[^\n]*(?:ros|distro)[^\n]*")
+_RELEASE = lazy_compile(rb"(?i)\b(?:" + "|".join((*RELEASES, *ENDED)).encode() + rb")\b")
+_PACKAGE = lazy_compile(
+    rb"depend>\s*(gazebo_(?:ros|plugins|ros_pkgs|ros2_control)|ign_ros2_control|ros_ign\w*)\s*<"
+)
+_NEW_PACKAGE = lazy_compile(rb"depend>\s*(?:ros_gz\w*|gz_ros2_control|gz-\w+)\s*<")
+
+
+class SaidRelease(NamedTuple):
+    """A release, and what says so: empty where nothing does, and the newest LTS is taken."""
+
+    release: str
+    why: str = ""
+
+
+def release_said(told: str, text: bytes, file: str) -> SaidRelease:
+    """The release that was ``told``, else that of a description's text, else of its repository."""
+    if told:
+        return SaidRelease(told)
+    if library := evidence(text):
+        return SaidRelease(OF_OLD, f"it loads {library}")
+    named, _, why = release_in_repository(file).partition(" ") if file else ("", "", "")
+    return SaidRelease(named or NEWEST_LTS, why)
+
+
+def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
+    """The same for several files: of what they say, where that is one release."""
+    if told:
+        return SaidRelease(told)
+    said = {
+        it.release: it
+        for it in (release_said("", _bytes_of(path), path) for path in files)
+        if it.why
+    }
+    return said.popitem()[1] if len(said) == 1 else SaidRelease(NEWEST_LTS)
+
+
+@outside
+def release_in_repository(file: str) -> str:
+    """The one release that the CI of a file's repository names, else that of what its package depends
+    on, a blank, and what says so; empty where none does, or several do."""
+    if not os.path.isfile(file):
+        return ""
+    here = os.path.dirname(os.path.abspath(file))
+    folders = [here]
+    while len(folders) < HIGHEST and os.path.dirname(folders[-1]) != folders[-1]:
+        folders.append(os.path.dirname(folders[-1]))
+    top = next((it for it in folders if os.path.exists(os.path.join(it, ".git"))), "")
+    named = {it: path for path in _ci_files(top) for it in _releases_in(path)} if top else {}
+    if len(named) == 1:
+        release, path = next(iter(named.items()))
+        return f"{release} {os.path.relpath(path, top)} names it"
+    package = next((it for it in folders if os.path.exists(os.path.join(it, "package.xml"))), "")
+    text = _bytes_of(os.path.join(package, "package.xml")) if package and not named else b""
+    found = None if _NEW_PACKAGE.search(text) else _PACKAGE.search(text)
+    return f"{OF_OLD} package.xml depends on {found[1].decode()}" if found else ""
+
+
+def _ci_files(top: str) -> Iterator[str]:
+    for place in _CI:
+        path = os.path.join(top, place)
+        names = sorted(os.listdir(path)) if os.path.isdir(path) else []
+        yield from (os.path.join(path, it) for it in names if it.endswith((".yml", ".yaml")))
+        if os.path.isfile(path):
+            yield path
+
+
+def _releases_in(path: str) -> set[str]:
+    lines = _LINE.findall(_bytes_of(path))
+    found = {it.decode().lower() for line in lines for it in _RELEASE.findall(line)}
+    return {ENDED.get(it, it) for it in found}
+
+
+def _bytes_of(path: str) -> bytes:
+    try:
+        return read_bytes(path)
+    except OSError:
+        return b""

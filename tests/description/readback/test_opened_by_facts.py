@@ -1,0 +1,56 @@
+"""Files that are called proved, judged by a reader that knows neither the vocabulary nor the second
+reading: facts from the consumers' sources say what each plugin opens. No two robots meet."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from opened_facts import FACTS, Opened, met, opened
+from real_robots import corpus_files
+
+from multibot_rewrite import rewrite_all
+from multibot_rewrite.base.model import MultibotError
+
+# So many outputs with something that opens a name, of libraries of so many kinds.
+ENOUGH, KINDS = 200, 40
+LAYOUTS = ("postfix", "tf-per-robot", "frames-per-robot")
+
+
+def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Opened]] | None:
+    """What two robots open; None where the rewrite is refused or not proved."""
+    try:
+        one, other = rewrite_all(text, ["robot1", "robot2"], layout=layout)
+    except MultibotError:
+        return None
+    if one.not_proved:
+        return None
+    return set(opened(one.data, "robot1", known)), set(opened(other.data, "robot2", known))
+
+
+@pytest.mark.slow
+def test_no_robots_meet_that_are_proved() -> None:
+    if not FACTS.is_dir() or not corpus_files():
+        pytest.skip("no facts and no corpus beside the repository")
+    judged, known = 0, set[str]()
+    texts = (path.read_bytes() for path in list(corpus_files().values())[::2])
+    for text, layout in product((it for it in texts if b"<plugin" in it), LAYOUTS):
+        pair = both(text, layout, known)
+        if pair and pair[0]:
+            judged += 1
+            assert met(*pair, frames=layout != "tf-per-robot") == set()
+    assert judged >= ENOUGH
+    assert len(known) >= KINDS
+
+
+def test_the_reader_sees_what_two_robots_share() -> None:
+    """The judge is worth something: the outputs of a layout that keeps topics meet."""
+    if not FACTS.is_dir():
+        pytest.skip("no facts beside the repository")
+    drive = (
+        b'<robot name="r"><link name="a"/><gazebo><plugin name="d" '
+        b'filename="libgazebo_ros_diff_drive.so"><ros><namespace>/x</namespace></ros>'
+        b"<publish_odom>true</publish_odom></plugin></gazebo></robot>"
+    )
+    found = {it.name for it in met(*(set(opened(drive, it, set())) for it in "ab"), frames=True)}
+    assert {"/x/d", "/x/cmd_vel"} <= found

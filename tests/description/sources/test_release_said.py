@@ -1,0 +1,74 @@
+"""Which release a description is for: what it loads, the CI and the package of its repository."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.sources.release_said import release_of_all, release_said
+
+PLAIN = b'<robot name="r"><link name="a"/></robot>'
+CLASSIC = (
+    b'<robot name="r"><gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo></robot>'
+)
+
+
+def repository(folder: Path, workflow: str = "", package: str = "") -> str:
+    (folder / ".git").mkdir()
+    if workflow:
+        (folder / ".github" / "workflows").mkdir(parents=True)
+        (folder / ".github" / "workflows" / "ci.yml").write_text(workflow)
+    (folder / "my_robot" / "urdf").mkdir(parents=True)
+    (folder / "my_robot" / "package.xml").write_text(f"<package>{package}</package>")
+    file = folder / "my_robot" / "urdf" / "r.urdf"
+    file.write_bytes(PLAIN)
+    return str(file)
+
+
+@pytest.mark.parametrize(
+    ("workflow", "package", "release", "why"),
+    [
+        ("env:\n  ROS_DISTRO: jazzy\n", "", "jazzy", ".github/workflows/ci.yml names it"),
+        ("image: ros:humble-ros-base", "", "humble", ".github/workflows/ci.yml names it"),
+        # One that has ended stands for the next.
+        ("ros_distro: iron", "", "jazzy", ".github/workflows/ci.yml names it"),
+        # Several say nothing.
+        ("ros_distro: [humble, jazzy]", "", NEWEST_LTS, ""),
+        ("ros_distro: humble\nros_distro: jazzy", "", NEWEST_LTS, ""),
+        ("run: echo humble", "", NEWEST_LTS, ""),
+        (
+            "",
+            "<exec_depend>gazebo_ros</exec_depend>",
+            "humble",
+            "package.xml depends on gazebo_ros",
+        ),
+        ("", "<depend>gazebo_ros</depend><depend>ros_gz_sim</depend>", NEWEST_LTS, ""),
+        ("", "<depend>rclcpp</depend>", NEWEST_LTS, ""),
+    ],
+)
+def test_a_repository_says_its_release(
+    workflow: str, package: str, release: str, why: str, tmp_path: Path
+) -> None:
+    found = release_said("", PLAIN, repository(tmp_path, workflow, package))
+    assert found.release == release
+    assert found.why.endswith(why) and bool(found.why) == bool(why)
+
+
+def test_what_is_told_and_loaded_comes_first(tmp_path: Path) -> None:
+    file = repository(tmp_path, "ROS_DISTRO: jazzy")
+    assert release_said("kilted", CLASSIC, file) == ("kilted", "")
+    assert release_said("", CLASSIC, file) == ("humble", "it loads libgazebo_ros_p3d.so")
+
+
+def test_several_files_say_one_release_or_none(tmp_path: Path) -> None:
+    classic, plain = tmp_path / "a.urdf", tmp_path / "b.urdf"
+    classic.write_bytes(CLASSIC)
+    plain.write_bytes(PLAIN)
+    files = [str(classic), str(plain)]
+    assert release_of_all("", files).release == "humble"
+    (tmp_path / "x").mkdir()
+    other = repository(tmp_path / "x", "ROS_DISTRO: jazzy")
+    assert release_of_all("", [*files, other]) == (NEWEST_LTS, "")
+    assert release_of_all("jazzy", files) == ("jazzy", "")
