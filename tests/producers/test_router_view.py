@@ -139,7 +139,7 @@ def test_what_a_router_did_not_say_is_told(opens: Any) -> None:
     assert codes(strange) == [("strange-token", False)]
     assert strange.environment.caveats[0].message.startswith("1 token left out, not as rmw_zenoh")
     twins = seen_of(opens, DRIVER, DRIVER.replace("/0/0/NN", "/1/1/NN"))
-    assert twins.nodes == (Node("/robot1/driver", SESSION, "/"),) * 2
+    assert twins.nodes == (Node("/robot1/driver", SESSION),) * 2
     assert codes(twins) == [("same-name", False)]
 
 
