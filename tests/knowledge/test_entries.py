@@ -6,8 +6,15 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known, stands_for
-from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack, extend, with_included
+from multibot_rewrite.knowledge.node_library import (
+    NodeLibrary,
+    Stack,
+    extend,
+    stack_of,
+    with_included,
+)
 from multibot_rewrite.knowledge.parameters import (
     guess,
     is_absolute,
@@ -250,6 +257,29 @@ def test_the_whole_record_of_a_stack() -> None:
     assert LIBRARY.stacks["cell"] == cell
     assert list(with_included(LIBRARY, "cell")) == ["cell", "base"]
     assert list(with_included(LIBRARY, "plain")) == ["plain"]
+    # A node of another one's process, of all robots, and the container itself are no components.
+    assert [(it.name, it.container) for it in stack_of(LIBRARY, "cell")] == [
+        ("box", ""),
+        ("costmap/driver", ""),
+        ("renamed", ""),
+    ]
+    loaded = extend(LIBRARY, "stacks: {c: {container: box, nodes: [plain, box]}}", "c.yaml")
+    assert [(it.name, it.container) for it in stack_of(loaded, "c")] == [
+        ("plain", "box"),
+        ("box", ""),
+    ]
+    assert [it.container for it in stack_of(LIBRARY, "base")] == [""]
+
+
+def test_a_library_of_a_release_has_what_that_release_has() -> None:
+    node = in_release(LIBRARY, "humble").nodes.get("costmap/driver")
+    assert node is None
+    jazzy = in_release(LIBRARY, "jazzy").nodes["costmap/driver"]
+    assert [it.kind for it in jazzy.claims] == ["command", "state", "state"]
+    anywhere = extend(
+        EMPTY, "nodes: {a: {claims: [{command: x, releases: jazzy+}, {state: y}]}}", "f"
+    )
+    assert [it.kind for it in in_release(anywhere, "humble").nodes["a"].claims] == ["state"]
 
 
 def test_a_second_file_changes_a_node_and_adds_to_its_parameters() -> None:
