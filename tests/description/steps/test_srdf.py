@@ -395,7 +395,6 @@ BAD = {
 }
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize("name", BAD)
 def test_what_cannot_work_is_one_line(folder: Path, name: str) -> None:
     words, code, wanted = BAD[name]
