@@ -119,6 +119,7 @@ def test_a_robot_with_a_namespace_has_the_word_that_most_frames_have(
         ("/f/a/scan", "a", "/scan"),
         ("/f/a/x/scan", "a", "/x/scan"),
         ("/f/a", "a", "/f"),
+        ("/a", "a", "/a"),
         ("/scan/a", "a", "/scan"),
         ("/x/a_scan", "", "/x/a_scan"),
         ("/scan_a", "a", "/scan"),

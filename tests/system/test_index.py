@@ -172,4 +172,5 @@ def test_the_nodes_of_some_ends() -> None:
 def test_a_node_without_a_robot_that_is_called_like_one_of_theirs_is_of_one_more() -> None:
     assert robots_of(IT, ("/a/driver", "/a/x", "/map_server")) == ("a",)
     assert robots_of(IT, ("/a/driver", "/driver")) == ("a", NO_NAMESPACE)
+    assert robots_of(IT, ("/a/driver", "/driver", "/x")) == ("a", NO_NAMESPACE)
     assert robots_of(IT, ("/driver", "/x")) == ()

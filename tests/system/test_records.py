@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from multibot_rewrite.system.json_values import FARTHEST, WrongValue, read_transform, shown
+from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.parameters import Answer, parameter_text, parameter_value, with_answers
 from multibot_rewrite.system.questions import Question, questions
 from multibot_rewrite.system.reach import hidden_from_here, machines, why_not_seen
@@ -236,3 +238,29 @@ def test_what_a_bridge_copies_to_tf_is_left_out() -> None:
     edges = (own, copied, world, other, elsewhere)
     assert without_bridged(plan, edges) == (own, other, elsewhere)
     assert without_bridged(plan._replace(ends=()), edges) == edges
+
+
+def test_a_long_value_is_cut_in_a_message() -> None:
+    assert shown("x" * 38) == f'"{"x" * 38}"'
+    assert shown("x" * 39) == f'"{"x" * 38}…'
+
+
+@pytest.mark.parametrize("count", [0, 7])
+def test_a_transform_has_seven_numbers_that_a_robot_reaches(count: int) -> None:
+    assert read_transform([1] * count) == (1.0,) * count
+    assert read_transform([None] * count) == (float("inf"),) * count
+    for wrong in ([1] * 6, [FARTHEST] * 7, [-FARTHEST] * 7, ["x"] * 7):
+        with pytest.raises(WrongValue):
+            read_transform(wrong)
+
+
+def test_looks_are_merged_in_order_and_named_up_to_four() -> None:
+    controllers = (Controller("/m", "b", "active"), Controller("/m", "a", "active"))
+    parameters = (Parameter("/m", "y", "1"), Parameter("/m", "x", "2"))
+    look = System(controllers=controllers, parameters=parameters)
+    for count, names in ((4, "a, b, c, d"), (5, "a, b, c, d and 1 more")):
+        found = merged([Look(name, look) for name in "abcde"[:count]])
+        assert [it.name for it in found.controllers] == ["a", "b"]
+        assert [it.name for it in found.parameters] == ["x", "y"]
+        said = found.environment.caveats[0].message
+        assert said == f"made of {count} looks: {names}"
