@@ -363,7 +363,6 @@ def defects() -> Iterator[tuple[tuple[str, str], tuple[str, str], str]]:
         )
 
 
-@pytest.mark.sample(31)
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_defect_is_found(name: str, tmp_path: Path) -> None:
     text, old, new, expected = PLANTED[name]
@@ -371,7 +370,6 @@ def test_a_planted_defect_is_found(name: str, tmp_path: Path) -> None:
     assert found(text.replace(old, new, 1), tmp_path, NAMES.get(text, "")) == expected.split()
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize("name", HEALTHY)
 def test_what_is_odd_and_healthy_is_left_alone(name: str, tmp_path: Path) -> None:
     text, old, new = HEALTHY[name]

@@ -195,7 +195,7 @@ PATTERNS = [
 ]
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("outside", [".", "robots"])
 @pytest.mark.parametrize(("pattern", "path", "hit"), PATTERNS)
 def test_patterns_hang_on_the_folder_of_the_file(
@@ -322,7 +322,6 @@ WRONG = [
 ]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(("text", "words"), WRONG)
 def test_what_is_wrong_is_one_line(project: Path, text: str, words: str) -> None:
     with pytest.raises(UsageError) as caught:

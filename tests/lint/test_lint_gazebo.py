@@ -296,7 +296,6 @@ PLANTED = {
 }  # fmt: skip
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize("defect", PLANTED)
 def test_a_planted_defect_is_found_by_its_rule_alone(defect: str) -> None:
     text, code = PLANTED[defect]

@@ -50,7 +50,6 @@ def linted(workspace: Path, *names: str, select: str = "MB7", roots: bool = True
     return [it.code for it in found]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("name", "expected"),
     [

@@ -41,7 +41,6 @@ def found(folder: Path, body: str) -> list[str]:
     return [it.code for it in lint(folder, body)]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("body", "codes"),
     [

@@ -54,7 +54,6 @@ def lint(folder: Path, body: str, urdf: str = "") -> list[str]:
     return [it.code for it in lint_file(file, SETTINGS)]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("body", "codes"),
     [

@@ -210,7 +210,6 @@ CASES = [
 ]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(("body", "expected"), CASES)
 def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path) -> None:
     assert " ".join(sorted(f"{it.code}:{it.line}" for it in found(body, tmp_path))) == expected

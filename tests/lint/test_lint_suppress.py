@@ -108,7 +108,6 @@ REACH = [
 ]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize("end", ["\n", "\r\n"], ids=["lf", "crlf"])
 @pytest.mark.parametrize(("body", "wanted"), REACH)
 def test_what_a_comment_reaches(tmp_path: Path, body: str, wanted: list[str], end: str) -> None:
@@ -198,7 +197,6 @@ GRAMMAR: list[tuple[str, str | None]] = [
 ]
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(("text", "words"), GRAMMAR)
 def test_the_grammar(tmp_path: Path, text: str, words: str | None) -> None:
     """Where it cannot be followed that is one error, and the finding stays."""

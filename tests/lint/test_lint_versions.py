@@ -66,7 +66,7 @@ def complaints(text: str, version: str) -> list[Finding]:
     return [it for it in found if it.level == ERROR or it.code not in OF_OTHERS]
 
 
-@pytest.mark.sample(16)
+@pytest.mark.sample(4)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", JOINTS)
@@ -77,7 +77,7 @@ def test_joints_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pa
     assert said.reads == all(it.level != ERROR for it in found)
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(2)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", LINKS)
@@ -88,7 +88,6 @@ def test_links_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pat
     assert said.complains == bool(complaints(text, version))
 
 
-@pytest.mark.sample(7)
 @needs_check
 @pytest.mark.parametrize("declared", DECLARED)
 def test_versions_are_read_as_urdfdom_reads_them(declared: str, tmp_path: Path) -> None:

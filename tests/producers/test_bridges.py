@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-import pytest
-from launched_nodes import launched, runs, started
+from pathlib import Path
 
-from multibot_rewrite.producers.launch.bridges import bridge_rows
+import pytest
+from launched_nodes import AT, launched, runs, started
+
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.producers.launch.bridges import Row, bridge_rows, bridged_by, is_bridge
+from multibot_rewrite.producers.launch.records import RunningNode
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
 
@@ -87,3 +92,59 @@ def test_a_bridge_of_images_is_known_by_its_arguments() -> None:
     assert not [it for it in found.findings if it.code == "MF822"]
     (facts,) = (it for it in found.nodes if it.name == "images")
     assert [it.name for it in facts.endpoints] == ["/camera/image"]
+
+
+CONFIG = """\
+- {topic_name: both, ros_type_name: a/msg/B}
+- {ros_topic_name: ros, gz_topic_name: gz, ros_type_name: a/msg/B, direction: GZ_TO_ROS}
+- {ros_topic_name: only_ros, ros_type_name: a/msg/B, direction: ROS_TO_GZ}
+- {gz_topic_name: only_gz, direction: BIDIRECTIONAL}
+- {ros_type_name: a/msg/B}
+"""
+
+
+def test_a_row_of_a_file_has_a_name_on_either_side() -> None:
+    """ros_gz_bridge bridge_config.cpp: one name stands for both; without a direction both ways."""
+    found = [(it.inside, it.end.role, it.end.name) for it in rows_of_text(CONFIG)]
+    assert found == [
+        ("both", "publishes", "both"),
+        ("both", "subscribes", "both"),
+        ("gz", "publishes", "ros"),
+        ("only_ros", "subscribes", "only_ros"),
+        ("only_gz", "publishes", "only_gz"),
+        ("only_gz", "subscribes", "only_gz"),
+    ]
+    for text in ("a: [", "text", "- text", ""):
+        assert rows_of_text(text) == []
+
+
+def rows_of_text(text: str) -> list[Row]:
+    return list(bridged_by(running(texts=(text,))))
+
+
+def running(program: str = "ros_gz_bridge/parameter_bridge", **more: object) -> RunningNode:
+    node = RunningNode("b", "/", (), (), "/", None, {}, "b", (), program, AT)
+    return node._replace(**more)  # type: ignore[arg-type]
+
+
+def test_a_bridge_is_known_by_its_program() -> None:
+    programs = ("ros_gz_bridge/parameter_bridge", "ros_ign_bridge/parameter_bridge")
+    images = ("ros_gz_image/image_bridge", "ros_ign_image/image_bridge")
+    assert all(is_bridge(running(it)) for it in (*programs, *images))
+    assert not is_bridge(running("acme/bridge"))
+    facts = NodeFacts("b", "acme", (), known="ros_gz_bridge")
+    assert is_bridge(running("acme/bridge", facts=facts))
+    assert list(bridged_by(running("acme/bridge", texts=(CONFIG,)))) == []
+    rows = bridged_by(running(arguments=("/x@a/srv/B", "/y@a/msg/C@gz.C", "-v")))
+    assert [(it.inside, it.end.kind, it.end.role) for it in rows] == [
+        ("/x", "service", "serves"),
+        ("/y", "topic", "publishes"),
+        ("/y", "topic", "subscribes"),
+    ]
+
+
+def test_the_rows_of_the_file_that_a_parameter_names(tmp_path: Path) -> None:
+    (tmp_path / "bridge.yaml").write_text(CONFIG)
+    for name, count in (("bridge.yaml", 6), ("gone.yaml", 0)):
+        given = Given(str(tmp_path / name), AT)
+        assert len(list(bridged_by(running(values={"config_file": given})))) == count

@@ -721,6 +721,15 @@ def test_an_include_without_a_required_argument_starts_nothing(tmp_path: Path, g
     assert len(graph.nodes) == bool(given)
 
 
+def test_an_argument_below_a_condition_need_not_be_given(tmp_path: Path) -> None:
+    """launch jazzy, launch_description.py: get_launch_arguments passes such actions over."""
+    inner = tmp_path / "inner.launch.py"
+    own = "GroupAction([DeclareLaunchArgument('ip')], condition=IfCondition('false')),"
+    inner.write_text(f"{HEAD}Node(package='a', executable='b'), {own}\n    ])\n")
+    graph = read(tmp_path, f"IncludeLaunchDescription({str(inner)!r}),")
+    assert (len(graph.nodes), graph.notes) == (1, ())
+
+
 # launch jazzy, share/launch/frontend/grammar.lark.
 def test_substitutions_in_a_parameter_file_are_read(tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text(

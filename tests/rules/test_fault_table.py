@@ -53,9 +53,12 @@ def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:
 
 
 def test_every_finding_says_what_it_is_about() -> None:
-    """Of all faults: a robot, a node or a name, and a remedy that stands for itself."""
+    """Of all faults, each with its code: a robot, a node or a name, and a remedy for itself."""
     for fault in FAULTS:
-        for it in diagnose(fault.change(fault.system())).findings:
+        found = diagnose(fault.change(fault.system())).findings
+        codes = {it.code for it in found}
+        assert {fault.code} <= codes <= {fault.code, *fault.also}, fault.name
+        for it in found:
             assert it.robot or it.node or it.names, it
             assert it.message and not it.message.startswith(" "), it
 

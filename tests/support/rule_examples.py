@@ -70,11 +70,24 @@ FLEET: dict[str, Any] = {
 def found(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """What the rule finds in one of its examples."""
     _write(folder, rule.beside)
-    format_ = next(iter(rule.formats), URDF)
-    alone = format_ in COMPANIONS and rule.code.startswith("MB") and BUILT not in rule.options
-    run = beside_example if alone else RUNNERS[format_]
+    run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
+
+
+def is_built(rule: Rule) -> bool:
+    """Is a whole fleet built for the examples of the rule?"""
+    made = (companion_example, fleet_example, description_example)
+    return not _is_alone(rule) and RUNNERS[_format(rule)] in made
+
+
+def _is_alone(rule: Rule) -> bool:
+    """Is the example a companion file that is linted by itself?"""
+    return _format(rule) in COMPANIONS and rule.code.startswith("MB") and BUILT not in rule.options
+
+
+def _format(rule: Rule) -> str:
+    return next(iter(rule.formats), URDF)
 
 
 def _write(folder: Path, files: Any) -> None:

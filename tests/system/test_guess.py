@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.system.environment import setting_caveats
-from multibot_rewrite.system.guess import GuessedRobot, guess_robots
+from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.records import (
     PUBLISHES,
+    SERVICE,
     SUBSCRIBES,
     TOPIC,
     End,
@@ -38,6 +39,126 @@ def test_robots_show_by_their_frames(frames: str, robots: list[tuple[str, str, s
     assert list(guess_robots(graph)) == [
         GuessedRobot(name, "", before, behind, True) for name, before, behind in robots
     ]
+
+
+def graph(nodes: str, topics: str, frames: str = "") -> System:
+    """Frames are ``parent>child``."""
+    edges = (edge_of(*it.split(">")) for it in frames.split())
+    ends = tuple(end("", PUBLISHES, it) for it in topics.split())
+    return System(tuple(Node(it) for it in nodes.split()), ends, tuple(edges))
+
+
+@pytest.mark.parametrize(
+    ("nodes", "topics", "robots"),
+    [
+        # Two topics of a body, or one of tf, where nodes are.
+        ("/a/x /b/x", "/a/odom /a/scan /b/tf", ["a", "b"]),
+        ("/a/x /b/x", "/a/odom /b/tf_static", ["b"]),
+        ("/a/x", "/a/chatter /a/rosout", []),
+        ("/b/x", "/a/odom /a/scan", []),
+        ("/a/rviz2", "/a/odom /a/scan", ["a"]),
+        ("/a/x", "/odom /scan /tf", []),
+        # A recording has no nodes.
+        ("", "/a/cmd_vel /a/joint_states", ["a"]),
+        ("", "/a/robot_description /a/initialpose", ["a"]),
+        # The private names of a node, and parts of a robot.
+        ("/a", "/a/odom /a/scan", []),
+        ("/front_camera/x", "/front_camera/tf", []),
+        ("/Lidar/x", "/Lidar/tf", []),
+        ("/cam/bot/x", "/cam/bot/tf", ["bot"]),
+        # Inside another one it is none; outside it is, though their names begin alike.
+        ("/a/x /a/b/x", "/a/tf /a/b/tf", ["a"]),
+        ("/a/x /ab/x", "/a/tf /ab/tf", ["a", "ab"]),
+        # Whole where the last words are alike.
+        ("/x/a/n /y/a/n /b/n", "/x/a/tf /y/a/tf /b/tf", ["b", "x/a", "y/a"]),
+        # Another number: it has just started.
+        ("/a1/x /a2/x /b3/x", "/a1/tf", ["a1", "a2"]),
+        ("/a1/x /f/a2/x /a2/arm/x", "/a1/tf", ["a1", "a2"]),
+        ("/a/x /b/x", "/a/tf", ["a"]),
+        # Words behind topics of a body and at the end of nodes.
+        ("/n_a /n_b", "/odom/a /cmd_vel/a /odom/b /scan/b", ["a", "b"]),
+        ("/n_a /n_b", "/odom/a /cmd_vel/a /odom/b", ["a"]),
+        ("/n", "/odom/a /cmd_vel/a", []),
+        ("/n_a /n_odom", "/f/odom/a /f/cmd_vel/a /tf/odom /scan/odom", ["a"]),
+    ],
+)
+def test_robots_show_by_their_topics(nodes: str, topics: str, robots: list[str]) -> None:
+    assert [it.name for it in guess_robots(graph(nodes, topics))] == robots
+
+
+def test_a_service_is_no_topic_of_a_body() -> None:
+    ends = (End(SERVICE, "serves", f"/a/{it}", "", "", "", None, "") for it in ("tf", "scan"))
+    assert guess_robots(System(ends=tuple(ends))) == ()
+    ends = (End(SERVICE, "serves", f"/{it}/a", "", "", "", None, "") for it in ("tf", "scan"))
+    assert guess_robots(System((Node("/n_a"),), tuple(ends))) == ()
+
+
+@pytest.mark.parametrize(
+    ("frames", "robots"),
+    [
+        # A part has a base of its own, which hangs on that of a robot without a name.
+        ("base_link>plate plate>a/base_link", []),
+        ("/base_link>/a_base_footprint", []),
+        ("odom>a/base_link", [("a", "a/", "")]),
+        ("base_link>a/arm", [("a", "a/", "")]),
+        ("a_odom>a_base_link a/x>a_y", [("a", "a_", "")]),
+        ("odom.a>base_link.a", [("a", "", ".a")]),
+        ("odom>base_link", [("a", "", "")]),
+    ],
+)
+def test_a_robot_with_a_namespace_has_the_word_that_most_frames_have(
+    frames: str, robots: list[tuple[str, str, str]]
+) -> None:
+    found = guess_robots(graph("/f/a/x", "/f/a/tf", frames))
+    assert found == tuple(GuessedRobot(name, "/f/a", *way) for name, *way in robots)
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "plain"),
+    [
+        ("/f/a/scan", "a", "/scan"),
+        ("/f/a/x/scan", "a", "/x/scan"),
+        ("/f/a", "a", "/f"),
+        ("/a", "a", "/a"),
+        ("/scan/a", "a", "/scan"),
+        ("/x/a_scan", "", "/x/a_scan"),
+        ("/scan_a", "a", "/scan"),
+        ("/a_scan", "a", "/scan"),
+        ("/x_b_scan", "", "/x_b_scan"),
+        ("/b_scan", "b", "/scan"),
+        # Words of a name count in the root only.
+        ("/b/b_scan", "", "/b/b_scan"),
+        ("/c_scan", "", "/c_scan"),
+        ("/scan", "", "/scan"),
+    ],
+)
+def test_whose_a_name_is_by_guess(name: str, robot: str, plain: str) -> None:
+    whose = whose_by_guess(GUESSED)
+    assert (whose.robot(name), whose.plain(name)) == (robot, plain)
+
+
+@pytest.mark.parametrize(
+    ("frame", "robot", "plain"),
+    [
+        ("a/odom", "a", "odom"),
+        ("odom_b", "b", "odom"),
+        ("c/odom", "c", "odom"),
+        ("d/odom", "", "d/odom"),
+        ("odoma/", "", "odoma/"),
+        ("_bodom", "", "_bodom"),
+    ],
+)
+def test_whose_a_frame_is_by_guess(frame: str, robot: str, plain: str) -> None:
+    whose = whose_by_guess(GUESSED)
+    assert (whose.frame_robot(frame), whose.plain_frame(frame)) == (robot, plain)
+    assert whose.robots == ("a", "b", "c")
+
+
+GUESSED = (
+    GuessedRobot("b", "", behind="_b"),
+    GuessedRobot("c", "", before="c/", only_frames=True),
+    GuessedRobot("a", "/f/a", before="a/"),
+)
 
 
 @pytest.mark.parametrize(

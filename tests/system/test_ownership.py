@@ -1,8 +1,16 @@
-"""Which robot a name of the graph belongs to."""
+"""Which robot a name of the graph belongs to, and what it is called without the robot's name."""
 
 from __future__ import annotations
 
-from multibot_rewrite.system.ownership import NameOwnership
+import pytest
+
+from multibot_rewrite.system.ownership import NameOwnership, whose_by_plan, without_tag_once
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Node, Robot, System
+
+
+def by_tags(*robots: str, last: bool = False, words: tuple[str, ...] = ()) -> NameOwnership:
+    levels = max(it.count("/") + 1 for it in robots)
+    return NameOwnership({}, {}, {it: it for it in robots}, frozenset(words), last, levels=levels)
 
 
 def test_a_name_below_a_node_is_of_the_robot_of_the_node() -> None:
@@ -11,3 +19,150 @@ def test_a_name_below_a_node_is_of_the_robot_of_the_node() -> None:
     assert owner.robot("/gripper/state") == "left"
     assert owner.robot("/gripper/jaw/state") == "left"
     assert owner.robot("/grip/state") == ""
+    assert owner._replace(exact={"/gripper/state": ""}).robot("/gripper/state") == ""
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "robot"),
+    [
+        (by_tags("a"), "/a/scan", "a"),
+        (by_tags("a"), "/scan/a", "a"),
+        # A node or topic of the root that is called like a robot.
+        (by_tags("a"), "/a", ""),
+        (by_tags("a"), "/b/scan", ""),
+        (by_tags("a"), "/b/a_scan", "a"),
+        (by_tags("a"), "/scan_a", "a"),
+        (by_tags("a"), "/x-a", "a"),
+        (by_tags("a"), "/x.a", "a"),
+        (by_tags("a"), "/ab", ""),
+        # Each at its own end.
+        (by_tags("a", "b"), "/a/b", "a"),
+        (by_tags("a", "b", last=True), "/a/b", "b"),
+        (by_tags("a", "b", last=True), "/b/scan", "b"),
+        # The longest of several.
+        (by_tags("arm", "arm_left"), "/arm_left_scan", "arm_left"),
+        (by_tags("fleet", "fleet/a"), "/fleet/a/scan", "fleet/a"),
+        (by_tags("fleet", "fleet/a"), "/fleet/scan", "fleet"),
+        (by_tags("fleet/a"), "/fleet/a", ""),
+        # A robot that is called like an ordinary word has only what is at its place.
+        (by_tags("scan", words=("scan",)), "/x/scan", ""),
+        (by_tags("scan", words=("scan",)), "/scan/x", "scan"),
+    ],
+)
+def test_a_tag_in_a_name_shows_the_robot(owner: NameOwnership, name: str, robot: str) -> None:
+    assert owner.robot(name) == robot
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "tag", "plain"),
+    [
+        (by_tags("a"), "/a/scan", "a", "/scan"),
+        (by_tags("a"), "a/scan", "a", "scan"),
+        (by_tags("a", last=True), "/scan/a", "a", "/scan"),
+        (by_tags("a"), "/scan/a", "a", "/scan"),
+        (by_tags("a", last=True), "/a/scan", "a", "/scan"),
+        (by_tags("a"), "/x/a/y/a/z", "a", "/x/y/a/z"),
+        (by_tags("a", last=True), "/x/a/y/a/z", "a", "/x/a/y/z"),
+        (by_tags("a"), "/a", "a", "/a"),
+        (by_tags("a"), "/a_scan", "a", "/scan"),
+        (by_tags("a"), "/scan-a", "a", "/scan"),
+        (by_tags("a"), "/scan", "a", "/scan"),
+        (by_tags("a"), "/scan", "", "/scan"),
+        (by_tags("f/a"), "/f/a/scan", "f/a", "/scan"),
+        (by_tags("f/a"), "f/a/scan", "f/a", "scan"),
+        (by_tags("f/a"), "/x/f/a/scan", "f/a", "/x/f/a/scan"),
+    ],
+)
+def test_a_name_without_its_robot(owner: NameOwnership, name: str, tag: str, plain: str) -> None:
+    assert owner.without_robot(name, tag) == plain
+
+
+def test_the_name_of_a_robot_in_frames_may_be_another() -> None:
+    frames = by_tags("r1")._replace(tags={"robot1": "r1"})
+    assert (frames.tag("robot1"), frames.tag("robot2")) == ("r1", "robot2")
+    assert frames.without_robot("r1/base_link", "robot1") == "base_link"
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("a/scan", ["scan", "/scan"]),
+        ("scan_a", ["scan", "scan_"]),
+        ("a-scan", ["scan", "-scan"]),
+        ("scan.a", ["scan", "scan."]),
+        ("scan", []),
+    ],
+)
+def test_a_tag_is_taken_off_either_end(name: str, found: list[str]) -> None:
+    assert list(without_tag_once(name, "a")) == found
+
+
+def node(name: str, robot: str = "") -> Node:
+    return Node(name, robot=robot)
+
+
+def topic(node: str, name: str, code: str = "") -> End:
+    return End(TOPIC, PUBLISHES, name, "", "", node, None, "", code)
+
+
+PLAN = System(
+    nodes=(node("/a/driver", "a"), node("/scan/driver", "scan"), node("/map_server")),
+    ends=(
+        topic("/a/driver", "/elsewhere", "/scan"),
+        topic("/a/driver", "/of_both"),
+        topic("/scan/driver", "/of_both"),
+    ),
+    robots=(
+        Robot("scan", ("s/base_link",), "/scan/tf", ("gps",), "s"),
+        Robot("a", ("a/base_link", "a/s"), "/a/tf", ("gps", "camera")),
+    ),
+    shared_topics=("/a/shared",),
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "plain"),
+    [
+        ("/a/driver", "a", "/driver"),
+        ("/elsewhere", "a", "/elsewhere"),
+        ("/of_both", "", "/of_both"),
+        ("/map_server", "", "/map_server"),
+        ("/a/shared", "", "/a/shared"),
+        # A word of the code is no robot's, but at its place.
+        ("/x_scan", "", "/x_scan"),
+        ("/scan/odom", "scan", "/odom"),
+    ],
+)
+def test_a_plan_says_whose_a_name_is(name: str, robot: str, plain: str) -> None:
+    whose = whose_by_plan(PLAN)
+    assert (whose.robot(name), whose.plain(name)) == (robot, plain)
+
+
+@pytest.mark.parametrize(
+    ("frame", "robot", "plain"),
+    [
+        ("s/base_link", "scan", "base_link"),
+        ("a/odom", "a", "odom"),
+        ("camera", "a", "camera"),
+        ("gps", "", "gps"),
+        ("map", "", "map"),
+    ],
+)
+def test_a_plan_says_whose_a_frame_is(frame: str, robot: str, plain: str) -> None:
+    whose = whose_by_plan(PLAN)
+    assert (whose.frame_robot(frame), whose.plain_frame(frame)) == (robot, plain)
+
+
+def test_the_robots_of_a_plan_are_in_order() -> None:
+    assert whose_by_plan(PLAN).robots == ("a", "scan")
+
+
+def test_a_plan_with_robots_at_the_end_of_names() -> None:
+    nodes = (node("/driver/a", "a"), node("/driver/b", "b"))
+    robots = (Robot("a", ("base_link/a",), "/tf/a"), Robot("b", ("base_link/b",), "/tf/b"))
+    whose = whose_by_plan(System(nodes=nodes, robots=robots))
+    assert whose.of_names.robot_is_last
+    assert whose.of_frames.robot_is_last
+    assert whose.robot("/a/b") == "b"
+    assert not whose_by_plan(PLAN).of_names.robot_is_last
+    assert whose_by_plan(System(robots=(Robot("f/g/a"),))).robot("/f/g/a/scan") == "f/g/a"

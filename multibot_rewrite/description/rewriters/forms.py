@@ -45,8 +45,6 @@ Form = Callable[[str, Kinds, Declared], tuple[NamePart, ...]]
 def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """The value is one name, white space around it aside."""
     name = value.strip()
-    if name == value:
-        return (NamePart(0, name, kinds),) if name else ()
     return (NamePart(value.index(name), name, kinds),) if name else ()
 
 

@@ -18,10 +18,13 @@ from multibot_rewrite import VocabularyError, rewrite, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.description.rewriters.vocabulary.installed import announcing, installed
+from multibot_rewrite.description.rewriters.vocabulary.installed import (
+    advice,
+    announcing,
+    installed,
+    vocabulary_files,
+)
 from tools.pages.plugins import pages
-
-pytestmark = pytest.mark.slow
 
 ACME = FIXTURES / "third_party" / "acme_robots"
 CASE = read_case("acme", (ACME / "cases" / "acme_winch.case").read_bytes())
@@ -125,6 +128,7 @@ def my_frame(name: str) -> str:
 # What pip installs is used by the command.
 
 
+@pytest.mark.slow
 def test_what_is_installed_is_known_renamed_and_undone(acme: Path) -> None:
     without = run(acme.parent, "robot1", stdin=CASE.source)
     assert without.stderr.count(b"MB902") == 2
@@ -156,6 +160,7 @@ def _missing_package(site: Path) -> None:
     shutil.rmtree(site / "acme_robots")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("break_it", "words"),
     [
@@ -180,6 +185,7 @@ def test_a_broken_package_stops_the_command(
 # The rest in this process, with distributions laid down by hand.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [".dist-info", ".egg-info"])
 def test_every_library_call_uses_it(make: Make, end: str) -> None:
     assert my_frame("aa") == "base"
@@ -193,9 +199,28 @@ def test_every_library_call_uses_it(make: Make, end: str) -> None:
 def test_files_come_by_distribution_whatever_the_path(make: Make) -> None:
     for name in ("b-b", "Aa", "c"):
         make(name, SECTION.format(name=name))
-    assert [file.distribution for file in installed()] == ["Aa", "b-b", "c"]
+    found = installed()
+    assert [file.distribution for file in found] == ["Aa", "b-b", "c"]
+    assert found[1].name == f"b-b 1.0: {found[1].path}"
+    assert found[1].path.endswith(os.path.join("b-b", "b_b", "it.vocab"))
+    said = advice(f"{found[1].name}:3: wrong")
+    assert said == "; correct and reinstall it, or: pip uninstall b-b"
+    assert advice("mine.vocab:3: wrong") == ""
 
 
+def test_every_vocabulary_file_right_in_a_package_is_read(make: Make) -> None:
+    home = make("aa", "", end=".egg-info")
+    for name in ("b.vocab", "a.vocab", "readme.txt"):
+        (home / "aa" / name).write_text("")
+    (home / "aa" / "below").mkdir()
+    (home / "aa" / "below" / "c.vocab").write_text("")
+    files = vocabulary_files("aa")
+    assert [os.path.basename(it) for it in files] == ["a.vocab", "b.vocab", "it.vocab"]
+    assert [os.path.basename(it) for it in vocabulary_files("aa.below")] == ["c.vocab"]
+    assert [it.path for it in installed()] == files
+
+
+@pytest.mark.slow
 def test_a_package_below_another_is_not_imported(make: Make) -> None:
     home = make("aa", SECTION.format(name="outer"), value="aa.vocab")
     (home / "aa" / "vocab").mkdir()
@@ -204,6 +229,7 @@ def test_a_package_below_another_is_not_imported(make: Make) -> None:
     assert "aa" not in sys.modules
 
 
+@pytest.mark.slow
 def test_the_first_of_a_distribution_that_is_there_twice_counts(make: Make) -> None:
     make("a-a", SECTION.format(name="old"), version="1.0", site="second")
     make("a-a", SECTION.format(name="new"), version="2.0", site="first")
@@ -225,6 +251,7 @@ def test_a_half_removed_distribution_is_none(make: Make) -> None:
     assert announcing([str(home)]) == []
 
 
+@pytest.mark.slow
 def test_two_entry_points_for_one_package_read_it_once(make: Make) -> None:
     home = make("aa", SECTION.format(name="aa"))
     with (home / "aa-1.0.dist-info" / "entry_points.txt").open("a") as file:
@@ -232,19 +259,21 @@ def test_two_entry_points_for_one_package_read_it_once(make: Make) -> None:
     assert my_frame("aa") == "base/r1"
 
 
+@pytest.mark.slow
 def test_a_file_that_is_installed_and_named_too_is_read_once(make: Make) -> None:
     path = str(make("aa", SECTION.format(name="aa")) / "aa" / "it.vocab")
     text = rewrite(ROBOT.format(name="aa"), "r1", vocabulary=[path]).text
     assert "<my_frame>base/r1</my_frame>" in text
 
 
+@pytest.mark.slow
 def test_the_page_of_what_is_built_in_holds_nothing_else(make: Make) -> None:
     before = pages()
     make("aa", SECTION.format(name="aa"))
     assert pages() == before
 
 
-@pytest.mark.parametrize(
+WRONG_POINTS = pytest.mark.parametrize(
     ("value", "words"),
     [
         pytest.param("nowhere", "there is no package 'nowhere'", id="missing"),
@@ -257,14 +286,27 @@ def test_the_page_of_what_is_built_in_holds_nothing_else(make: Make) -> None:
         pytest.param("aa\nodd", "entry_points.txt cannot be read", id="no-entry-points"),
     ],
 )
+
+
+@pytest.mark.slow
+@WRONG_POINTS
+def test_every_call_refuses_a_wrong_entry_point(make: Make, value: str, words: str) -> None:
+    make("aa", SECTION.format(name="aa"), value=value)
+    assert words in complaint()
+
+
+@WRONG_POINTS
 def test_a_wrong_entry_point_is_refused(make: Make, value: str, words: str) -> None:
     make("aa", SECTION.format(name="aa"), value=value)
-    message = complaint()
+    with pytest.raises(VocabularyError) as caught:
+        installed()
+    message = str(caught.value)
     assert message.startswith("aa 1.0: ")
     assert words in message
     assert message.endswith("pip uninstall aa")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
@@ -299,12 +341,14 @@ def test_a_wrong_file_is_refused_though_nothing_needs_it(
     assert message.endswith("; correct and reinstall it, or: pip uninstall aa")
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_utf8_is_refused(make: Make) -> None:
     path = make("aa", "") / "aa" / "it.vocab"
     path.write_bytes(b"# sp\xe4t\n")
     assert complaint().startswith(f"aa 1.0: {path}: cannot be read: it is not UTF-8")
 
 
+@pytest.mark.slow
 def test_two_packages_that_say_different_things_are_refused(make: Make) -> None:
     one = make("aa", SECTION.format(name="both")) / "aa" / "it.vocab"
     two = make("bb", SECTION.format(name="both").replace("link", "joint")) / "bb" / "it.vocab"
@@ -313,6 +357,7 @@ def test_two_packages_that_say_different_things_are_refused(make: Make) -> None:
     assert message.endswith("pip uninstall bb")
 
 
+@pytest.mark.slow
 def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: Path) -> None:
     make("aa", SECTION.format(name="aa"))
     mine = tmp_path / "mine.vocab"
@@ -323,6 +368,7 @@ def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: 
     assert "uninstall" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_user_file_called_like_a_built_in_one_hides_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -334,6 +380,7 @@ def test_a_user_file_called_like_a_built_in_one_hides_nothing(
     assert [found.file for found in vocabulary.find("plugin", "aa")] == ["./hardware.vocab"]
 
 
+@pytest.mark.slow
 def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
     mine = tmp_path / "mine.vocab"
     mine.write_text(SECTION.format(name="gazebo_ros_p3d") + "[block ros]\nextra uses link\n")
@@ -343,6 +390,7 @@ def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
     assert len(parsed) < 6
 
 
+@pytest.mark.slow
 def test_where_nothing_is_installed_the_machinery_stays_out() -> None:
     code = (
         "import sys, multibot_rewrite as m;"

@@ -68,7 +68,6 @@ def assert_inverse(naming: Naming, kind: str, text: str, robot: str, namespaced:
     assert new[: span[0]] + new[span[1] :] == text
 
 
-@pytest.mark.sample(8)
 @pytest.mark.parametrize(("layout", "side", "topics"), POLICIES)
 def test_removal_undoes_affix_for_every_kind(layout: str, side: str, topics: str | None) -> None:
     naming = make_naming(layout, side, topics)

@@ -65,7 +65,6 @@ def builtin() -> list[VocabularySection]:
     return check_vocabulary(load_vocabulary((), NEWEST_LTS))
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("row", "words"),
     [
@@ -105,7 +104,6 @@ def test_a_wrong_row_is_refused(tmp_path: Path, row: str, words: str) -> None:
     assert words in message
 
 
-@pytest.mark.sample(8)
 @pytest.mark.parametrize(
     "bad",
     [
@@ -135,7 +133,6 @@ def test_a_second_site_at_one_path_is_refused(tmp_path: Path) -> None:
     assert complaint(path) == f"{path}:5: @x is there already, at line 3"
 
 
-@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("text", "line"),
     [

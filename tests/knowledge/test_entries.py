@@ -1,0 +1,530 @@
+"""Every key of a file of nodes leads to its field of the record, and what is wrong is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.by_release import in_release
+from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known, stands_for
+from multibot_rewrite.knowledge.node_library import (
+    NodeLibrary,
+    Stack,
+    extend,
+    stack_of,
+    with_included,
+)
+from multibot_rewrite.knowledge.parameters import (
+    guess,
+    is_absolute,
+    is_below_costmap,
+    is_called,
+    load_known_nodes,
+)
+from multibot_rewrite.knowledge.plugin_classes import canonical, packages, plugin_bases
+from multibot_rewrite.knowledge.programs import (
+    NAV2,
+    Program,
+    container_of,
+    is_unmanaged,
+    known_program,
+    program_of,
+    runs,
+)
+from multibot_rewrite.knowledge.records import (
+    Claim,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    NodeParameters,
+    Param,
+    SentTransform,
+)
+from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SYSTEMS
+
+EMPTY = NodeLibrary({}, {}, {})
+FILE = """\
+parts:
+  listener: {subscribes: {/tf: tf2_msgs/msg/TFMessage}}
+sent: [earth]
+guesses: {frame: [frame_id], link: ["*_link"]}
+nodes:
+  costmap/driver:
+    package: acme
+    shared: true
+    note: a note
+    host: server
+    plugin: gz
+    when: simulated
+    fixed: [/x]
+    apart: true
+    programs: [drive, other/run]
+    component: acme::Driver
+    prefix_switch: prefixed
+    unmanaged: <=humble
+    releases: jazzy+
+    source: acme/driver@1.0 src/driver.cpp:7
+    with: [listener]
+    ids: {sensor: sensors}
+    publishes:
+      scan: sensor_msgs/msg/LaserScan
+      <name>/out:
+        type: a/msg/B
+        also: [a/msg/C]
+        types: {"stamped = true": a/msg/C}
+        parameter: topic
+        transport: true
+        remapped: out
+        when: "goal: x"
+        if: publish
+        helper: true
+        above: humble
+        note: said
+        releases: jazzy
+        source: [acme/driver@1.0 a.cpp, acme/driver@main b.cpp]
+    subscribes:
+      map: {type: nav_msgs/msg/OccupancyGrid, by: _private_*}
+    serves: {reset: std_srvs/srv/Empty, go: acme_msgs/action/Go}
+    calls:
+      go:
+        - {type: a/action/Old, releases: <=humble}
+        - {type: a/action/New, releases: jazzy+}
+    frames:
+      odom: odom
+      base: {default: base_link, releases: jazzy, source: acme/driver@1.0 c.cpp}
+    sends:
+      odom: base
+      map_frame: {child: odom, if: publish_tf}
+    claims:
+      - {command: "<joints>/velocity", if: open_loop, releases: jazzy+}
+      - {state: ["<joints>/position", imu/x]}
+    aliases: [rover]
+    types: [acme/Driver]
+    deprecated_types: {acme/Old: jazzy+}
+    known_by: [wheels]
+    absolute: <=jazzy
+    strips: humble
+    declared_in: [acme_lib]
+    params:
+      map_frame: {kind: frame, default: map, releases: jazzy, source: acme/driver@1.0 d.cpp}
+      topic: topic
+      other: {kind: topic, absolute: rolling}
+      names: {kind: joint, list: true, deprecated: kilted+, own: true, instead: [x], note: n}
+stacks:
+  cell:
+    about: what it is
+    include: [base]
+    container: box
+    releases: jazzy+
+    nodes:
+      - costmap/driver
+      - {node: plain, as: renamed, plugin: p, shared: true, when: sim, releases: kilted,
+         with: [listener], remaps: {out: in}, parameters: {rate: "5"}}
+  base: {nodes: [box]}
+"""
+PLAIN = "  plain: {publishes: {out: a/msg/B}}\n  box: {package: rclcpp_components}\n"
+LIBRARY = extend(EMPTY, FILE.replace("stacks:\n", f"{PLAIN}stacks:\n"), "f.yaml")
+TF = Endpoint("topic", "subscribes", "/tf", "tf2_msgs/msg/TFMessage")
+
+
+def test_the_whole_record_of_a_node() -> None:
+    assert LIBRARY.nodes["costmap/driver"] == NodeFacts(
+        "costmap/driver",
+        "acme",
+        (
+            Endpoint("topic", "publishes", "scan", "sensor_msgs/msg/LaserScan"),
+            Endpoint(
+                "topic",
+                "publishes",
+                "<name>/out",
+                "a/msg/B",
+                transport=True,
+                parameter="topic",
+                fixed="the name is made at run time from parameter topic",
+                note="said",
+                also=("a/msg/C",),
+                when="goal: x",
+                helper=True,
+                remapped="out",
+                condition="publish",
+                above="humble",
+                releases="jazzy",
+                source=("acme/driver@1.0 a.cpp", "acme/driver@main b.cpp"),
+                types=(("stamped = true", "a/msg/C"),),
+            ),
+            Endpoint(
+                "topic",
+                "subscribes",
+                "map",
+                "nav_msgs/msg/OccupancyGrid",
+                helper=True,
+                by="_private_*",
+            ),
+            Endpoint("service", "serves", "reset", "std_srvs/srv/Empty"),
+            Endpoint("action", "serves", "go", "acme_msgs/action/Go"),
+            Endpoint("action", "calls", "go", "a/action/Old", releases="<=humble"),
+            Endpoint("action", "calls", "go", "a/action/New", releases="jazzy+"),
+            TF,
+        ),
+        shared=True,
+        note="a note",
+        host="server",
+        when="simulated",
+        frames=(
+            FrameParameter("map_frame", "map", "jazzy", ("acme/driver@1.0 d.cpp",)),
+            FrameParameter("odom", "odom"),
+            FrameParameter("base", "base_link", "jazzy", ("acme/driver@1.0 c.cpp",)),
+        ),
+        fixed=("/x",),
+        sends=(
+            SentTransform("odom", "base"),
+            SentTransform("map_frame", "odom", "publish_tf"),
+        ),
+        ids=(("sensor", "sensors"),),
+        claims=(
+            Claim("command", "<joints>/velocity", "open_loop", "jazzy+"),
+            Claim("state", "<joints>/position"),
+            Claim("state", "imu/x"),
+        ),
+        releases="jazzy+",
+        source=("acme/driver@1.0 src/driver.cpp:7",),
+        programs=("drive", "other/run"),
+        plugin="gz",
+        apart=True,
+        component="acme::Driver",
+        prefix_switch="prefixed",
+        unmanaged="<=humble",
+    )
+
+
+def test_the_whole_record_of_its_parameters() -> None:
+    assert LIBRARY.parameters == {
+        "driver": NodeParameters(
+            "driver",
+            "acme",
+            (
+                Param(
+                    "map_frame",
+                    "frame",
+                    "map",
+                    releases="jazzy",
+                    source=("acme/driver@1.0 d.cpp",),
+                ),
+                Param("topic", "topic", absolute="<=jazzy"),
+                Param("other", "topic", absolute="rolling"),
+                Param(
+                    "names",
+                    "joint",
+                    is_list=True,
+                    note="n",
+                    deprecated="kilted+",
+                    own=True,
+                    instead=("x",),
+                ),
+            ),
+            ("rover",),
+            ("acme/Driver",),
+            ("wheels",),
+            "jazzy+",
+            ("acme/driver@1.0 src/driver.cpp:7",),
+            "humble",
+            {"acme/Old": "jazzy+"},
+            ("acme_lib",),
+        )
+    }
+    assert LIBRARY.guesses == {"frame": ("frame_id",), "link": ("*_link",)}
+    assert LIBRARY.sent == {"earth"}
+    assert LIBRARY.parts == {"listener": (TF,)}
+
+
+def test_the_whole_record_of_a_stack() -> None:
+    out = Endpoint("topic", "publishes", "out", "a/msg/B", remapped="in")
+    renamed = NodeFacts(
+        "renamed",
+        "",
+        (out, TF),
+        shared=True,
+        when="sim",
+        known="plain",
+        releases="kilted",
+        plugin="p",
+        usual=(("rate", "5"),),
+    )
+    driver = LIBRARY.nodes["costmap/driver"]
+    cell = Stack("what it is", ("base",), (driver, renamed), "jazzy+", "box")
+    assert LIBRARY.stacks["cell"] == cell
+    assert list(with_included(LIBRARY, "cell")) == ["cell", "base"]
+    assert list(with_included(LIBRARY, "plain")) == ["plain"]
+    # A node of another one's process, of all robots, and the container itself are no components.
+    assert [(it.name, it.container) for it in stack_of(LIBRARY, "cell")] == [
+        ("box", ""),
+        ("costmap/driver", ""),
+        ("renamed", ""),
+    ]
+    loaded = extend(LIBRARY, "stacks: {c: {container: box, nodes: [plain, box]}}", "c.yaml")
+    assert [(it.name, it.container) for it in stack_of(loaded, "c")] == [
+        ("plain", "box"),
+        ("box", ""),
+    ]
+    assert [it.container for it in stack_of(LIBRARY, "base")] == [""]
+
+
+def test_a_library_of_a_release_has_what_that_release_has() -> None:
+    node = in_release(LIBRARY, "humble").nodes.get("costmap/driver")
+    assert node is None
+    jazzy = in_release(LIBRARY, "jazzy").nodes["costmap/driver"]
+    assert [it.kind for it in jazzy.claims] == ["command", "state", "state"]
+    anywhere = extend(
+        EMPTY, "nodes: {a: {claims: [{command: x, releases: jazzy+}, {state: y}]}}", "f"
+    )
+    assert [it.kind for it in in_release(anywhere, "humble").nodes["a"].claims] == ["state"]
+
+
+def test_a_second_file_changes_a_node_and_adds_to_its_parameters() -> None:
+    more = """\
+nodes:
+  costmap/driver:
+    package: acme
+    publishes: {new: a/msg/B}
+    params: {topic: service, extra: link}
+  driver: {aliases: [second]}
+"""
+    found = extend(LIBRARY, more, "m.yaml")
+    node, own = found.nodes["costmap/driver"], found.parameters["driver"]
+    assert [it.name for it in node.endpoints] == ["new"]
+    # It is started as before.
+    assert (node.programs, node.component) == (("drive", "other/run"), "acme::Driver")
+    assert [(it.path, it.kind) for it in own.params] == [
+        ("map_frame", "frame"),
+        ("other", "topic"),
+        ("names", "joint"),
+        ("topic", "service"),
+        ("extra", "link"),
+    ]
+    assert own.aliases == ("rover", "second")
+    assert (own.types, own.known_by, own.strips) == (("acme/Driver",), ("wheels",), "humble")
+    # Known by its parameters alone.
+    assert "driver" not in found.nodes
+    other = extend(LIBRARY, "nodes: {costmap/driver: {package: b}}", "m").nodes["costmap/driver"]
+    assert (other.programs, other.component) == ((), "")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("nodes: {a: {releases: jazy}}", "release 'jazy' is not known; did you mean 'jazzy'"),
+        ("nodes: {a: {releases: jazzy jazzy}}", "'jazzy jazzy' names no releases; write jazzy,"),
+        ("nodes: {a: {source: here}}", "source 'here' names no place; write OWNER/NAME@TAG PATH"),
+        ("nodes: {a: {source: a/b@c}}", "source 'a/b@c' names no place"),
+        ("nodes: {a: {source: 'a/b@c d:x'}}", "source 'a/b@c d:x' names no place"),
+        ("nodes: {a: {when: 'a b'}}", "'a b' is no condition; write PARAMETER = VALUE"),
+        ("nodes: {a: {frames: {f: []}}}", "frame f is an empty list; write what it is"),
+        ("nodes: {a: {frames: {f: [x, y]}}}", "frame f is there twice in "),
+        ("nodes: {a: {frames: {f: {releases: jazzy}}}}", "frame f has no default; add default:"),
+        ("nodes: {a: {frames: {f: {x: 1}}}}", "key 'x' is not known"),
+        ("nodes: {a: {sends: {f: g}}}", "frame 'f' is not known"),
+        ("nodes: {a: {frames: {f: x}, sends: {f: g}}}", "frame 'g' is not known"),
+        ("nodes: {a: {frames: {f: x}, sends: {f: {if: x}}}}", "sends f has no child; write {ch"),
+        ("nodes: {a: {frames: {f: x}, sends: {f: {child: g}}}}", "frame 'g' is not known"),
+        ("nodes: {a: {claims: [{}]}}", "a claim is of one kind; write {command: ...} or {state"),
+        ("nodes: {a: {claims: [{command: a, state: b}]}}", "a claim is of one kind"),
+        ("nodes: {a: {claims: [{commands: a}]}}", "key 'commands' is not known"),
+        ("nodes: {a/b c: {}}", "node name 'a/b c': "),
+        ("nodes: {a: {calls: {b: [{type: x/srv/B}, {type: x/srv/C}]}}}", "calls 'b' is there twi"),
+        ("nodes: {a: {publishes: {b: {type: x/msg/B, also: [B]}}}}", "'B' is not a ROS type"),
+        (
+            "nodes: {a: {publishes: {b: {type: x/msg/B, types: {c: x/msg/D}}}}}",
+            "'x/msg/D' is neither the type nor in also (x/msg/B)",
+        ),
+        ("nodes: {a: {serves: {b: {remapped: c d}}}}", "name 'c d': "),
+        ("nodes: {a: {publishes: {b: x/action/Go}}}", "x/action/Go is the type of an action"),
+        ("nodes: {a: {params: {x: fame}}}", "kind 'fame' is not known; did you mean 'frame'"),
+        ("nodes: {a: {params: {x: {}}}}", "parameter 'x' has no kind; add kind: with one of fra"),
+        ("nodes: {a: {params: {x: {kind: fame}}}}", "kind 'fame' is not known"),
+        ("nodes: {a: {params: {x..y: frame}}}", "parameter 'x..y' has an empty segment"),
+        ("nodes: {a: {params: {<jont>.y: frame}}}", "segment 'jont' is not known"),
+        ("nodes: {a: {params: {x: [frame, link]}}}", "parameter 'x' is there twice in"),
+        ("guesses: {fame: [x]}", "kind 'fame' is not known"),
+        ("stacks: {a: {node: [x]}}", "key 'node' is not known"),
+        ("parts: {a: {publish: {}}}", "key 'publish' is not known"),
+        ("nodes: {b: {}}\nstacks: {a: {nodes: [{node: b, parameters: {x: []}}]}}", "x is no word"),
+    ],
+)
+def test_what_is_wrong_in_an_entry(text: str, message: str) -> None:
+    with pytest.raises(UsageError) as raised:
+        extend(EMPTY, text, "f.yaml")
+    assert str(raised.value).startswith("f.yaml:")
+    assert message in str(raised.value)
+
+
+def test_parts_of_an_action_may_be_published() -> None:
+    found = extend(EMPTY, "nodes: {a: {publishes: {b: n/action/Spin_Feedback}}}", "f")
+    assert found.nodes["a"].endpoints[0].kind == "topic"
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "called"),
+    [
+        ("a.b", "a.b", True),
+        ("a.<joint>", "a.elbow", True),
+        ("a.*", "a.x", True),
+        ("a.b", "a.c", False),
+        ("a", "a.b", False),
+    ],
+)
+def test_a_path_may_have_placeholders(path: str, name: str, called: bool) -> None:
+    assert is_called(Param(path, "frame"), name) is called
+
+
+def test_a_topic_is_absolute_in_the_releases_that_say_so() -> None:
+    assert is_absolute(Param("x", "topic", absolute="<=jazzy"), "humble")
+    assert not is_absolute(Param("x", "topic", absolute="<=jazzy"), "kilted")
+    assert not is_absolute(Param("x", "topic"), "humble")
+    assert is_below_costmap("nav2_costmap_2d::BinaryFilter")
+    assert not is_below_costmap("nav2_costmap_2d::KeepoutFilter")
+
+
+def test_parameters_of_nodes_by_name_type_and_path(tmp_path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        "nodes:\n  acme_x:\n    aliases: [acme_y]\n    types: [acme/X]\n    releases: jazzy+\n"
+        "    params:\n      map.frame_id: {kind: frame, default: map}\n      odom<index>: topic\n"
+        "      <joint>.p: interface\n      old: [{kind: frame, default: a, releases: <=humble},"
+        " {kind: frame, default: b, releases: jazzy+}]\n"
+    )
+    known = load_known_nodes(str(file), "jazzy")
+    node = known.nodes[known.names["acme_y"]]
+    assert (node.name, known.names["acme_x"], known.types["acme/X"]) == ("acme_x",) * 3
+    tree = node.tree
+    assert [it.path for it in tree.exact["map"].exact["frame_id"].params] == ["map.frame_id"]
+    assert [it.path for it in tree.numbered["odom"].params] == ["odom<index>"]
+    assert [it.path for it in tree.wild["joint"].exact["p"].params] == ["<joint>.p"]
+    assert [(it.path, it.default) for it in node.defaults] == [
+        ("map.frame_id", "map"),
+        ("old", "b"),
+    ]
+    # What the release lacks is what it was in another.
+    humble = load_known_nodes(str(file), "humble").nodes["acme_x"]
+    assert humble.params["old"].default == "a"
+    assert humble.defaults == ()
+    assert guess(known, "any.thing.frame_id") == "frame"
+    assert guess(known, "any.frame_id.thing") == ""
+
+
+def test_what_is_declared_by_packages() -> None:
+    rows = declared_by("nav2_amcl")
+    (alpha,) = {it for it in rows if it.path == "alpha1" and it.how == "declared"}
+    assert isinstance(alpha, Declared)
+    assert alpha.type == "double"
+    assert alpha.source.startswith("ros-navigation/navigation2@")
+    assert is_known("nav2_amcl") and not is_known("nav2_acml")
+    assert declared_by("nav2_acml") == ()
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "words"),
+    [
+        ("<id>_config", "odom0_config", {"<id>": "odom0"}),
+        ("<a>.x.<b>", "p.x.q", {"<a>": "p", "<b>": "q"}),
+        ("a.b", "a.b", {}),
+        ("<id>_config", "odom0", {}),
+    ],
+)
+def test_words_in_brackets_stand_for_others(path: str, name: str, words: dict[str, str]) -> None:
+    assert stands_for(path, name) == words
+
+
+def test_a_check_has_its_arguments() -> None:
+    row = Declared("a.<x>", "double", "gt_eq<>(0.0) one_of<>([a, b])", "", "yaml", "")
+    assert row.pattern.fullmatch("a.b") and not row.pattern.fullmatch("a.")
+    plain = row._replace(bounds="bounds(0, 1) not_empty()")
+    assert plain.checks == (("bounds", "0, 1"), ("not_empty", ""))
+
+
+def test_classes_of_pluginlib_with_their_older_names() -> None:
+    base = plugin_bases()["controller_interface::ControllerInterface"]
+    now = "joint_state_broadcaster/JointStateBroadcaster"
+    assert base.older["joint_state_controller/JointStateController"] == now
+    assert base.classes[now] == ""
+    assert "joint_state_controller/JointStateController" not in base.classes
+    late = "battery_state_broadcaster/BatteryStateBroadcaster"
+    assert base.classes[late] == "jazzy,kilted,lyrical,rolling"
+    assert "joint_state_broadcaster" in packages()
+    assert canonical(" a/B ") == "a::B"
+
+
+def test_programs_of_nodes() -> None:
+    """nav2_bringup launch files; rclcpp_components of lyrical has one executable with flags."""
+    assert container_of("jazzy") == Program("rclcpp_components", "component_container_isolated")
+    assert container_of("lyrical") == Program(
+        "rclcpp_components",
+        "component_container",
+        "",
+        ("--isolated", "--executor-type", "single-threaded"),
+    )
+    box = NodeFacts("nav2_container", "rclcpp_components", (), known="component_container")
+    assert program_of(box, "jazzy") == container_of("jazzy")
+    node = NodeFacts("driver", "acme", (), programs=("drive", "run"), component="acme::D")
+    assert program_of(node, "jazzy") == Program("acme", "drive", "acme::D")
+    assert program_of(NodeFacts("driver", "acme", ()), "jazzy") == Program("acme", "driver")
+    assert program_of(NodeFacts("driver", "", ()), "jazzy") is None
+    assert program_of(NodeFacts("Component", "acme", ()), "jazzy") is None
+    assert known_program("amcl", "jazzy").executable == "amcl"
+    assert NAV2[-1] == "lifecycle_manager"
+
+
+@pytest.mark.parametrize(
+    ("program", "run"),
+    [("acme/drive", True), ("b/run", True), ("acme/acme::D", True), ("acme/run", False)],
+)
+def test_a_program_runs_a_node(program: str, run: bool) -> None:
+    node = NodeFacts("driver", "acme", (), programs=("drive", "b/run"), component="acme::D")
+    assert runs(node, program) is run
+    assert not runs(NodeFacts("driver", "acme", ()), "acme/driver")
+
+
+def test_a_life_cycle_that_no_manager_takes_care_of() -> None:
+    node = NodeFacts("x", "acme", (), unmanaged="<=jazzy")
+    assert [is_unmanaged(node, it) for it in ("humble", "jazzy", "kilted")] == [True, True, False]
+    assert not is_unmanaged(node._replace(unmanaged=""), "humble")
+
+
+def test_a_costmap_keeps_its_name_and_its_helpers_go_with_it() -> None:
+    for node in ("local_costmap/local_costmap", "/a/local_costmap/local_costmap"):
+        assert is_apart(node, NEWEST_LTS)
+    assert is_apart("a/local_costmap/clear", NEWEST_LTS)
+    assert not is_apart("amcl", NEWEST_LTS)
+    assert not is_apart("my_local_costmap/x", NEWEST_LTS)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "system"),
+    [
+        *(
+            (it, ("sensors", "Sensors"))
+            for it in ("camera", "depth_camera", "depth", "rgbd_camera")
+        ),
+        *((it, ("sensors", "Sensors")) for it in ("rgbd", "gpu_lidar", "gpu_ray", "lidar", "ray")),
+        *(
+            (it, ("sensors", "Sensors"))
+            for it in ("thermal_camera", "thermal", "wide_angle_camera")
+        ),
+        *((it, ("sensors", "Sensors")) for it in ("segmentation_camera", "segmentation")),
+        *((it, ("sensors", "Sensors")) for it in ("boundingbox_camera", "boundingbox")),
+        ("imu", ("imu", "Imu")),
+        ("magnetometer", ("magnetometer", "Magnetometer")),
+        ("altimeter", ("altimeter", "Altimeter")),
+        ("air_pressure", ("air-pressure", "AirPressure")),
+        ("air_speed", ("air-speed", "AirSpeed")),
+        ("force_torque", ("forcetorque", "ForceTorque")),
+        ("logical_camera", ("logical-camera", "LogicalCamera")),
+        ("navsat", ("navsat", "NavSat")),
+        ("gps", ("navsat", "NavSat")),
+    ],
+)
+def test_a_world_needs_a_system_for_each_sensor(sensor: str, system: tuple[str, str]) -> None:
+    """gz-sim8 src/systems."""
+    assert SYSTEMS[sensor] == system
+    assert DEFAULTS == ("physics", "user-commands", "scene-broadcaster")

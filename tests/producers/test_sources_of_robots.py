@@ -1,0 +1,337 @@
+"""What the sources of a robot name becomes ends, addresses, interfaces and transforms of a system."""
+
+from __future__ import annotations
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.knowledge.records import (
+    Claim,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    Param,
+    SentTransform,
+)
+from multibot_rewrite.producers.addresses import of_hardware, of_parameters
+from multibot_rewrite.producers.ends import bridge_ends, node_ends
+from multibot_rewrite.producers.evidence.hardware import Exported
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.producers.transforms import (
+    edge,
+    edges_off,
+    joint_edges,
+    lookups_of,
+    node_edges,
+)
+from multibot_rewrite.system.records import (
+    MAY,
+    NOWHERE,
+    OFF,
+    PUBLISHES,
+    RUNS,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Address,
+    Controller,
+    Interface,
+    Lookup,
+    Place,
+    edge_of,
+)
+
+AT, THERE = Place("p.yaml", 3), Place("p.yaml", 7)
+
+
+def given(name: str, known: str = "", manager: str = "", **values: object) -> GivenNode:
+    found = {key: Given(it, THERE) for key, it in values.items()}  # type: ignore[arg-type]
+    return GivenNode(name, known, "", found, AT)._replace(manager=manager)
+
+
+DRIVER = NodeFacts(
+    "a/driver",
+    "acme",
+    (
+        Endpoint(TOPIC, PUBLISHES, "scan", "a/msg/Scan", parameter="topic", also=("a/msg/Old",)),
+        Endpoint(TOPIC, SUBSCRIBES, "cmd", remapped="/cmd_vel"),
+        Endpoint(TOPIC, "", "~/either"),
+        Endpoint(TOPIC, PUBLISHES, "maybe", when="x"),
+        Endpoint(TOPIC, PUBLISHES, "<id>/made"),
+    ),
+)
+
+
+def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
+    found = [*node_ends(DRIVER, given("a/driver", topic="/scan"))]
+    assert [(it.role, it.name, it.sure, it.place) for it in found] == [
+        (PUBLISHES, "/a/scan", RUNS, THERE),
+        (SUBSCRIBES, "/cmd_vel", RUNS, AT),
+        (PUBLISHES, "/a/driver/either", MAY, AT),
+        (SUBSCRIBES, "/a/driver/either", MAY, AT),
+        (PUBLISHES, "/a/maybe", MAY, AT),
+    ]
+    assert {it.node for it in found} == {"/a/driver"}
+    assert (found[0].type, found[0].code_name, found[0].also) == (
+        "a/msg/Scan",
+        "scan",
+        ("a/msg/Old",),
+    )
+    assert node_ends(DRIVER, None).__next__().place == NOWHERE
+
+
+def test_a_node_with_parameters_is_meant_to_run() -> None:
+    optional = DRIVER._replace(when="started")
+    assert [it.sure for it in node_ends(optional, None)][:2] == [MAY, MAY]
+    assert [it.sure for it in node_ends(optional, given("a/driver"))][:2] == [RUNS, RUNS]
+    shared = DRIVER._replace(shared=True)
+    assert "/cmd_vel" not in [it.name for it in node_ends(shared, None)]
+
+
+def test_the_rows_of_a_bridge_in_a_namespace() -> None:
+    """ros_gz_bridge bridge_config.cpp: a row with one name has it on both sides."""
+    text = b"""\
+- {ros_topic_name: scan, gz_topic_name: gz, ros_type_name: a/msg/B, direction: GZ_TO_ROS}
+- {ros_topic_name: /cmd, direction: ROS_TO_GZ}
+- topic_name: both
+- gz_topic_name: only_gz
+- ros_type_name: a/msg/B
+"""
+    found = [*bridge_ends(read_yaml(text, "b.yaml"), "robot1")]
+    assert [(it.role, it.name, it.type, it.place.line) for it in found] == [
+        (PUBLISHES, "/robot1/scan", "a/msg/B", 1),
+        (SUBSCRIBES, "/cmd", "", 2),
+        ("", "/robot1/both", "", 3),
+        ("", "/robot1/only_gz", "", 4),
+    ]
+    assert {it.node for it in found} == {"/ros_gz_bridge"}
+    assert next(it.name for it in bridge_ends(read_yaml(text, "b"))) == "/scan"
+
+
+HARDWARE = (
+    """<robot><ros2_control><hardware><plugin>{}</plugin>{}</hardware></ros2_control></robot>"""
+)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "params", "found"),
+    [
+        ("acme/Arm", {"robot_ip": " 10.0.0.2 ", "speed": "3"}, [("device", "10.0.0.2")]),
+        (" mock_components/GenericSystem ", {"robot_ip": "10.0.0.2"}, []),
+        ("fake_components/GenericSystem", {"robot_ip": "10.0.0.2"}, []),
+        ("acme/Arm", {"robot_ip": ""}, []),
+        ("acme/Arm", {}, []),
+    ],
+)
+def test_the_devices_of_a_description(
+    plugin: str, params: dict[str, str], found: list[tuple[str, str]]
+) -> None:
+    inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
+    root = etree.fromstring(HARDWARE.format(plugin, inside))
+    made = [*of_hardware(root, "/m", AT)]
+    assert [(it.kind, it.value) for it in made] == found
+    assert all(it == Address(it.kind, "robot_ip", it.value, "/m", AT) for it in made)
+
+
+def test_what_a_parameter_holds_for_one_node_alone() -> None:
+    known = {"port": Param("port", "exclusive"), "frame": Param("frame", "frame")}
+    values = {"port": Given(9090, THERE), "frame": Given("x", THERE), "other": Given(1, THERE)}
+    assert [*of_parameters("/n", known, values)] == [Address("own", "port", "9090", "/n", THERE)]
+    for off in ("", False, "no", " Off "):
+        assert [*of_parameters("/n", known, {"port": Given(off, AT)})] == []
+
+
+BASE = NodeFacts(
+    "base", "c", (), claims=(Claim("command", "<joint>/velocity"), Claim("state", "x/y"))
+)
+
+
+def test_what_hardware_exports_and_controllers_claim() -> None:
+    sections = [
+        given("ns/base", "base", "m", joint="wheel"),
+        given("idle", "base", "m", joint="arm"),
+        given("no_controller", "base", joint="leg"),
+        given("strange", "unknown", "m"),
+    ]
+    exports = [Exported("command", "wheel/velocity", AT)]
+    found = control_system(sections, {"base": BASE}, exports, ["ns/base"])
+    assert found.controllers == (
+        Controller("/m", "base", "active", ("wheel/velocity",)),
+        Controller("/m", "idle", ""),
+        Controller("/m", "strange", ""),
+    )
+    assert found.interfaces[0] == Interface(
+        "command", "wheel/velocity", "/controller_manager", "exports", AT
+    )
+    assert [(it.kind, it.name, it.node, it.role) for it in found.interfaces[1:]] == [
+        ("command", "wheel/velocity", "/ns/base", "claims"),
+        ("state", "x/y", "/ns/base", "claims"),
+        ("command", "arm/velocity", "/idle", "claims"),
+        ("state", "x/y", "/idle", "claims"),
+    ]
+
+
+EKF = NodeFacts(
+    "ekf",
+    "acme",
+    (),
+    frames=(
+        FrameParameter("odom", "odom"),
+        FrameParameter("base", "base"),
+        FrameParameter("map", "map"),
+    ),
+    sends=(SentTransform("odom", "base", "publish_tf and sure"),),
+)
+
+
+def test_a_transform_is_on_the_tf_of_its_robot() -> None:
+    moving, fixed = edge_of("odom", "base"), edge_of("base", "lidar", True)
+    assert edge(moving, "/n", AT).topic == "/tf"
+    assert edge(fixed, "/n", AT).topic == "/tf_static"
+    assert edge(fixed, "/n", topic="/tf/a").topic == "/tf_static/a"
+    (made,) = joint_edges([(fixed, AT)])
+    assert (made.publishers, made.place, made.sure) == (("/robot_state_publisher",), AT, RUNS)
+
+
+def test_transforms_that_parameters_name() -> None:
+    sends = EKF._replace(sends=(SentTransform("odom", "base"),))
+    (own,) = node_edges([sends], [given("ekf")], "")
+    assert (own.parent, own.child, own.publishers, own.place) == ("odom", "base", ("/ekf",), AT)
+    (rooted,) = node_edges([sends], [], "root")
+    assert (rooted.child, rooted.place) == ("root", NOWHERE)
+
+
+@pytest.mark.parametrize(
+    ("values", "places"),
+    [
+        ({"publish_tf": False, "sure": True}, [THERE]),
+        ({"publish_tf": True, "sure": True}, []),
+        # Two switches at once: neither alone.
+        ({"publish_tf": False, "sure": False}, []),
+        ({"sure": True}, []),
+    ],
+)
+def test_a_transform_that_one_parameter_switches_off(
+    values: dict[str, object], places: list[Place]
+) -> None:
+    found = [*edges_off([given("ekf", "ekf", **values)], {"ekf": EKF})]
+    assert [it.place for it in found] == places
+    assert all((it.sure, it.parent, it.child) == (OFF, "odom", "base") for it in found)
+    assert [*edges_off([given("ekf", "other", **values)], {"ekf": EKF})] == []
+
+
+def test_frames_that_a_node_looks_up() -> None:
+    values = given("ekf", map="/world", base="b", odom="").values
+    assert [*lookups_of("/ekf", EKF, values)] == [Lookup("/ekf", "world", place=THERE)]
+    assert [*lookups_of("/ekf", EKF, {"map": Given(5, AT)})] == []
+    assert [*lookups_of("/ekf", EKF, {"map": Given("", AT)})] == []
+
+
+def test_words_that_rcl_reads() -> None:
+    """rcl arguments.c: between --ros-args and -- they are ROS's own."""
+    words = (
+        *("own", "--ros-args", "-r", "__node:=n", "--remap", "__ns:=/a", "-r", "x:=y"),
+        *(
+            "-p",
+            "a:=1",
+            "--param",
+            "b:=2",
+            "--params-file",
+            "f.yaml",
+            "-r",
+            "none",
+            "--",
+            "-r",
+            "z:=w",
+        ),
+    )
+    found = ros_arguments(words)
+    assert (found.name, found.namespace, found.rules) == ("n", "/a", (("x", "y"),))
+    assert (found.values, found.files) == ((("a", "1"), ("b", "2")), ("f.yaml",))
+    assert found.own == ("own", "-r", "z:=w")
+    assert ros_arguments(["--ros-args", "-r", "__name:=m"]).name == "m"
+    assert params_text(found.values) == "/**:\n  ros__parameters:\n    a: 1\n    b: 2\n"
+    assert params_text(()) == ""
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("ros2 run p e", ("p", "e", ())),
+        ("/opt/ros/bin/ros2 run p e a b", ("p", "e", ("a", "b"))),
+        ("ros2 run --prefix gdb p e", ("p", "e", ())),
+        ("ros2 run -d p e", ("p", "e", ())),
+        ("ros2 run p", None),
+        ("ros2 launch p e", None),
+        ("ros run p e", None),
+    ],
+)
+def test_a_line_of_ros2_run(line: str, found: object) -> None:
+    assert ros2_run(line.split()) == found
+
+
+def launched(package: str, executable: str, name: str = "", arguments: tuple[str, ...] = ()):
+    from launched_nodes import started
+
+    return started(package, executable, name, arguments=arguments)
+
+
+KNOWN = {
+    it.name: it
+    for it in (
+        NodeFacts("driver", "acme", ()),
+        NodeFacts("hosted", "acme", (), host="driver"),
+        NodeFacts("camel_case", "acme", ()),
+        NodeFacts("runner", "acme", (), programs=("run", "other/run")),
+    )
+}
+
+
+@pytest.mark.parametrize(
+    ("package", "executable", "name", "found"),
+    [
+        ("acme", "driver", "", "driver"),
+        ("acme", "driver_node", "x", "driver"),
+        ("acme", "x", "driver", "driver"),
+        ("acme", "acme::CamelCase", "", "camel_case"),
+        ("acme", "hosted", "", ""),
+        ("acme", "run", "", "runner"),
+        ("other", "run", "", "runner"),
+        ("other", "driver", "driver", ""),
+    ],
+)
+def test_a_launched_program_is_a_known_node(
+    package: str, executable: str, name: str, found: str
+) -> None:
+    node = known_node(launched(package, executable, name), (), KNOWN)
+    assert (node.name if node else "") == found
+
+
+def test_a_node_of_a_stack_comes_first_with_the_ends_of_its_program() -> None:
+    ends = (
+        Endpoint(TOPIC, PUBLISHES, "a", when="argument: --stereo|-s"),
+        Endpoint(TOPIC, PUBLISHES, "b", when="program: driver|other"),
+        Endpoint(SERVICE, SERVES, "c", when="program: else"),
+    )
+    own = NodeFacts("driver", "acme", ends, note="of the stack")
+    with_word = known_node(launched("acme", "driver", "driver", ("-s",)), (own,), KNOWN)
+    assert with_word is not None and with_word.note == "of the stack"
+    assert [(it.name, it.when) for it in with_word.endpoints] == [("a", ""), ("b", "")]
+    without = known_node(launched("acme", "driver", "driver"), (own,), KNOWN)
+    assert without is not None
+    assert [it.name for it in without.endpoints] == ["b"]
+    part = known_node(launched("acme", "acme::Driver", "driver"), (own,), KNOWN)
+    assert part is not None
+    assert [it.name for it in part.endpoints] == ["b", "c"]
+
+
+def test_the_own_name_of_a_program() -> None:
+    it = launched("acme", "acme::Driver")
+    assert last_word(it) == "Driver"
+    assert own_name(it, None) == ""
+    assert own_name(it, KNOWN["driver"]) == "driver"

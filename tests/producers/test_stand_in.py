@@ -1,0 +1,316 @@
+"""The parts of the stand-in for launch, each by what launch jazzy does with the same words."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from multibot_rewrite.producers.launch import places
+from multibot_rewrite.producers.launch.read_files import descriptions_in
+from multibot_rewrite.producers.launch.records import ParameterText
+from multibot_rewrite.producers.launch.stand_in import packages, parameters, values
+from multibot_rewrite.producers.launch.stand_in.values import LaunchConfiguration, LaunchContext
+from multibot_rewrite.system.records import Place
+
+
+@pytest.fixture
+def context(monkeypatch: pytest.MonkeyPatch) -> LaunchContext:
+    monkeypatch.setenv("HERE", "home")
+    made = LaunchContext()
+    made.launch_configurations.update({"n": "5", "yes": "true", "word": "w"})
+    made.extend_locals({"current_launch_file_path": "/launch/bringup.launch.py"})
+    return made
+
+
+N, YES, WORD = LaunchConfiguration("n"), LaunchConfiguration("yes"), LaunchConfiguration("word")
+
+
+@pytest.mark.parametrize(
+    ("made", "text"),
+    [
+        (values.TextSubstitution(text=5), "5"),
+        (N, "5"),
+        (LaunchConfiguration(["wo", "rd"]), "w"),
+        (LaunchConfiguration("no", default=["a", N]), "a5"),
+        (values.EnvironmentVariable("HERE"), "home"),
+        (values.EnvironmentVariable("NOT_HERE", default_value=""), ""),
+        (values.PathJoinSubstitution(["/a", N, "b"]), "/a/5/b"),
+        (values.PythonExpression([N, " + 1"]), "6"),
+        (values.PythonExpression("pi > 3 and math.pi > 3"), "True"),
+        (values.PythonExpression("os.sep", ["os"]), "/"),
+        (values.ThisLaunchFile(), "/launch/bringup.launch.py"),
+        (values.ThisLaunchFileDir(), "/launch"),
+        (values.EqualsSubstitution(N, "5.0"), "true"),
+        (values.EqualsSubstitution(N, 6), "false"),
+        (values.EqualsSubstitution(YES, "1"), "true"),
+        (values.EqualsSubstitution(YES, False), "false"),
+        (values.EqualsSubstitution(WORD, ["w"]), "false"),
+        (values.EqualsSubstitution(WORD, "w"), "true"),
+        (values.EqualsSubstitution(None, ""), "true"),
+        (values.NotEqualsSubstitution(N, "5"), "false"),
+        (values.AndSubstitution(YES, "yes"), "true"),
+        (values.AndSubstitution(YES, "0"), "false"),
+        (values.OrSubstitution("no", "off"), "false"),
+        (values.OrSubstitution("no", YES), "true"),
+        (values.NotSubstitution(YES), "false"),
+        (values.NotSubstitution("0"), "true"),
+        (values.AllSubstitution(), "true"),
+        (values.AllSubstitution(YES, "0"), "false"),
+        (values.AnySubstitution("0", YES), "true"),
+        (values.AnySubstitution(), "false"),
+        (values.IfElseSubstitution(YES, "a", "b"), "a"),
+        (values.IfElseSubstitution("0", "a", ["b", N]), "b5"),
+        (values.IfElseSubstitution("0", "a"), ""),
+        (values.LocalSubstitution("current_launch_file_path[:3]"), "/la"),
+        (values.AnonName("x"), "x_anonymous"),
+    ],
+)
+def test_what_a_substitution_is(made: Any, text: str, context: LaunchContext) -> None:
+    assert made.perform(context) == text
+    assert context.perform_substitution(made) == text
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (LaunchConfiguration("no"), "launch configuration 'no' does not exist"),
+        (values.EnvironmentVariable("NOT_HERE"), "environment variable 'NOT_HERE' does not exist"),
+        (values.NotSubstitution(N), "Cannot convert value '5'"),
+        (values.FileContent("/no/such"), "File not found: /no/such"),
+    ],
+)
+def test_a_substitution_without_a_value(made: Any, message: str, context: LaunchContext) -> None:
+    with pytest.raises(values.SubstitutionFailure, match=message):
+        made.perform(context)
+
+
+def test_the_content_of_a_file(context: LaunchContext, tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("text\n")
+    assert values.FileContent(str(tmp_path / "a")).perform(context) == "text\n"
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds"),
+    [
+        (values.Condition(), True),
+        (values.Condition(predicate=lambda it: it.launch_configurations["n"] == "5"), True),
+        (values.Condition(predicate=lambda it: False), False),
+        (values.IfCondition(YES), True),
+        (values.IfCondition(" True "), True),
+        (values.IfCondition("0"), False),
+        (values.UnlessCondition(YES), False),
+        (values.UnlessCondition("false"), True),
+        (values.LaunchConfigurationEquals("n", ["5"]), True),
+        (values.LaunchConfigurationEquals("n", "6"), False),
+        (values.LaunchConfigurationEquals("no", None), True),
+        (values.LaunchConfigurationNotEquals("n", "5"), False),
+        (values.LaunchConfigurationNotEquals("no", "5"), True),
+    ],
+)
+def test_a_condition(condition: Any, holds: bool, context: LaunchContext) -> None:
+    assert condition.evaluate(context) is holds
+
+
+def test_a_text_that_is_no_condition(context: LaunchContext) -> None:
+    with pytest.raises(values.InvalidConditionExpressionError, match="'5' is no condition"):
+        values.evaluate_condition_expression(context, N)
+    for text, truth in (("yes", True), ("off", False), ("1", True), ("0", False)):
+        assert values.typed_truth(text) is truth
+    for text in ("", "5", "maybe"):
+        with pytest.raises(ValueError, match="Cannot convert value"):
+            values.typed_truth(text)
+
+
+def test_words_that_an_action_does_not_take() -> None:
+    for words, options in (((), {"b": 1, "a": 1}), (("x", "y"), {})):
+        with pytest.raises(TypeError, match=r"got an unexpected keyword argument 'a'|got too many"):
+            values.TextSubstitution(*words, **options)
+    with pytest.raises(TypeError, match="Failed to normalize given item of type"):
+        values.normalize_to_list_of_substitutions([5])
+    assert len(values.normalize_to_list_of_substitutions(["a", N])) == 2
+
+
+def test_what_a_group_keeps_comes_back(context: LaunchContext) -> None:
+    context._push_launch_configurations()
+    context._push_environment()
+    context._push_locals()
+    context.launch_configurations["n"] = "6"
+    context.environment["HERE"] = "away"
+    context.extend_locals({"own": 1})
+    context.extend_globals({"all": 2})
+    assert (context.locals.own, context.locals.all) == (1, 2)
+    context._pop_locals()
+    context._pop_environment()
+    context._pop_launch_configurations()
+    assert (N.perform(context), context.environment["HERE"]) == ("5", "home")
+    assert "own" not in context.get_locals_as_dict()
+    context.environment.clear()
+    context._reset_environment()
+    assert context.environment == dict(os.environ)
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ("5", "5"),
+        (5, 5),
+        (N, 5),
+        (WORD, "w"),
+        ([N, "5"], 55),
+        ([1, 2.5], [1.0, 2.5]),
+        (["a", "b"], ["a", "b"]),
+        (["a", [WORD]], ["a", "w"]),
+        (parameters.ParameterValue(N, value_type=str), "5"),
+        (parameters.ParameterValue(N, value_type=int), 5),
+        (parameters.ParameterValue(N, value_type=float), 5.0),
+        (parameters.ParameterValue(YES, value_type=bool), True),
+        (parameters.ParameterValue(N), 5),
+        (parameters.ParameterValue([N, "x"]), "5x"),
+        (parameters.ParameterValue([1, [N]]), [1, "5"]),
+        (parameters.ParameterValue(True), True),
+        (LaunchConfiguration("no", default=""), ""),
+        (LaunchConfiguration("no", default="[1, 2]"), [1, 2]),
+    ],
+)
+def test_a_value_of_a_parameter_has_a_type(given: Any, kept: Any, context: LaunchContext) -> None:
+    """launch_ros jazzy, utilities/evaluate_parameters.py."""
+    (found,) = parameters.evaluate_parameters(context, [{"a": {"b": given}}])
+    assert found == {"a.b": kept}
+    assert type(found["a.b"]) is type(kept)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ([1, "a"], 'Got inconsistent input for "p"'),
+        ([], 'Got inconsistent input for "p"'),
+        (object(), "Unexpected type for parameter value"),
+        (LaunchConfiguration("no", default="{a: 1}"), "Allowed value types are bytes, bool"),
+        (LaunchConfiguration("no", default="[1, a]"), 'Got inconsistent input for "p"'),
+        (LaunchConfiguration("no", default="a: ["), "Unable to parse the value of parameter p"),
+    ],
+)
+def test_a_value_that_is_none(given: Any, message: str, context: LaunchContext) -> None:
+    with pytest.raises(TypeError, match=message):
+        parameters.evaluate_parameters(context, [{"p": given}])
+
+
+def test_a_parameter_alone_and_a_file_of_parameters(context: LaunchContext, tmp_path: Path) -> None:
+    one = parameters.Parameter(["p", N], N, value_type=int)
+    assert parameters.evaluate_parameters(context, [one]) == (one,)
+    assert one.evaluate(context) == ("p5", 5)
+    file = tmp_path / "p.yaml"
+    file.write_text("/**: {ros__parameters: {a: $(var n)}}\n")
+    assert parameters.evaluate_parameters(context, [str(file), file]) == (file, file)
+    (made,) = parameters.evaluate_parameters(
+        context, [parameters.ParameterFile(file, allow_substs=True)]
+    )
+    assert made != file
+    assert made.read_text() == "/**: {ros__parameters: {a: 5}}\n"
+    made.unlink()
+
+
+def test_names_of_parameters_are_joined(context: LaunchContext) -> None:
+    (found,) = parameters.evaluate_parameters(context, [{"a": {(N, "x"): {"c": 1}, "d": 2}}])
+    assert found == {"a.5x.c": 1, "a.d": 2}
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Two prefixes with a package of one name, and a folder that is none."""
+    for prefix in ("first", "second"):
+        index = tmp_path / prefix / "share/ament_index/resource_index"
+        (index / "packages").mkdir(parents=True)
+        (index / "packages" / "acme").write_text(prefix)
+    (tmp_path / "second/share/ament_index/resource_index/packages/late").touch()
+    (tmp_path / "first/lib/acme").mkdir(parents=True)
+    (tmp_path / "first/lib/acme/run").touch()
+    (tmp_path / "none").mkdir()
+    paths = [str(tmp_path / it) for it in ("none", "first", "second")]
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join(["", *paths]))
+    return tmp_path
+
+
+def test_a_package_is_in_the_first_prefix_that_has_it(
+    installed: Path, context: LaunchContext
+) -> None:
+    """ament_index_python packages.py and resources.py."""
+    first, second = str(installed / "first"), str(installed / "second")
+    assert packages.get_package_prefix("acme") == first
+    assert packages.get_package_prefix("late") == second
+    assert packages.get_package_share_directory("acme") == f"{first}/share/acme"
+    assert packages.get_package_share_path("acme") == Path(first, "share", "acme")
+    assert packages.get_packages_with_prefixes() == {"acme": first, "late": second}
+    assert packages.has_resource("packages", "acme") == first
+    assert packages.has_resource("packages", "acne") is False
+    assert packages.get_resource("packages", "acme") == ("first", first)
+    with pytest.raises(LookupError, match="no resource 'acne' of type 'packages'"):
+        packages.get_resource("packages", "acne")
+    with pytest.raises(packages.PackageNotFoundError, match="package 'acne' not found"):
+        packages.get_package_prefix("acne")
+    assert packages.FindPackagePrefix("acme").perform(context) == first
+    assert packages.FindPackageShare(["ac", "me"]).perform(context) == f"{first}/share/acme"
+    found = packages.ExecutableInPackage(executable="run", package="acme").perform(context)
+    assert found == f"{first}/lib/acme/run"
+    with pytest.raises(values.SubstitutionFailure, match="executable not found: "):
+        packages.ExecutableInPackage("walk", "acme").perform(context)
+
+
+def test_a_parameter_that_is_set_for_all_nodes(context: LaunchContext) -> None:
+    context.launch_configurations["global_params"] = ["p.yaml", ("rate", 5)]
+    assert packages.ParameterSubstitution("rate").perform(context) == "5"
+    assert packages.ParameterSubstitution("no", default=["a", N]).perform(context) == "a5"
+    with pytest.raises(values.SubstitutionFailure, match="parameter 'no' not found"):
+        packages.ParameterSubstitution("no").perform(context)
+
+
+XML = """\
+<launch>
+  <node pkg="a" exec="b"/>
+  <node_container pkg="c" exec="d">
+    <composable_node pkg="e" plugin="e::F"/>
+  </node_container>
+  <node pkg="a" exec="b"/>
+</launch>
+"""
+YAML = """\
+launch:
+- node: {pkg: a, exec: b}
+- group:
+  - node_container:
+      pkg: c
+      exec: d
+      composable_node:
+      - {pkg: e, plugin: "e::F"}
+- node: {pkg: a, exec: b}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [(XML, (2, 3, 4)), (YAML, (2, 5, 8)), ("<launch", (1,) * 3), ("- [", (1,) * 3)],
+)
+def test_the_line_of_a_node_in_xml_and_yaml(
+    text: str, lines: tuple[int, int, int], tmp_path: Path
+) -> None:
+    """The first that starts the program counts."""
+    file = str(tmp_path / "a.launch")
+    Path(file).write_text(text)
+    started = (("a", "b"), ("c", "d"), ("e", "e::F"))
+    assert tuple(places.place_of(None, file, it) for it in started) == tuple(
+        Place(os.path.realpath(file), it) for it in lines
+    )
+    assert places.place_of(None, file).line == 1
+    assert places.place_of(None, file, ("no", "b")).line == 1
+    assert places.place_of(None, str(tmp_path / "gone"), ("a", "b")).line == 1
+
+
+def test_the_descriptions_that_were_read(tmp_path: Path) -> None:
+    (tmp_path / "a.urdf").write_text("<robot/>")
+    (tmp_path / "link.urdf").symlink_to(tmp_path / "a.urdf")
+    path = os.path.realpath(tmp_path / "a.urdf")
+    given = [str(tmp_path / it) for it in ("a.urdf", "link.urdf", "gone.urdf", "")]
+    assert list(descriptions_in(given)) == [(path, ParameterText(path, "<robot/>", path))]

@@ -1,0 +1,253 @@
+"""What is said of the words, programs and starts of a launch, and what is right and stays unsaid.
+
+Sources: tf2_ros jazzy static_transform_broadcaster_program.cpp, nav2_lifecycle_manager, ros2_control
+spawner.py.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from launched_nodes import AT, started
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchNote,
+    ParameterText,
+)
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.rules.launch.judge import judge_launch
+
+TF = ("tf2_ros", "static_transform_publisher", "s")
+STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
+MANAGER = ("controller_manager", "ros2_control_node", "controller_manager")
+SPAWNER = ("controller_manager", "spawner", "spawner")
+LIFECYCLE = ("nav2_lifecycle_manager", "lifecycle_manager", "manager")
+AMCL = ("nav2_amcl", "amcl", "amcl")
+UNKNOWN = started("acme", "driver", "driver")
+FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
+UPRIGHT = ("--qx", "0", "--qy", "0", "--qz", "0", "--qw")
+
+
+@pytest.fixture(scope="module")
+def known() -> Knowledge:
+    return Knowledge(built_in("jazzy").nodes, load_known_nodes("", "jazzy"), "jazzy")
+
+
+def with_values(values: dict[str, object]) -> tuple[ParameterText, ...]:
+    return (ParameterText("", yaml.safe_dump({"/**": {"ros__parameters": values}})),)
+
+
+def judged(known: Knowledge, code: str, *nodes: LaunchedNode, notes: object = ()) -> list[Finding]:
+    graph = LaunchGraph(nodes, tuple(notes))  # type: ignore[arg-type]
+    return [it for it in judge_launch(launched(graph, known)) if it.code == code]
+
+
+def said(found: list[Finding]) -> list[str]:
+    return [f"{it.message}; {it.hint}" for it in found]
+
+
+@pytest.mark.parametrize(
+    ("words", "texts"),
+    [
+        (("--yaw", "1.57", *FRAMES), []),
+        (("--yaw", "6.29", *FRAMES), []),
+        (
+            ("--yaw", "-90", *FRAMES),
+            ["/s: --yaw -90 is more than a turn in radians; degrees? write -1.571"],
+        ),
+        (("--x", "90", *FRAMES), []),
+        (
+            ("--frame-id", "odom", "--child-frame-id", "odom"),
+            ["/s: sends a transform from odom to itself; name two different frames"],
+        ),
+        ((*UPRIGHT, "1", *FRAMES), []),
+        ((*UPRIGHT, "0.95", *FRAMES), []),
+        (
+            (*UPRIGHT, "0", *FRAMES),
+            ["/s: the quaternion 0 0 0 0 is no rotation; without a rotation write 0 0 0 1"],
+        ),
+        (("--qx", "0", "--qy", "0", *FRAMES), []),
+        # In order: x, y, z, yaw, pitch, roll and the frames, or a quaternion and the frames.
+        ("0 0 0 1 0 0 map odom", []),
+        ("0 0 0 0 0 0 1 map odom", []),
+        (
+            "0 0 0 0 45 0 map odom",
+            ["/s: --pitch 45 is more than a turn in radians; degrees? write 0.7854"],
+        ),
+        (
+            "0 0 0 0 0 0 0 map odom",
+            ["/s: the quaternion 0 0 0 0 is no rotation; without a rotation write 0 0 0 1"],
+        ),
+        (
+            "map 0 0 0 0 0 0 odom",
+            [
+                "/s: map is in the place of --x; numbers come first, then the two frames;"
+                " or use flags, as --frame-id"
+            ],
+        ),
+        (("0", "map", "odom"), []),
+    ],
+)
+def test_the_words_of_a_static_transform(
+    words: tuple[str, ...] | str, texts: list[str], known: Knowledge
+) -> None:
+    given = tuple(words.split()) if isinstance(words, str) else words
+    assert said(judged(known, "MG711", started(*TF, arguments=given))) == texts
+
+
+@pytest.mark.parametrize(
+    ("rule", "texts"),
+    [
+        ("joint_states", []),
+        ("/joint_states", []),
+        (
+            "joint_stats",
+            ["/rsp: the remap rule for joint_stats matches nothing; did you mean joint_states?"],
+        ),
+        ("wheel_positions", []),
+        ("other:joint_stats", []),
+        ("__node", []),
+    ],
+)
+def test_a_remap_rule_for_a_name_that_is_nearly_there(
+    rule: str, texts: list[str], known: Knowledge
+) -> None:
+    node = started(*STATE, remappings=((rule, "x"),))
+    assert said(judged(known, "MG712", node)) == texts
+    assert judged(known, "MG712", UNKNOWN._replace(remappings=((rule, "x"),))) == []
+
+
+def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
+    there, gone = tmp_path / "there.yaml", tmp_path / "gone.yaml"
+    there.write_text("")
+    elsewhere = tmp_path / "no" / "folder.yaml"
+    for key in ("config_file", "yaml_filename"):
+        for path, count in ((gone, 1), (there, 0), (elsewhere, 0), ("gone.yaml", 0)):
+            node = UNKNOWN._replace(parameters=with_values({key: str(path)}))
+            assert len(judged(known, "MG713", node)) == count, (key, path)
+    for flag, count in (("-d", 1), ("-file", 1), ("-x", 0)):
+        (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=(flag, str(gone))))
+        assert len(found) == count
+    twice = (*with_values({"config_file": str(gone)}),)
+    (one,) = judged(known, "MG713", UNKNOWN._replace(parameters=twice, arguments=("-d", str(gone))))
+    assert one.message == f"/driver is given {gone}, which is not there"
+    notes = [
+        LaunchNote(AT, "not there", True, str(gone)),
+        LaunchNote(AT, "elsewhere", True, str(elsewhere)),
+        LaunchNote(AT, "no file", True),
+    ]
+    found = judged(known, "MG713", UNKNOWN._replace(parameters=twice), notes=notes)
+    assert [it.message for it in found] == ["not there"]
+
+
+@pytest.mark.parametrize(
+    ("package", "program", "hint"),
+    [
+        ("nav2_amcl", "amcl", ""),
+        ("nav2_amcl", "amcll", "did you mean amcl?"),
+        ("nav2_amcl", "nav2_amcl::AmclNod", ""),
+        ("robot_state_publisher", "robot_state_publisher_node", ""),
+        ("robot_state_publisher", "robot_state_publisher.py", ""),
+        ("acme", "amcll", ""),
+    ],
+)
+def test_a_program_that_a_package_has_not(
+    package: str, program: str, hint: str, known: Knowledge
+) -> None:
+    found = judged(known, "MG714", started(package, program, "x"))
+    assert [it.hint for it in found] == ([hint] if hint else [])
+
+
+def test_a_launch_that_ends_with_an_error(known: Knowledge) -> None:
+    notes = [LaunchNote(AT, "boom", fails=True), LaunchNote(AT, "unread")]
+    (found,) = judged(known, "MG721", UNKNOWN, notes=notes)
+    assert found.message == "the launch ends here: boom"
+
+
+def test_a_controller_of_two_spawners(known: Knowledge) -> None:
+    later = AT._replace(line=20)
+    one, two = (
+        started(*SPAWNER, arguments=("arm", "gripper")),
+        started(*SPAWNER, arguments=("arm",)),
+    )
+    manager = started(*MANAGER)
+    (found,) = judged(known, "MG722", manager, one, two._replace(place=later))
+    assert found.message == "/controller_manager gets arm from 2 spawners"
+    assert found.line == 20
+    assert judged(known, "MG722", manager, one) == []
+    apart = two._replace(arguments=("arm", "-c", "/b/controller_manager"))
+    assert judged(known, "MG722", manager, one, apart) == []
+
+
+def test_a_spawner_without_its_manager(known: Knowledge) -> None:
+    spawner = started(*SPAWNER, arguments=("arm", "leg", "-c", "/b/controller_manager"))
+    manager = started(*MANAGER, namespace="/b")
+    assert judged(known, "MG723", spawner, manager) == []
+    (alone,) = judged(known, "MG723", spawner)
+    assert alone.message == "nothing starts /b/controller_manager, so arm, leg are not started"
+    assert (alone.level, alone.hint) == ("error", "start it, or name the one that is there")
+    (near,) = judged(known, "MG723", spawner, started(*MANAGER), UNKNOWN)
+    assert (near.level, near.hint) == ("error", "did you mean /controller_manager?")
+    # A node that is not known may have it.
+    (open_,) = judged(known, "MG723", spawner, UNKNOWN)
+    assert open_.level == "inconclusive"
+    (unread,) = judged(known, "MG723", spawner, notes=[LaunchNote(AT, "not read")])
+    assert unread.level == "inconclusive"
+    (failed,) = judged(known, "MG723", spawner, notes=[LaunchNote(AT, "x", fails=True)])
+    assert failed.level == "error"
+
+
+def managed(*names: str, **values: object) -> LaunchedNode:
+    given = {"autostart": True, "node_names": [*names], **values}
+    return started(*LIFECYCLE, parameters=with_values(given))
+
+
+def test_a_node_of_nav2_that_no_manager_knows(known: Knowledge) -> None:
+    amcl = started(*AMCL)
+    assert judged(known, "MG726", amcl, managed("amcl")) == []
+    assert judged(known, "MG726", amcl) == []
+    (found,) = judged(known, "MG726", amcl, managed())
+    assert said([found]) == [
+        "/amcl is in the list of no lifecycle manager; add it to node_names of /manager"
+    ]
+    alone = amcl._replace(parameters=with_values({"autostart_node": True}))
+    assert judged(known, "MG726", alone, managed()) == []
+    waiting = amcl._replace(parameters=with_values({"autostart_node": False}))
+    assert len(judged(known, "MG726", waiting, managed())) == 1
+    itself = started("slam_toolbox", "async_slam_toolbox_node", "slam_toolbox")
+    assert judged(known, "MG726", itself, managed()) == []
+    elsewhere = started(*AMCL, namespace="/b")
+    assert len(judged(known, "MG726", elsewhere, managed("amcl"))) == 2
+    unread = started(*LIFECYCLE, parameters=with_values({"node_names": "amcl"}))
+    assert judged(known, "MG726", amcl, unread) == []
+
+
+def test_a_manager_that_waits_for_a_node_that_is_not_started(known: Knowledge) -> None:
+    amcl = started(*AMCL)
+    (slip,) = judged(known, "MG726", amcl, managed("amcl", "amc"))
+    assert slip.message == "/manager waits for /amc, which the launch file does not start"
+    assert slip.hint == "did you mean amcl?"
+    (found,) = judged(known, "MG726", amcl, managed("amcl", "map_server"))
+    assert found.hint == "start it, or leave it out"
+    assert judged(known, "MG726", amcl, managed("amcl", "map_server"), UNKNOWN) == []
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [({"autostart": True}, 0), ({"autostart": False}, 1), ({}, 1), ({"autostart": "$(var x)"}, 0)],
+)
+def test_a_manager_that_activates_nothing_by_itself(
+    values: dict[str, object], count: int, known: Knowledge
+) -> None:
+    given = with_values({"node_names": ["amcl"], **values})
+    node = started(*LIFECYCLE, parameters=given)
+    assert len(judged(known, "MG727", started(*AMCL), node)) == count
+    assert judged(known, "MG727", started(*AMCL, parameters=given)) == []

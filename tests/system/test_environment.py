@@ -1,0 +1,190 @@
+"""What the variables of discovery say, and what a view of the graph may not have seen."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.system.environment import (
+    DiscoverySettings,
+    machine,
+    participants,
+    setting_caveats,
+    settings,
+    unfinished,
+    view_caveats,
+)
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, UNKNOWN_NODE, End, Node
+
+USUAL = DiscoverySettings(0, "SUBNET", (), "", "", False)
+
+
+def end(process: str, node: str = "/driver", name: str = "/scan") -> End:
+    return End(TOPIC, PUBLISHES, name, "", "", node, None, process)
+
+
+def ends(*counts: int, start: str = "010f") -> tuple[End, ...]:
+    """So many participants of each machine."""
+    return tuple(
+        end(f"{start}{at:04d}{number:04d}")
+        for at, count in enumerate(counts)
+        for number in range(count)
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "domain"),
+    [
+        ("", 0),
+        ("7", 7),
+        ("0", 0),
+        (" +42", 42),
+        ("010", 8),
+        ("0x1F", 31),
+        ("0X1f", 31),
+        ("232", 232),
+    ],
+)
+def test_a_domain_is_read_as_strtoul_does(text: str, domain: int) -> None:
+    """rcl domain_id.c: base 0, so 010 is octal."""
+    assert settings({"ROS_DOMAIN_ID": text}).domain == domain
+
+
+@pytest.mark.parametrize("text", ["a", "7a", "-1", "08", "233", "0xFF", "7 "])
+def test_a_domain_at_which_rcl_exits_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="ROS_DOMAIN_ID"):
+        settings({"ROS_DOMAIN_ID": text})
+
+
+@pytest.mark.parametrize(
+    ("variables", "asked"),
+    [
+        ({}, USUAL),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, USUAL._replace(range="OFF")),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, USUAL._replace(range="LOCALHOST")),
+        (
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"},
+            USUAL._replace(range="SYSTEM_DEFAULT"),
+        ),
+        # A word that is none.
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "subnet"}, USUAL._replace(range="LOCALHOST")),
+        (
+            {"ROS_LOCALHOST_ONLY": "1", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"},
+            USUAL._replace(range="LOCALHOST"),
+        ),
+        ({"ROS_LOCALHOST_ONLY": "0"}, USUAL),
+        ({"ROS_STATIC_PEERS": ";a;;10.0.0.1;"}, USUAL._replace(static_peers=("a", "10.0.0.1"))),
+        ({"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}, USUAL._replace(rmw="rmw_zenoh_cpp")),
+        ({"ROS_DISCOVERY_SERVER": "h:1"}, USUAL._replace(discovery_server="h:1")),
+        ({"ROS_SUPER_CLIENT": "True"}, USUAL._replace(super_client=True)),
+        ({"ROS_SUPER_CLIENT": "1"}, USUAL._replace(super_client=True)),
+        ({"ROS_SUPER_CLIENT": "yes"}, USUAL),
+    ],
+)
+def test_variables_are_read_as_rcl_reads_them(
+    variables: dict[str, str], asked: DiscoverySettings
+) -> None:
+    assert settings(variables) == asked
+
+
+@pytest.mark.parametrize("peers", ["a,b", "a b", "a;b c"])
+def test_peers_that_are_no_hosts_are_refused(peers: str) -> None:
+    with pytest.raises(UsageError, match="only ; between them"):
+        settings({"ROS_STATIC_PEERS": peers})
+
+
+@pytest.mark.parametrize(
+    "rmw",
+    [
+        *("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds"),
+        *("rmw_zenoh_cpp", "rmw_gurumdds_cpp"),
+    ],
+)
+def test_the_middlewares_of_ros_2_are_known(rmw: str) -> None:
+    assert list(setting_caveats({"RMW_IMPLEMENTATION": rmw})) == []
+
+
+def codes(
+    count: int = 1,
+    seen: tuple[End, ...] = (),
+    settled: str = "quiet",
+    expected: tuple[str, ...] = (),
+    **asked: object,
+) -> list[tuple[str, bool]]:
+    nodes = [Node("/driver")] * count
+    seen = seen or (end("") if count else end("", ""),)
+    found = view_caveats(nodes, seen, USUAL._replace(**asked), settled, expected)
+    return [(it.code, it.incomplete) for it in found]
+
+
+def test_a_view_that_is_whole_has_no_caveat() -> None:
+    assert codes() == codes(expected=("/driver",)) == []
+
+
+def test_a_view_says_what_it_may_not_have_seen() -> None:
+    assert codes(settled="timeout") == codes(settled="changing") == [("not-settled", True)]
+    assert codes(0, expected=("/driver",)) == [("nothing-seen", True)]
+    assert codes(expected=("/other",)) == [("expected-not-seen", True)]
+    assert codes(2) == [("same-name", False)]
+
+
+@pytest.mark.parametrize(
+    ("seen", "asked", "found"),
+    [
+        (ends(32), {"range": "LOCALHOST"}, ["participant-limit"]),
+        (ends(31), {"range": "LOCALHOST"}, []),
+        (ends(31, 31), {"range": "LOCALHOST"}, []),
+        (ends(32), {"range": "SUBNET"}, []),
+        (ends(32), {"range": "LOCALHOST", "discovery_server": "h"}, []),
+        (ends(4, 9), {"static_peers": ("h",)}, ["peer-limit"]),
+        (ends(5, 9), {"static_peers": ("h",)}, []),
+        (ends(4), {}, []),
+        (ends(4), {"static_peers": ("h",), "range": "LOCALHOST"}, []),
+        # Of another vendor: the machine is not known, nor its limit.
+        (ends(4, start="0110"), {"static_peers": ("h",)}, []),
+    ],
+)
+def test_fast_dds_finds_so_many_participants_of_a_machine(
+    seen: tuple[End, ...], asked: dict[str, object], found: list[str]
+) -> None:
+    """rmw_fastrtps participant.cpp: 32 under LOCALHOST, 4 of a static peer."""
+    assert codes(seen=seen, **asked) == [(it, True) for it in found]
+
+
+@pytest.mark.parametrize(
+    ("asked", "where", "remedy"),
+    [
+        ({}, "(domain 0, range SUBNET)", "On other machines they may be hidden"),
+        ({"domain": 7, "range": "LOCALHOST"}, "(domain 7, range LOCALHOST)", "For robots on other"),
+        ({"static_peers": ("a", "b")}, "(domain 0, range SUBNET, peers a b)", "discovery range?"),
+        (
+            {"discovery_server": "h:1", "static_peers": ("a",)},
+            "(domain 0, range SUBNET, discovery server h:1)",
+            "is the server running there",
+        ),
+    ],
+)
+def test_an_empty_view_says_where_it_looked_and_what_to_try(
+    asked: dict[str, object], where: str, remedy: str
+) -> None:
+    (found,) = view_caveats([], [], USUAL._replace(**asked), "quiet")
+    assert where in found.message
+    assert remedy in found.message
+
+
+def test_a_fast_dds_participant_shows_its_machine() -> None:
+    assert machine("010f1234abcd") == "010f1234"
+    assert machine("01101234abcd") == ""
+    assert participants([end("a"), end("a"), end("b"), end("")]) == 2
+
+
+def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> None:
+    seen = (end("", f"/{UNKNOWN_NODE}", "/odom"), end("", "/lidar"))
+    bare, unknown = unfinished([Node("/lidar"), Node("/driver")], seen, "")
+    assert bare.message == (
+        "nodes without any endpoint: /driver; the view is not complete, look again"
+    )
+    assert unknown.message == "endpoints whose node is not known yet: /odom; look again"
+    (served,) = unfinished([Node("/driver")], [], "h:1")
+    assert served.message.endswith("set ROS_SUPER_CLIENT=TRUE")
+    assert (bare.incomplete, unknown.incomplete, served.incomplete) == (True, True, True)

@@ -1,0 +1,266 @@
+"""Small questions that are asked of the records of a system."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from multibot_rewrite.system.json_values import FARTHEST, WrongValue, read_transform, shown
+from multibot_rewrite.system.merging import Look, merged
+from multibot_rewrite.system.parameters import Answer, parameter_text, parameter_value, with_answers
+from multibot_rewrite.system.questions import Question, questions
+from multibot_rewrite.system.reach import hidden_from_here, machines, why_not_seen
+from multibot_rewrite.system.records import (
+    MAY,
+    NOWHERE,
+    OFF,
+    PUBLISHES,
+    RUNS,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    UNKNOWN,
+    Caveat,
+    Controller,
+    Edge,
+    End,
+    Environment,
+    Node,
+    Parameter,
+    Place,
+    Robot,
+    System,
+    alternatives,
+    answering,
+    clocks,
+    incomplete,
+    may_miss,
+    nodes_by_robot,
+    place_of,
+)
+from multibot_rewrite.system.tf_copies import tree_topic, without_bridged
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("", NOWHERE),
+        ("a.yaml", Place("a.yaml")),
+        ("a.yaml:3", Place("a.yaml", 3)),
+        ("a.yaml:3:7", Place("a.yaml", 3, 7)),
+        ("C:a.yaml:3", Place("C:a.yaml", 3)),
+        (":3", Place(":3")),
+        (":3:7", Place(":3", 7)),
+        ("a:123456789", Place("a", 123456789)),
+        ("a:1234567890", Place("a:1234567890")),
+        ("a:²", Place("a:²")),
+    ],
+)
+def test_a_place_is_read_as_it_is_written(text: str, place: Place) -> None:
+    assert place_of(text) == place
+    assert str(place) == text
+
+
+def test_a_column_without_a_line_is_not_written() -> None:
+    assert str(Place("a", 0, 7)) == "a"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(True, "true"), (1, "1"), (1.0, "1.0"), ("ö", '"ö"'), ([1], "[1]"), (None, "null")],
+)
+def test_a_value_of_a_parameter_is_a_text_of_json(value: object, text: str) -> None:
+    assert parameter_text(value) == text
+    assert parameter_value(text) == value
+
+
+@pytest.mark.parametrize("text", ["no json", "", "[" * 100_000])
+def test_a_text_that_is_no_json_is_itself(text: str) -> None:
+    assert parameter_value(text) == text
+
+
+def test_answers_are_added_to_what_is_known() -> None:
+    rate, speed = Parameter("/x", "rate", "1"), Parameter("/a", "speed", "2")
+    arm, leg = Controller("/x", "arm", "active"), Controller("/a", "leg", "inactive")
+    system = System(nodes=(Node("/a"), Node("/b")), parameters=(rate,), controllers=(arm,))
+    said = with_answers(system, [Answer("/a", "active", (speed,), (leg,)), Answer("/b")])
+    assert said.nodes == (Node("/a", lifecycle="active"), Node("/b"))
+    assert (said.parameters, said.controllers) == ((rate, speed), (arm, leg))
+    assert answering(said) == {"/a", "/x"}
+    assert with_answers(system, [Answer("/b")]) == system
+
+
+def test_which_clock_a_node_goes_by() -> None:
+    told = [("/a", "use_sim_time", "true"), ("/b", "use_sim_time", "false"), ("/c", "rate", "true")]
+    assert clocks(System(parameters=tuple(Parameter(*it) for it in told))) == {
+        "/a": True,
+        "/b": False,
+    }
+
+
+def test_nodes_by_robot_and_in_the_place_of_another() -> None:
+    either = RUNS._replace(instead=("/a/x", "/a/y"))
+    nodes = (Node("/a/x", robot="a", sure=either), Node("/a/y", robot="a", sure=either), Node("/z"))
+    system = System(nodes=(*nodes, Node("/z")), robots=(Robot("a"), Robot("b")))
+    assert nodes_by_robot(system) == {"": ["/z"], "a": ["/a/x", "/a/y"], "b": []}
+    assert alternatives(system) == (("/a/x", "/a/y"),)
+    assert [may_miss(it) for it in nodes] == [True, True, False]
+    assert all(may_miss(Node("/x", sure=it)) for it in (MAY, OFF, UNKNOWN))
+
+
+def test_which_caveats_make_a_view_incomplete() -> None:
+    missing, told = Caveat("x", True, "missing"), Caveat("y", False, "told")
+    assert incomplete(System(environment=Environment(caveats=(told, missing)))) == (missing,)
+
+
+GET_STATE, GET_PARAMETERS = "lifecycle_msgs/srv/GetState", "rcl_interfaces/srv/GetParameters"
+LIST = "controller_manager_msgs/srv/ListControllers"
+
+
+def service(node: str, name: str, type_: str, role: str = SERVES, kind: str = SERVICE) -> End:
+    return End(kind, role, name, type_, "", node, None, "")
+
+
+def test_who_is_asked_for_what() -> None:
+    """lifecycle_node_interface_impl.cpp, rclcpp parameter_service.cpp, controller_manager.cpp."""
+    graph = System(
+        nodes=(Node("/a"), Node("/m"), Node("/twice"), Node("/twice")),
+        ends=(
+            service("/a", "/a/get_state", GET_STATE),
+            service("/a", "/a/get_parameters", GET_PARAMETERS),
+            service("/m", "/m/list_controllers", LIST),
+            # Another's, another role, another type, one of two.
+            service("/a", "/m/get_state", GET_STATE),
+            service("/a", "/a/get_state", GET_STATE, role="calls"),
+            service("/a", "/a/get_state", GET_STATE, kind=TOPIC),
+            service("/a", "/a/set", "std_srvs/srv/SetBool"),
+            service("/twice", "/twice/get_state", GET_STATE),
+        ),
+    )
+    assert list(questions(graph, {"/a": ["rate"]})) == [
+        Question("/a", "/a/get_state", GET_STATE),
+        Question("/a", "/a/get_parameters", GET_PARAMETERS, ("rate", "use_sim_time")),
+        Question("/m", "/m/list_controllers", LIST),
+    ]
+    assert next(q for q in questions(graph) if q.parameters).parameters == ("use_sim_time",)
+
+
+ONE, TWO = "010f1111aaaaaaaa", "010f2222bbbbbbbb"
+
+
+def seen(*processes: str, **around: Any) -> System:
+    nodes = (Node(f"/n{at}", it) for at, it in enumerate(processes))
+    return System(nodes=tuple(nodes), environment=Environment(**{"range": "SUBNET", **around}))
+
+
+def test_machines_are_what_fast_dds_calls_them() -> None:
+    assert machines(seen(ONE, TWO, ONE, "")) == {"010f1111": ["/n0", "/n2"], "010f2222": ["/n1"]}
+    assert machines(seen(ONE, rmw="rmw_zenoh_cpp")) == {}
+
+
+@pytest.mark.parametrize(
+    ("graph", "hidden"),
+    [
+        (seen(ONE, ONE), True),
+        (seen(ONE, TWO), False),
+        (seen(), False),
+        (seen(ONE, range="LOCALHOST"), False),
+        (seen(ONE, range="OFF"), False),
+        (seen(ONE, range="LOCALHOST", static_peers=("h",)), True),
+        (seen(ONE, discovery_server="h"), False),
+        (seen(ONE, caveats=(Caveat("looks-merged", False, ""),)), False),
+        (seen(ONE, caveats=(Caveat("same-name", False, ""),)), True),
+    ],
+)
+def test_a_robot_may_be_hidden_where_one_machine_is_all_that_was_seen(
+    graph: System, hidden: bool
+) -> None:
+    assert hidden_from_here(graph) is hidden
+
+
+STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"
+
+
+@pytest.mark.parametrize(
+    ("graph", "said"),
+    [
+        (
+            seen(rmw="rmw_zenoh_cpp", discovery_server="tcp/h:7447"),
+            "is it started, in this domain, and connected to the router at tcp/h:7447?",
+        ),
+        (
+            seen(discovery_server="h:1"),
+            "is it started, and does it use the discovery server h:1?",
+        ),
+        (
+            seen(range="LOCALHOST"),
+            f"{STARTED} Only this machine is looked at: range LOCALHOST, no ROS_STATIC_PEERS",
+        ),
+        (seen(range="LOCALHOST", static_peers=("h",)), STARTED),
+        (seen(ONE, TWO), f"{STARTED} 2 machines are seen"),
+        (seen(), STARTED),
+    ],
+)
+def test_why_a_robot_is_not_seen(graph: System, said: str) -> None:
+    assert why_not_seen(graph, "robot1") == said
+
+
+def test_why_a_robot_on_another_machine_is_not_seen() -> None:
+    said = why_not_seen(seen(ONE), "robot1")
+    assert said.startswith("all that is seen runs on one machine (/n0). If robot1 is on another,")
+
+
+@pytest.mark.parametrize(
+    ("topic", "tree"),
+    [("/a/tf_static", "/a/tf"), ("/tf_static/a", "/tf/a"), ("/a/tf", "/a/tf"), ("/x", "/x")],
+)
+def test_a_tree_is_called_after_its_tf(topic: str, tree: str) -> None:
+    assert tree_topic(topic) == tree
+
+
+def test_what_a_bridge_copies_to_tf_is_left_out() -> None:
+    """tf_namespace_bridge: the namespace is put in front of both frames."""
+    names = [(SUBSCRIBES, "/a/tf"), (PUBLISHES, "/tf")]
+    ends = (End(TOPIC, role, name, "", "", "/a/bridge", None, "") for role, name in names)
+    plan = System(
+        nodes=(Node("/a/bridge", robot="a"),),
+        ends=tuple(ends),
+        robots=(Robot("a", tf_topic="/a/tf"), Robot("b", tf_topic="/b/tf")),
+        shared_frames=("map",),
+    )
+    own = Edge("base", "odom", "/a/tf_static", False, ())
+    copied = Edge("a/base", "a/odom", "/tf", False, ())
+    world = Edge("a/map", "map", "/tf_static", True, ())
+    other = Edge("b/base", "b/odom", "/tf", False, ())
+    elsewhere = Edge("a/base", "a/odom", "/b/tf", False, ())
+    edges = (own, copied, world, other, elsewhere)
+    assert without_bridged(plan, edges) == (own, other, elsewhere)
+    assert without_bridged(plan._replace(ends=()), edges) == edges
+
+
+def test_a_long_value_is_cut_in_a_message() -> None:
+    assert shown("x" * 38) == f'"{"x" * 38}"'
+    assert shown("x" * 39) == f'"{"x" * 38}…'
+
+
+@pytest.mark.parametrize("count", [0, 7])
+def test_a_transform_has_seven_numbers_that_a_robot_reaches(count: int) -> None:
+    assert read_transform([1] * count) == (1.0,) * count
+    assert read_transform([None] * count) == (float("inf"),) * count
+    for wrong in ([1] * 6, [FARTHEST] * 7, [-FARTHEST] * 7, ["x"] * 7):
+        with pytest.raises(WrongValue):
+            read_transform(wrong)
+
+
+def test_looks_are_merged_in_order_and_named_up_to_four() -> None:
+    controllers = (Controller("/m", "b", "active"), Controller("/m", "a", "active"))
+    parameters = (Parameter("/m", "y", "1"), Parameter("/m", "x", "2"))
+    look = System(controllers=controllers, parameters=parameters)
+    for count, names in ((4, "a, b, c, d"), (5, "a, b, c, d and 1 more")):
+        found = merged([Look(name, look) for name in "abcde"[:count]])
+        assert [it.name for it in found.controllers] == ["a", "b"]
+        assert [it.name for it in found.parameters] == ["x", "y"]
+        said = found.environment.caveats[0].message
+        assert said == f"made of {count} looks: {names}"
