@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Foxglove layout that follows from a plan: all robots in one tab, and a tab for each robot.
 
 Source: lichtblick 66adecb99 (the open successor of Foxglove Studio), ``packages/suite-base/src``: keys
