@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rewrite a robot description for one robot or many, and prove that nothing was missed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m multibot_rewrite`` is ``multibot``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes shell completions and manual pages here: ``python share/make.py``.
 
 Needs shtab and argparse-manpage, which the extra ``test`` brings. The files are kept in the

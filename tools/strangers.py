@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.strangers FOLDER``: what a new user would get with public robots.
 
 FOLDER has a checkout of each repository of ``strangers.tsv``, called owner+name, at the branch that is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.unclaimed LIST PATH...``: links and joints in values that no vocabulary line reads.
 
 LIST says which of them need no line: ``tag path TAB reason``. Printed is the rest, and what explains

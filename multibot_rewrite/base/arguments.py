@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arguments of the public calls: a wrong name or type becomes one line, before anything runs.
 
 An argument is checked by its annotation: a new option needs no line here unless its type is new.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files, YAML and JSON of anybody, read within bounds: the only calls of the two parsers.
 
 The parsers themselves have none: PyYAML's in C ends the process where lists are nested deeply, an alias

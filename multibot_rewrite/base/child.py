@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Child processes: the only place that says how one is started.
 
 A child of Python finds modules where this process does, but for the current folder; git runs nothing

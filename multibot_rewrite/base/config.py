@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``[tool.multibot-rewrite]`` of a project's pyproject.toml says. Only the commands read it.
 
 [tool.multibot-rewrite]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is everybody's, by convention: topics, frames, tools, words, each with its source.
 
 Rows are Python and not YAML, since the start of every command reads them and none pays for a parser.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No garbage collection while very many records are made."""
 
 from __future__ import annotations

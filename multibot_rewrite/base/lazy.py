@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Regular expressions that are compiled when first used: a run needs only few of them."""
 
 from __future__ import annotations

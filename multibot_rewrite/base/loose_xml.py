@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """XML that TinyXML-2 reads and a complete parser refuses or reads otherwise, made well-formed for lxml.
 
 TinyXML-2 knows no namespaces, so that a prefix is part of a name and ``xmlns`` any attribute; a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frozen records that pass from one step to the next, and the errors that stop a job.
 
 Text positions are byte offsets into the source; lines and columns count from 1.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a name becomes for a robot: kinds, layouts, separators, shared names.
 
 A renamed value is always the old value with one insertion, so a name's spelling is an ``Affix``:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The known name that was probably meant where an unknown one is given: "did you mean"."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words that people write for what is called otherwise here: commands, options, keys of a fleet file.
 
 "Did you mean" compares letters; these have the meaning and other letters.

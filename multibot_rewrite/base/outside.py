@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a result rests on beside its arguments: answers of the disk and of the environment.
 
 A function that asks them is marked ``outside``. While ``recorded`` runs a job, each call of such a

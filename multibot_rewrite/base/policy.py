@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A naming policy as the words that ask for it; ``naming`` makes it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of anybody as a terminal may show it: names come from files and from the graph."""
 
 from __future__ import annotations

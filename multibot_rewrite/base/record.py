@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``NamedTuple`` as that of ``typing``, whose classes are made in a tenth of the time.
 
 That one compiles every annotation, and ``namedtuple`` a function a class. A command makes three hundred

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 releases: which are known, which one is meant, and which of them have a fact.
 
 Release words are terms with commas between: ``jazzy``, ``kilted+`` (it and all later), ``<=jazzy``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names and values as part of a sentence or a table, or each once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot build``: a fleet file in, everything its robots need out."""
 
 from __future__ import annotations

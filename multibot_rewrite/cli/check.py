@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot check PLAN``: is the running system what was planned?"""
 
 from __future__ import annotations

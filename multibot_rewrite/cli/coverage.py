@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot inspect PATH...``: how much of descriptions is known, and what a xacro's arguments do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the programs begin. Until a command runs, Ctrl-C ends the process without a word: nothing is
 written yet, and Python's traceback would tell of imports. ``guarded`` takes over."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot explain CODE``: what a finding is, why, the fix."""
 
 from __future__ import annotations

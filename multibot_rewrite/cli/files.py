@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writing results: all of them or none, each appearing whole.
 
 All are written beside their targets, then all are seen onto the disk, then all are renamed: whenever

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the commands about a fleet have in common: the robots, their table, its findings."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
 
 The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps

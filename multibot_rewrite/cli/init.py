@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot init``: a first fleet file for the robots that are there; what no file says is asked."""
 
 from __future__ import annotations

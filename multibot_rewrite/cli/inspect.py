@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot inspect``: what is known of a plugin, of descriptions, of a xacro's arguments."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot learn``: a file of nodes and stacks from nodes that are running now."""
 
 from __future__ import annotations

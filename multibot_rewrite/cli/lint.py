@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-lint``: find what is wrong with robot descriptions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot``: the commands around the rewrite; ``dispatch`` runs them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options and commands as data, and how they are written down.
 
 This module and ``declared`` import nothing heavy: a help text is made of them alone.

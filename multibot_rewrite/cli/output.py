@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where results and messages go: standard output or a file, and standard error."""
 
 from __future__ import annotations

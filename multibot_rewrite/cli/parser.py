@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A command as argparse reads it: options in groups, help with an example first, "did you mean"."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of a checked graph: the file that ``--report`` asks for."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot plan``: what the graph of a fleet should look like, and the rules that make it so."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every command does the same: exit codes, and an error is one line instead of a traceback."""
 
 from __future__ import annotations

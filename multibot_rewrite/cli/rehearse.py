@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot rehearse``: the plan of a fleet tried on a real graph, without robot or simulator."""
 
 from __future__ import annotations

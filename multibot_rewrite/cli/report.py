@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The findings of a command: selected, grouped over robots, in the format asked for, where they go."""
 
 from __future__ import annotations

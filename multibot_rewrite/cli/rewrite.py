@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-postfix``: rewrite a robot description for one robot or many, or undo that."""
 
 from __future__ import annotations

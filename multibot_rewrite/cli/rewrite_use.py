@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which options of ``urdf-postfix`` do not go together, and which files it may write."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``ros2 multibot ...``: the commands of ``multibot`` under the command that ROS users have.
 
 ros2cli finds the class by the entry point group ``ros2cli.command``, makes one and calls it; it asks

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot snapshot``: the live ROS graph as a table, or as JSON for later."""
 
 from __future__ import annotations

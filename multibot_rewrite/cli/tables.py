@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reports for a person: lines and tables. A name is never cut in two: a table folds between names,
 and where even that does not fit, each row becomes lines of its own."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot check`` without a plan: what is wrong with the robots that run now?"""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-lint``: the command; ``lint`` does it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-postfix``: the command; ``rewrite`` does it."""
 
 from __future__ import annotations

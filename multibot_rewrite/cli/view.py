@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot view``: the rewritten robots in 3D, as one HTML file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files a command reads when it is given files and folders."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot check --watch``: the comparison kept live, as a screen or as lines."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-postfix --why FILE:LINE``: which rewriter claims a value, and why."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file beside a description, rewritten for a robot without a fleet: its kind and its text."""
 
 from __future__ import annotations

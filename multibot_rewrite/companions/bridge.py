@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A user's ros_gz_bridge file for one robot -> its entries for any robot, and those that all share.
 
 Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``/model/<name>/...``.

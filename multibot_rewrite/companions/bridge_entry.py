@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An entry of a ros_gz_bridge file: its keys, what the bridge refuses, its names before and after.
 
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a companion file is rewritten with; the same for every robot of one description."""
 
 from __future__ import annotations

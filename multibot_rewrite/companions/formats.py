@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The kinds of files beside a description: how each is read, and made for any robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The kinds of files beside a description, and how they are told by their texts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cartographer's Lua options for any number of robots: frames in plain strings are renamed.
 
 Cartographer reads its frames from Lua only (cartographer_ros node_options, trajectory_options). Its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file beside a description as a list of names."""
 
 from __future__ import annotations

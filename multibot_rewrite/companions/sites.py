@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in a file beside a description: what each is, where it is, what is known of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A text with slots for a robot's namespace and tag: made once, filled for each robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole lines of a YAML text: the entries of lists and maps, to be copied, moved or left out."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """YAML as text with positions: parse to find the scalars, change those and nothing else.
 
 Comments, quoting, order and line ends stay. Positions are character offsets.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The calls that launch files and scripts use; the commands use them too."""
 
 from __future__ import annotations

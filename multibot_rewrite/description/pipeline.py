@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The order of the steps, and nothing else: this file is the program in short."""
 
 from __future__ import annotations

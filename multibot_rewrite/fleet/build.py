@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planned fleet -> every file that ``multibot build`` writes, in memory: one step a kind of file."""
 
 from __future__ import annotations

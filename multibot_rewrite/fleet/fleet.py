@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description, its robots and their stacks -> the remap table and the expected graph."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet file -> its rewritten robots and their remap table; all output follows from these."""
 
 from __future__ import annotations

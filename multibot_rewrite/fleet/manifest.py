@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hashes of what a build read and wrote: what the next build must change, and what it must not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file beside a description, rewritten for robots without a fleet file: parameters, RViz, MoveIt, a
 bridge, a behavior tree, Lua."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet file for launch scripts: plain values for each robot, without writing files.
 
 from multibot_rewrite import load_fleet

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known of nodes of public packages: one entry a node, by family in ``nodes/*.yaml``.
 
 A file of a user has the same form. The whole of it:

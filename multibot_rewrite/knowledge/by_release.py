@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A library of all releases -> that of one: what it lacks is left out, what came late conditional."""
 
 from __future__ import annotations

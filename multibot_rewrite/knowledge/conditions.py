@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Conditions under which a node, an endpoint, a transform or a claim is there, as entries write them.
 
 Alternatives are joined by ``or``, what must hold together by ``and``. A term asks a parameter:

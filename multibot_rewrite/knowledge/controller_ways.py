@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the controllers of ros2_control get remap rules, by release.
 
 Source: ros2_control ``controller_manager.cpp`` (``determine_controller_node_options``), ``spawner.py``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them, and what
 they demand of the values, in ``demanded.schema``.
 

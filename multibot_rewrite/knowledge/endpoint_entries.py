@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Endpoints of files of nodes: names and types are checked where they stand."""
 
 from __future__ import annotations

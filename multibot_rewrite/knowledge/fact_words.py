@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every fact may say besides itself: the releases that have it, and where that can be read."""
 
 from __future__ import annotations

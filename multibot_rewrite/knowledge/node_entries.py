@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Entries of nodes -> what is known of their endpoints, frames, transforms and claims."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of nodes and stacks -> records; errors name file and line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Entries of nodes -> their parameters: which of them hold names, of what kind, and their defaults."""
 
 from __future__ import annotations

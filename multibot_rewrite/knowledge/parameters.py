@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters of known nodes in a release: by node, by the type of a controller, by their paths."""
 
 from __future__ import annotations

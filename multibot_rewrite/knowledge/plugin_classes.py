@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The classes that pluginlib finds in public packages, as ``plugin_classes.schema`` has them."""
 
 from __future__ import annotations

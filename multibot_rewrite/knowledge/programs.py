@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The programs of known nodes: what ``ros2 run`` and launch start.
 
 Sources: the launch files and CMakeLists.txt of each package on its jazzy branch; nav2_bringup

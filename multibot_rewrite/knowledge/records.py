@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known of a node: its endpoints, frames, transforms and claims, before any remap rule."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Known nodes and stacks of nodes, from ``nodes/*.yaml``, ``stacks.yaml`` and files of users."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The systems of gz-sim that a world needs. Source: the names in gz-sim8 src/systems, and
 include/gz/sim/server.config for those of a world that names none."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """YAML with the file and line of every value, for errors in data files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files with a fleet file: substitutions, and actions for each robot.
 
 ``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values that

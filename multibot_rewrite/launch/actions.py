@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Actions for robots of a fleet: subclasses of those of launch_ros, with all options of these."""
 
 from __future__ import annotations

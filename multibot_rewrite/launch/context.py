@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What actions and substitutions ask while a launch runs: its fleets, robots and files.
 
 A launch keeps each fleet and a folder for files that goes at its end. A robot or fleet that is not

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """XML and YAML launch files: ``$(multibot ...)``, and the actions ``multibot_...``.
 
 launch imports this through the entry point ``launch.frontend.launch_extension``; without launch it

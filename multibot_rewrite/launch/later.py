@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Actions and descriptions of launch_ros whose options are made when they run.
 
 The robot, its fleet and its names are known only then; event handlers want an action of launch_ros

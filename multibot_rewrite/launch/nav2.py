@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nav2 for all robots of a fleet: what ``ros2 launch multibot_rewrite nav2.launch.py`` starts.
 
 The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its stacks have, composed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes of Nav2 that its launch file starts, and the programs of them.
 
 Source: as ``knowledge.programs``; lifecycle_msgs msg/Transition.msg.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The options of launch_ros's Node and ComposableNode for a node of a robot."""
 
 from __future__ import annotations

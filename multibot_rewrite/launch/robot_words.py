@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The words of ``$(multibot WORD NAME)``: one function for each value of a robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Substitutions about a robot, known when the launch file runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One file -> its findings. Whatever a file contains, there is no traceback and no endless run."""
 
 from __future__ import annotations

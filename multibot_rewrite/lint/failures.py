@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Findings for files that no rule can check."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Safe edits -> the fixed text, and the proof that nothing else changed and no finding is new."""
 
 from __future__ import annotations

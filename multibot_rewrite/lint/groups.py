@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The groups of rules, and which rules are active for a document."""
 
 from __future__ import annotations

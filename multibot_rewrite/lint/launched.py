@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The descriptions and files that a launch file names -> what ``urdf-lint`` and ``build`` say of them.
 
 A description that is put into a simulator is asked what a simulator leaves out of it as well. What is

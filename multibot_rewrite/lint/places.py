@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A problem's element -> file, line and column, through xacro where the document was expanded."""
 
 from __future__ import annotations

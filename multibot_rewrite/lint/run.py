@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many files -> their findings, in parallel; the result does not depend on the number of workers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Processes that work in parallel. If one of them is killed that is reported, and the rest is done.
 
 A pool of the standard library waits forever, or gives up altogether, when one of its processes is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A graph -> its robots, the layout that it looks like, and what is wrong with it. Pure."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A remap table -> stub nodes: each has the names of its node's code, rcl gets the remap rules.
 
 A stub has the rules that reach its node in the table's release: a controller those that its manager

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is seen -> a plan that the same graph fulfils: to draw it, and to begin a fleet with. Pure."""
 
 from __future__ import annotations

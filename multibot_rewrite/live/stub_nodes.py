@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stub nodes of a rehearsal: ``python -m multibot_rewrite.live.stub_nodes``, a child.
 
 Its order is a list of stub nodes. Once all are in the graph it sends which types replace others.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is seen -> files to begin a fleet with: fleet file, nodes, description, plan. Pure.
 
 The description has the frames that were heard, and nothing else: it stands in for the robot's own.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plan and one snapshot after another -> what changed, and the worst verdict so far. Pure."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The drawings on the page: who uses whose names, a group for each robot, the tf trees."""
 
 from __future__ import annotations

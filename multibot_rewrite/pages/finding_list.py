@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The findings on the page: what is the same for many robots is one, opened it says where and why."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The layout of a group's picture: publishers and servers, names, subscribers and clients. Pure.
 
 Lengths are pixels. Names and nodes are ordered by barycenters: each moves towards the middle of what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The picture of the fleet: a box for each robot, an arrow where one uses another's names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sections of the page, groups with less in them, short ids, and the link of each finding."""
 
 from __future__ import annotations

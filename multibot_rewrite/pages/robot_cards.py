@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The robots at the head of the page: each with all that concerns it, equal ones as one card."""
 
 from __future__ import annotations

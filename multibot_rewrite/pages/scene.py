@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is drawn of a checked graph, each part with its state. Pure, and without any drawing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What each finding is about, and the states of endpoints, nodes and frames that follow from it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SVG of a group and of a tf tree, with places and states only; page.css has colours and styles."""
 
 from __future__ import annotations

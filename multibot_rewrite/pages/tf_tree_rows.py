@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What only one process can have: by the hardware of a description, and by parameters of nodes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ends that a robot's sources name: its stacks with their parameters, plugins, bridges."""
 
 from __future__ import annotations

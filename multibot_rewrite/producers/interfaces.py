@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The interfaces of ros2_control that the hardware of a description exports and controllers claim."""
 
 from __future__ import annotations

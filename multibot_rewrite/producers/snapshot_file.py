@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file with a snapshot, in one of its forms: our own JSON, or a message of rosgraph_msgs/Graph."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The transforms that a robot's sources name, and those that they tell nodes not to send."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A system, alone or with its plan -> findings, in the order of the codes.
 
 All that is found without a plan is found with one, but for what the plan means. Where the view may be

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a rule about a system, or a plan and a system, is declared: on the function that finds it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules that a description alone is asked, and a system: their words, with the example of a system."""
 
 from __future__ import annotations

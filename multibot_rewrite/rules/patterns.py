@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Patterns of a configuration, relative to its folder, as patterns of whole paths."""
 
 from __future__ import annotations

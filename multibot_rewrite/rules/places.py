@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a file says what a finding is about: the place of a record, and of what is beside it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a description is linted with: the settings of a command, a configuration file or a test."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The subject of lint rules: one document and what is known about it."""
 
 from __future__ import annotations

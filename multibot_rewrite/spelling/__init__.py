@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rewrite does to names, on records: the plan of a fleet."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The topics that ros_gz_bridge must bridge for each robot, read from rewritten descriptions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SROS2 policies that follow from a plan: an enclave a robot, so that DDS refuses what crosses them.
 
 Source: sros2 ``policy/schemas/policy.xsd`` (the elements), ``policy/templates/dds/permissions.xsl`` (an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Foxglove layout that follows from a plan: all robots in one tab, and a tab for each robot.
 
 Source: lichtblick 66adecb99 (the open successor of Foxglove Studio), ``packages/suite-base/src``: keys
@@ -73,9 +74,9 @@ def _mosaic(panels: Sequence[str]) -> Any:
     first, *others = panels
     if not others:
         return first
-    side = others[-1]
+    side: Any = others[-1]
     for one in reversed(others[:-1]):
-        side = {"direction": "column", "first": one, "second": side}  # type: ignore[assignment]
+        side = {"direction": "column", "first": one, "second": side}
     return {"direction": "row", "first": first, "second": side, "splitPercentage": 70}
 
 
@@ -154,13 +155,17 @@ def _topics(
     """Topics of the robots' nodes and bridges in a role, of some types or of any, each once."""
     every, robots = nodes_by_robot(plan), list(robots)
     nodes = {it for robot in robots for it in every[robot.name]}
-    ends = (it for it in plan.ends if it.kind == TOPIC and it.role == role and it.node in nodes)
-    bridged = (
-        it
+    ends = [
+        (it.name, it.type)
+        for it in plan.ends
+        if it.kind == TOPIC and it.role == role and it.node in nodes
+    ]
+    bridged = [
+        (it.name, it.type)
         for it in plan.topics
         if role in it.bridge and any(_is_of(it.name, robot) for robot in robots)
-    )
-    found = (it.name for it in (*ends, *bridged) if types is None or it.type in types)
+    ]
+    found = (name for name, type_ in (*ends, *bridged) if types is None or type_ in types)
     yield from dict.fromkeys(found)
 
 

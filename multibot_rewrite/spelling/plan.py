@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan of a fleet: what should run, by its remap table and its descriptions."""
 
 from __future__ import annotations

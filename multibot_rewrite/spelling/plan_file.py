@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan of a fleet as a file: YAML, which people edit, or JSON, which is read faster.
 
 Both have the same keys and values, and both are read with the same checks. A fleet file is

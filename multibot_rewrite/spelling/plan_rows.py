@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts of a plan as a file has them: names, lists, and rows of endpoints, each checked."""
 
 from __future__ import annotations

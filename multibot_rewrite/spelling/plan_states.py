@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The states of a plan's nodes and what is open in its robots, as values of its keys, and back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan of a fleet as plain values, as its YAML and JSON files have them, and back."""
 
 from __future__ import annotations

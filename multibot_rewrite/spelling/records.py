@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records of the remap table: remap rules, and the names that they lead to."""
 
 from __future__ import annotations

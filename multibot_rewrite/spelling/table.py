@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots, nodes and a naming policy -> the remap table: each node's rules and resolved names.
 
 A rule is made only for a name that would otherwise be the same for every robot. The table is checked

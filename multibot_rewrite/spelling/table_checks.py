@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a remap table cannot do or does wrongly."""
 
 from __future__ import annotations

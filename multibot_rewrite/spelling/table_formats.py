@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A remap table as text: one function for each output format."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a robot's node, topic or service is called: its namespace and name, the target of its rule."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tf frames of a robot, and which of its nodes sends them: description, odometry, map."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rules that rcl has for each node once it runs, from where they stand, and those that a node needs
 and does not get there, by release.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the remap rules of each node stand, by release: a table -> deliveries, which all writers use,
 and what is started with them: processes, components and the spawners of controllers.
 

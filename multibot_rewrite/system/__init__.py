@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs on the robots, in one form for every source: records, conventions, the file."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The environment variables for discovery, and whether a view of the graph is complete. Pure.
 
 Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers

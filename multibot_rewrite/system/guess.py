@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A graph without a plan -> the robots that are in it, and whose each of its names is. Pure.
 
 A namespace is a robot's where nodes are in it, and topics that a body has: commands, joints, odometry,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A system with the look-ups that its rules share, and whose each of its names is."""
 
 from __future__ import annotations

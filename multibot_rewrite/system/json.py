@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A system as JSON: written, one record on each line, and read with checks. Pure.
 
 ``system.schema.json`` says the same of a file as a JSON schema.

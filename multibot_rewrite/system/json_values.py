@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of JSON: one is read as what it has to be, or it is said what is wrong and where."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several looks at one system, from several machines -> one snapshot. Pure.
 
 A look from one machine may miss what the network hides from it, so a node is in the result once

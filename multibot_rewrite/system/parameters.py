@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What nodes answer when they are asked for their state, and the values of parameters as texts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that are made at run time: a plan holds nodes and their endpoints as patterns, with a ``*``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which nodes of a graph are asked for what of their state. Pure."""
 
 from __future__ import annotations

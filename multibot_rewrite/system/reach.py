@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far a look reached: which machines were seen, and how to look from others. Pure.
 
 "Not seen from here" is "missing" only where a robot would have been seen.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One system: what runs on some robots and what it needs, from whatever source. Frozen, pure.
 
 Names of nodes and ends are fully qualified, as rcl resolved them. What a file says has its place.

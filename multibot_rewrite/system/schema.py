@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The JSON schema of a file of a system: ``python -m multibot_rewrite.system.schema``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Snapshots of schema 1, as versions before wrote them: other keys, and the answers of nodes apart."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a plan's relays and bridges send on ``/tf``, so that one RViz shows all robots: copies."""
 
 from __future__ import annotations

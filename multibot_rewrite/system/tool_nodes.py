@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that run beside any fleet and are no part of a robot: tools, and what simulators start."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which topics move a robot, which say where it is or what it sees: by type and name."""
 
 from __future__ import annotations

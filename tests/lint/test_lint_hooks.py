@@ -414,3 +414,18 @@ def test_the_jenkins_pipeline_runs(
         assert done.returncode == 0, done.stderr
     (report,) = re.findall(r"\bjunit '(.*)'", JENKINS)
     assert JUnitXml.fromfile(str(here / report)).failures == failures
+
+
+def test_the_problem_matcher_reads_what_is_printed() -> None:
+    """``regexp`` is one of JavaScript; what it uses means the same in Python."""
+    (task,) = json.loads(example("json", "problemMatcher"))["tasks"]
+    pattern = task["problemMatcher"]["pattern"]
+    folder = ROOT / "fixtures" / "lint" / "planted"
+    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint", "plugin_joint.urdf", "-q"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    line = next(it for it in done.stdout.splitlines() if "MB211" in it)
+    found = re.fullmatch(pattern["regexp"], line)
+    assert found
+    said = {key: found[at] for key, at in pattern.items() if key != "regexp"}
+    place = {"file": "plugin_joint.urdf", "line": "120", "column": "19"}
+    assert said == {**place, "severity": "warning", "code": "MB211", "message": said["message"]}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -22,8 +22,6 @@ from paths import ROOT
 
 FOLDER = ROOT / "docs" / "tutorials"
 PAGES = {it.stem: it.read_text() for it in sorted(FOLDER.glob("*.md"))}
-SAVED = re.compile(r"[Ss]ave it as `([\w.-]+)`:\n\n```\w+\n(.*?)^```$", re.S | re.M)
-STEP = re.compile(rf"{SAVED.pattern}|(^```console\n.*?^```$)", re.S | re.M)
 SHELL = re.compile(r"^```sh\n(.*?)^```$", re.S | re.M)
 DECLARED = re.compile(r"DeclareLaunchArgument\(\s*['\"](\w+)")
 
@@ -38,17 +36,7 @@ class Followed(NamedTuple):
 def follow(name: str, folder: Path, domain: int, more: Mapping[str, str]) -> Followed:
     folder.mkdir()
     there = page_commands.reader(folder, domain, **more)
-    return Followed(there, list(steps(PAGES[name], there)))
-
-
-def steps(text: str, there: Reader) -> Iterator[tuple[Shown, CompletedProcess[str]]]:
-    for file, saved, block in STEP.findall(text):
-        if file:
-            (there.folder / file).write_text(saved)
-            continue
-        for it in page_commands.sections(block)[""]:
-            if page_commands.has_ros() or not page_commands.is_live([it]):
-                yield it, there.run(it.command)
+    return Followed(there, list(page_commands.steps(PAGES[name], there)))
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +90,7 @@ def fits(line: str, folder: Path) -> bool:
 
 def test_every_block_of_a_tutorial_is_run_saved_or_compared() -> None:
     for name, text in PAGES.items():
-        saved = {it for _, it in SAVED.findall(text)}
+        saved = {it for _, it in page_commands.SAVED.findall(text)}
         kinds = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.S | re.M)
         left = [it for kind, it in kinds if kind not in ("console", "sh") and it not in saved]
         assert left == [], name

@@ -26,6 +26,8 @@ MODULES = {
     "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
     "urdf-lint": "multibot_rewrite.cli.urdf_lint",
 }
+SAVED = re.compile(r"[Ss]ave it as `([\w.-]+)`:\n\n```\w+\n(.*?)^```$", re.S | re.M)
+_STEP = re.compile(rf"{SAVED.pattern}|(^```console\n.*?^```$)", re.S | re.M)
 _LEFT_OUT = "..."
 _CODE = re.compile(r"\[exit code (\d+)\]")
 # Needs rclpy, and a domain of its own.
@@ -114,6 +116,17 @@ def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
     environ = {**live_fleet.environ(domain), **more}
     path = os.pathsep.join([str(programs), environ.get("PATH", "")])
     return Reader(folder, {**environ, "PATH": path, "COLUMNS": "200", "LC_ALL": "C.UTF-8"})
+
+
+def steps(text: str, there: Reader) -> Iterator[tuple[Shown, subprocess.CompletedProcess[str]]]:
+    """What the commands of a page do one after the other; its files are saved where it says so."""
+    for file, saved, block in _STEP.findall(text):
+        if file:
+            (there.folder / file).write_text(saved)
+            continue
+        for it in sections(block)[""]:
+            if has_ros() or not is_live([it]):
+                yield it, there.run(it.command)
 
 
 Tried = Mapping[str, Sequence[tuple[Shown, subprocess.CompletedProcess[str]]]]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.interfaces FOLDER...``: what known nodes declare.
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``calls.txt``: which calls declare an endpoint. One line, one way to declare one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders of sources -> what they say. A folder is called REPOSITORY@VERSION."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the sources of a release say against what ``knowledge/nodes/`` says, both ways."""
 
 from __future__ import annotations

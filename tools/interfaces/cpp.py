@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C++ -> what its classes call.
 
 What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.

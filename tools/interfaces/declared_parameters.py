@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that nodes declare or ask for in C++ and Python.
 
 A name that is put together has ``<id>`` for what is not in the text: ``name + ".scan_topic"`` is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.interfaces.declared_table TABLES``: ``knowledge/declared.schema``.
 
 TABLES is the folder with ``parameters_RELEASE.tsv``. Of the packages of known nodes, and of each plugin

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A C++ expression -> a text, as far as the file says it; what is not known is in <>.
 
 Which functions hand a text on is data: ``SAME_TEXT``, ``LAST_TEXT``; each kind of syntax has a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C++ of ros2_control hardware -> the ``<param>``s that a class reads of its ``<hardware>``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that a helper class of a plugin reads, named by a prefix that the plugin gives it.
 
 ``SensorModel3 accel;`` and ``accel.Load(_sdf, "accel")`` read ``accelOffset`` where the header of the

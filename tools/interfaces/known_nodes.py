@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``nodes.txt``: the classes of each known node; and from them, what it declares."""
 
 from __future__ import annotations

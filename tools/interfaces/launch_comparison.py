@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Our stacks held against the launch files that start their nodes.
 
 Four kinds of difference: ``not started`` (no launch file of the release starts a node of the stack),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that launch files start: package, executable, name, namespace and remap rules.
 
 Files in Python are read as text and never run, so a value that only a run would tell is ``<...>``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Classes -> the endpoints of a node: its class, its bases, what they make, the plugins they load."""
 
 from __future__ import annotations

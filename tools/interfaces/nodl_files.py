@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What sources say of a node -> its NoDL document.
 
 What depends on a plugin, a mode or a parameter has the condition as its description; names that are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Our table of parameters held against what the sources say: where do the two differ?
 
 Three kinds of difference: ``missing`` (a parameter of ours is in no source of a release that it is

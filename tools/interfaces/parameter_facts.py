@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a source says of one parameter of a node: the record, and its line in a table."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.interfaces.parameter_tables TABLES RELEASE FOLDER...``
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION, with + for a slash in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C++ of simulator plugins -> which parameters they need, and which words they compare one with."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checkouts of simulator plugins and ros2_control hardware -> values for the vocabulary.
 
 Which libraries there are and what they are made of is in CMakeLists.txt, which classes in the

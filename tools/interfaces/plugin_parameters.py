@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C++ of simulator plugins -> the parameters that they read of their ``<plugin>``.
 
 ``_sdf->Get<double>("wheel_radius", 0.2)`` says a name, a type and a default; ``HasElement``,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Python -> what its classes call, by ``ast``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is read from sources: classes, what they call, and the facts that follow.
 
 A text that is only known at run time has its unknown parts in <>: ``<layer>_raw``. A part that is the

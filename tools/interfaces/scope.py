@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a name in a class stands for: a type, a value, a constructor's argument."""
 
 from __future__ import annotations

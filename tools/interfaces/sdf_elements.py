@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The SDF specification's own description files -> ``rules/schema/sdf.schema``.
 
 A checkout of sdformat has ``sdf/VERSION/*.sdf``, one folder a version: which elements there are, what

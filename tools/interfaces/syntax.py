@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C++ -> its nodes of syntax. The only import of tree-sitter."""
 
 from __future__ import annotations

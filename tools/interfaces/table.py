@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Facts as a table: one line a fact, columns with tabs between, sorted."""
 
 from __future__ import annotations

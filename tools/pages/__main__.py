@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.pages FOLDER`` writes the pages that are made with the site."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The section of the page of interfaces about parameters and launch files."""
 
 from __future__ import annotations

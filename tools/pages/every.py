@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All pages that are made with the site, and where links of written pages to them lead."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of the keys of a fleet file, from its schema."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of what sources say, against what is known."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of judgements: which findings of the lint in public files are true."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of the package as Markdown has it."""
 
 from __future__ import annotations

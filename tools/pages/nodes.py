@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of known nodes and stacks, of all releases."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pages of the vocabulary, one for each of its files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors of public descriptions, each with its fix, as a page for their maintainers."""
 
 from __future__ import annotations

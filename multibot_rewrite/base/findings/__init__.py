@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every check reports, and the rules that the reports come from."""

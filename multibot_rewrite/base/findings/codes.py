@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Codes and names of rules as a person gives them: whole, as they begin, or nearly right."""
 
 from __future__ import annotations

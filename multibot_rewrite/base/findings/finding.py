@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The one record of a finding: of a description, a parameter file, a remap table, the live graph."""
 
 from __future__ import annotations

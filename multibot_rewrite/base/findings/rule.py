@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rule: its code, its words and the examples that are its documentation and its test."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which rules are on, and at which level: the same for every command and configuration."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 names and remap rules, as rcl 9.2 (Jazzy) reads them. Pure text, no ROS needed."""
 
 from __future__ import annotations

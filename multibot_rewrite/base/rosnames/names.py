@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a ROS 2 name may look like, and how it becomes a fully qualified one.
 
 Every check gives the fault that rcl 9.2 (Jazzy) would give first, at the same character. Sources:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Remap rules as rcl 9.2 (Jazzy) reads and applies them.
 
 Sources: rcl ``arguments.c`` (``_rcl_parse_remap_begin_remap_rule`` and what it calls) and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Run a module in a process that finds modules where its parent did, and not in the current folder.
 
 ``python .../module.py MODULE``: ``python -m`` would put the current folder first, and a ``rclpy.py``

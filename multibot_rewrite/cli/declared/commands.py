@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command line of the package: what it takes, what it is for, what its exit codes mean."""
 
 from __future__ import annotations

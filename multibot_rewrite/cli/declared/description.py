@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-postfix`` and ``urdf-lint``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands about a fleet: build, init, plan, rehearse, view."""
 
 from __future__ import annotations

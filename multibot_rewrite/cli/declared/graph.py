@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands about the live graph: check, learn, snapshot."""
 
 from __future__ import annotations

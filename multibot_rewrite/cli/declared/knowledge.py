@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands about what is known: explain, inspect."""
 
 from __future__ import annotations

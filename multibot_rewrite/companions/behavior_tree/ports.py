@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ports of a behavior tree and the kinds of names in them: read from ``behavior_tree.yaml``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nav2 behavior trees for any number of robots: ports that hold services, topics and frames.
 
 rcl remaps a name in a port like any other name of the BT navigator. ``{entry}`` is a blackboard

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which kind of MoveIt file a YAML file is: by its content, else by its name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where MoveIt's YAML files hold names: read from ``moveit.yaml``, which explains its own form."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MoveIt's YAML files for any number of robots: the new text of their names.
 
 MoveItConfigsBuilder reads them with PyYAML and passes them to move_group as parameters. So there are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What each name becomes for a robot: one function for each kind of name."""
 
 from __future__ import annotations

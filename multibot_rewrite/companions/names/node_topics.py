@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics in parameters: what each becomes for a robot, checked by resolving it as the node does.
 
 A name read from a parameter is remapped like any other. So the new value must resolve, with the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands for a robot in vendors' files until a launch file replaces it: one meaning everywhere.
 
 At the start of a name it is taken out, since the name gets the robot's as any other does; alone it is

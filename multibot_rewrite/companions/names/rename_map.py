@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rename map of one robot, for names in other files than its description."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics in files for one robot -> the absolute topic that each robot has instead."""
 
 from __future__ import annotations

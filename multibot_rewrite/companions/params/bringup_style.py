@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot's parameter file in the form that nav2_bringup takes: its sections have no namespace.
 
 The launch files there put a file below the robot's namespace (RewrittenYaml with ``root_key``), so a

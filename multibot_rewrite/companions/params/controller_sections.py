@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers that a file declares and has no section for -> sections with what must differ by robot.
 
 A controller without a section runs with its defaults, such as an empty prefix before names of joints,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in a section of a node that is not known: all that its parameters hold change, or none.
 
 What a parameter holds is told by its own name then. Where another one, whose name does not tell, holds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every parameter of a section -> the names in its key and value, and the kind of each."""
 
 from __future__ import annotations

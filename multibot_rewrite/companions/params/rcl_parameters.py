@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rewritten parameter file -> the parameters of one node, with the types that rcl gives them.
 
 Sources: rcl_yaml_param_parser ``parse.c`` (``get_value``); rclcpp and rclpy for which sections match.

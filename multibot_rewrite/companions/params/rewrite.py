@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 parameter files and controllers' files for any number of robots.
 
 ``knowledge.parameters`` knows which parameters hold names. One step each: ``sections`` finds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sections of a ROS parameter file: the node that each is for, and its key for a robot.
 
 As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are joined with ``/``;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that a file does not set, with a default that all robots would share: lines to insert."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names in a section -> splices that rename them for a robot, and findings about them."""
 
 from __future__ import annotations

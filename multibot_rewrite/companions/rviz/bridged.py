@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The window for all robots where a bridge puts their names before the frames on their way to ``/tf``.
 
 Links have bare names and frames the robot's, as with robot_state_publisher's ``frame_prefix``; those in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Colours of robots: as people write them, and a palette for robots without one."""
 
 from __future__ import annotations

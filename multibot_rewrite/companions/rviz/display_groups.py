@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One RViz config for all robots: shared displays once, and a group of displays for each robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An RViz config as records: displays, tools and panels, and where each holds a name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The value of each name in an RViz config for a robot."""
 
 from __future__ import annotations

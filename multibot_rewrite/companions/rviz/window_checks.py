@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What changes where one window shows several robots: its frame, its tf topic, its view, its panels."""
 
 from __future__ import annotations

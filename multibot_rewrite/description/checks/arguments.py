@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A xacro's arguments: those that no file knows, those that reach one of a frame and its link."""
 
 from __future__ import annotations

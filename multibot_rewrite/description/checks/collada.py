@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large a Collada mesh is, as RViz and Gazebo show it.
 
 ``<unit>`` counts, ``<up_axis>`` does not: RViz has Assimp ignore it (assimp_loader.cpp sets

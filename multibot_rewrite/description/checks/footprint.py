@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far a robot reaches to the side: of its collisions, else its visuals, with every joint at 0.
 
 Boxes, cylinders and spheres are measured; of a mesh, which is a file, and of a link without a shape

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What breaks when several robots are made from one description: one function per problem."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The links and joints of a URDF as records, for rules about the kinematic tree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the readers of a robot take, and complete XML parsers refuse or read otherwise."""
 
 from __future__ import annotations

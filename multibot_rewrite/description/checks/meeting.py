@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What all robots of a description would share, by the second reading of what was written."""
 
 from __future__ import annotations

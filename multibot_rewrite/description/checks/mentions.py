@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large a mesh is: the box around the corners of an STL, OBJ or Collada file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gazebo's own namespaces in a description: is that of a model in use, in this release?"""
 
 from __future__ import annotations

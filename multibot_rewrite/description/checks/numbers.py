@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers in attributes. What is not a finite number is None: another rule reports it."""
 
 from __future__ import annotations

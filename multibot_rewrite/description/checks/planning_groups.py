@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The planning groups of an SRDF on its URDF, as srdfdom and MoveIt make them."""
 
 from __future__ import annotations

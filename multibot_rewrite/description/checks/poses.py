@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An ``<origin>`` as it is written, and where the links of a URDF are, with every joint at 0.
 
 Source: urdfdom and sdformat: the origin of a joint is the child's frame in the parent's, and its

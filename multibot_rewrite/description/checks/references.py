@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that nothing declares, that are ambiguous, or that are declared twice."""
 
 from __future__ import annotations

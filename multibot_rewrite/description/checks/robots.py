@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks that depend on the robots' names: names that become one, strip."""
 
 from __future__ import annotations

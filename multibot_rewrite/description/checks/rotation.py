@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rotations: roll, pitch and yaw, quaternions and matrices as urdfdom reads them.
 
 Sources: urdfdom_headers, pose.h (``setFromRPY``, ``setFromQuaternion``, ``normalize``): yaw is applied

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large the simple shapes of links are: boxes, cylinders and spheres. A mesh is a file:
 ``mesh_box`` reads it."""
 

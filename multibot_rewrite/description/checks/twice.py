@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Does a description carry a robot's name already? A rewrite for that robot would add it once more."""
 
 from __future__ import annotations

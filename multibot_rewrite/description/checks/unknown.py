@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs in a description and nobody knows what it opens: of these a rewrite is not proved."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rewrite may be called: proved, or rewritten and not proved, and why."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything in a description that can open a topic, node, service, frame, socket or file, and whether
 it is known what it opens.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where robots meet: names in the running system that two of them have and that are not shared; and
 remap rules that matched a name of their plugin before a rewrite, and match none after it.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The namespace that Gazebo puts in front of a system's relative topics: of the models around it.
 
 Sources: gazebosim/sdformat 43fa4a69 (#1663) src/Model.cc (``{name}`` is the model's name), parser.cc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plugin -> the ROS node it starts, with its endpoints, rules, frames; topics of other plugins.
 
 Sources: gazebo_ros_pkgs ros2 gazebo_ros/src/node.cpp (a <ros> hides the plugin's own settings, the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ends of one topic inside a description that no longer meet after a rewrite: two that were equal have
 to stay equal, and what another process makes of a topic's name has to be there still."""
 

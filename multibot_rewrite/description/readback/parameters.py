@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The value of a parameter as its consumer has it: what the file says, else the default, also one that
 the consumer makes of names in the description: of the model, its first link, a sensor.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which section of the vocabulary is about an element, as the programs choose what they load."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The topics and services that a plugin's code names, with the values of its parameters in them."""
 
 from __future__ import annotations

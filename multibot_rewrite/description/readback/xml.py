@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """XML as TinyXML-2 and sdformat read it.
 
 Sources: leethomason/tinyxml2 tinyxml2.cpp (XMLElement::GetText: comments in front are skipped, then

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plan -> the list of what changed, as ``--changes`` writes it."""
 
 from __future__ import annotations

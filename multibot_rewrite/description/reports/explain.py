@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known about the values on one line of a document, and what becomes of them."""
 
 from __future__ import annotations

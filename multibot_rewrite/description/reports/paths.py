@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a value is, as reports write it: ``robot/gazebo/plugin[libfoo.so]/frameName``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How much of a set of descriptions the vocabulary knows: plugins, values, unclaimed names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which argument of a xacro goes into which names: found by expanding it with another word for each."""
 
 from __future__ import annotations

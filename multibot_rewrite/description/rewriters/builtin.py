@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tree of rewriters that every job starts from."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact sensors name collisions that the URDF -> SDF conversion makes up from link names.
 
 A lumped name depends on the tree (which fixed joints are merged, in which order) and on how the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where inside a value the names are: one function per ``form=`` word of the vocabulary.
 
 A form maps a value to its parts. Because a part is a position and not a new text, lists, scopes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What has to be added: defaults and hard-wired topics that every robot would share otherwise."""
 
 from __future__ import annotations

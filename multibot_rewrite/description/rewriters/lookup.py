@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sections of the vocabulary for a person: found by whatever name is at hand, and what they say."""
 
 from __future__ import annotations

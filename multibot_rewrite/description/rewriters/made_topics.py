@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of Gazebo that are made of names: ``/model/rover/joint/fin/cmd_thrust``.
 
 What one system makes of the model, a word of a parameter, a link, joint or sensor, another one may be

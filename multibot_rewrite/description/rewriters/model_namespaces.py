@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gazebo's own namespaces: what ``<model namespace="...">`` and ``<include><namespace>`` do to claims.
 
 A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are read,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Defaults that are made of the description's own names: ``{model}/{link}``, ``{sensor}``.
 
 Sources: gazebosim/gz-sim src/systems/diff_drive/DiffDrive.cc (gz-sim8 to 10: without frames the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Regular expressions of a file, as ``std::regex`` reads them (ECMAScript, bytes, libstdc++).
 
 Python's ``re`` tries one way after another, and for ``(a+)+b`` there are too many. Here all ways are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the names in a plugin's remap rules are: a left side names what its node asks for.
 
 rcl expands a left side by the namespace and the name of the node and compares the texts (rcl remap.c,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names in each claimed value: where they are, of what kind, and how they are spelled.
 
 The plan knows names by kind only. SDF looks a name up in the model it is in, where a link and a joint

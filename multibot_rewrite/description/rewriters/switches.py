@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which topics a plugin's own parameters turn off."""
 
 from __future__ import annotations

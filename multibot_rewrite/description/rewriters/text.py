@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of an element as its consumers read it.
 
 TinyXML-2, which urdfdom, ros2_control and sdformat read with, takes the first text and skips comments

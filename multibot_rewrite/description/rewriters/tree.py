@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tree of rewriters: the vocabulary's sections, nested the way documents nest.
 
 A ``Node`` answers, for one element, which of its attributes and text are sites and which node

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Print which fences this system has for xacro files.
 
 ``python -m multibot_rewrite.description.sources``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The talk with a child that expands a file: its questions are answered, its result is doubted."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Expand xacro in a process of its own, which reaches no further than it may."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``<include>`` in the models of an SDF -> what Gazebo makes of it: the included model, or with
 ``merge="true"`` its parts, in place of the element.
 

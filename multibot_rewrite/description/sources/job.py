@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
 from __future__ import annotations

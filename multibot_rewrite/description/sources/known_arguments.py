@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which arguments the files of one expansion know: those that they declare, and those that they read.
 
 Sources: xacro/__init__.py (``<xacro:arg name=``, ``xacro.arg('NAME')``) and xacro/substitution_args.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that a xacro's own arguments spell for a robot.
 
 The author of a xacro may have given it a prefix or a namespace argument. Which names an argument

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where packages and the files in them are: looked up once per process."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parent's side of the processes that expand xacro.
 
 A server, started once for each process and ended when it is idle, forks a child for each expansion.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a description comes from: a path, text or bytes, xacro expanded on the way."""
 
 from __future__ import annotations

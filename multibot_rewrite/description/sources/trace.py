@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where in the xacro files each element of an expansion was written, and through which macro calls.
 
 A child tells numbers (``child/marks.py``); what they stand for is looked up in the files as they were

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plan -> text: a template is cut once at every slot, then each robot is one ``bytes.join``."""
 
 from __future__ import annotations

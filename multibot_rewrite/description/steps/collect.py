@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Document -> inventory: every value a site claims, the names in it, every symbol declared, every
 plugin met."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
 bytes, so whatever is not edited stays as it was.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inventory + naming -> plan: what each claimed value becomes, as edits of the source bytes.
 
 A plan is for any robot: its edits have a slot for the robot's name.

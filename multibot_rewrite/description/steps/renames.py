@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inventory + naming -> rename map: names are spelled once, everything after reads the map."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The inverse, from the rewritten file alone: take every affix and every inserted element out."""
 
 from __future__ import annotations

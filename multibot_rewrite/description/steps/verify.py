@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The proof that runs on every rewrite: it reads the output bytes again and compares.
 
 It trusts how the source was read and what the naming says. It does not trust the plan, nor what was

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was made is asked whether it fits together."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plan and what would run of the folder that was built for it -> where they differ.
 
 What the plan leaves to others is none of it: a simulator, the bringup of a robot, a node that is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fleet of a fleet file with what is open in its robots, before and after their rewrite: build,
 plan, rehearse and check say it. What a rewrite opens is an error."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that two robots of a fleet declare, each in its own description."""
 
 from __future__ import annotations

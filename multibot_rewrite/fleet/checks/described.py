@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the rules of descriptions find in those of a fleet's robots: every error of the lint, and what a
 simulator leaves out."""
 

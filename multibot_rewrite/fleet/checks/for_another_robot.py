@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions that name another robot of their fleet in values of unknown use."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the rules of any system find in a fleet as it is written, and whether its sources have it."""
 
 from __future__ import annotations

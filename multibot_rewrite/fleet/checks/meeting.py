@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the robots of a fleet meet: by the second reading of what was written for each, and by the
 remap table, for what no description starts."""
 

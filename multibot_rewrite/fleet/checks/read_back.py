@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A built fleet is read back as a machine would that knows nothing of it: the launch file, and what
 that names. Then it is compared with the plan that was built, and asked the rules.
 

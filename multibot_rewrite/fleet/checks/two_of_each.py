@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A built fleet with two robots of each sort: what is wrong with any of its files shows there.
 
 Robots are of one sort where the files, the part of the launch file and the part of the plan of one are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the rules of files find in those that a build writes: MoveIt's, and the bridge of each robot."""
 
 from __future__ import annotations

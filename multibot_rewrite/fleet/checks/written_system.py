@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The system of a fleet as it is written: by its table, the transforms of its nodes, its bridges."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``cell`` of a fleet file: arms that one move_group plans for.
 
 move_group runs once, and reads the joint states of all arms on one topic: MoveIt's state monitor takes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """YAML checked against a JSON Schema: plain data with its lines, or one line with the error."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A xacro's own arguments for a robot's names, filled where the fleet file has no value for them.
 
 They are filled where the names that they reach become what the layout makes of them. What they make

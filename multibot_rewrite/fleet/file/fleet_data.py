@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet file with those it includes, or a dict -> checked data, with the place of each value;
 paths are relative to the file's folder, and there."""
 

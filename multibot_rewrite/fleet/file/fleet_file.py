@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fleet file: YAML -> records, or one line that says what is wrong and where."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which robots a fleet has, where that is said when it starts: as a text, or as a number.
 
 A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands for

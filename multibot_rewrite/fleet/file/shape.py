@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Outputs in the place and the form that a vendor's launch files take; ``shapes.yaml`` has them."""
 
 from __future__ import annotations

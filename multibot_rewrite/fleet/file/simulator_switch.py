@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The argument of a xacro that switches between the simulated and the real robot.
 
 Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_gazebo``, ``sim_ignition``: it chooses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A system from each of its sources, and what the rules say of one or of two: the library's calls.
 
 They are the functions that ``plan``, ``check-launch``, ``snapshot``, ``check`` and ``doctor`` use.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The functions of ``fleet.launch.py``: one for robots that run the same, called with what differs.
 
 What a robot runs is written with its own names first. Then its name in a text becomes ``{name}``, and

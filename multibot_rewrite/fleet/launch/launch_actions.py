@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` writes it down.
 
 What only runs under a condition that no file answers, and nodes whose program is not known, are left

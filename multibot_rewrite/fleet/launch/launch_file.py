@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py``: one command that starts the fleet that was built."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a fleet starts -> ``fleet.launch.py``: plain launch and launch_ros, to be read and edited."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that launch files name: parameter files, which are rewritten as those of ``params`` are, and
 where in a robot's namespace bridges run with theirs.
 

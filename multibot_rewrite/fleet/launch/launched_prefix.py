@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A prefix of frames that a launch file gives robot_state_publisher, beside the built description.
 
 Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put before each frame; tf2

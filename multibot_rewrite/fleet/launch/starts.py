@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a fleet starts: its launch file does, and lines for a shell do some of it."""
 
 from __future__ import annotations

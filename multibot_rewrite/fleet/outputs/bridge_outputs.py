@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ros_gz_bridge files of a fleet: one for each robot, and one for what all robots share."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameter files that a build wrote -> the parameters that each node of the plan has by them."""
 
 from __future__ import annotations

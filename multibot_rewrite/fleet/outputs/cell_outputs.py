@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of a cell: the URDF and SRDF of all arms, the parameters of their one move_group, and one
 window of RViz, whose MotionPlanning reads the parameters of its process.
 

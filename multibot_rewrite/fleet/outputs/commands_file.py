@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz, and
 starts MoveIt."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files, MoveIt files, behavior trees and Lua files of a fleet: one for each robot."""
 
 from __future__ import annotations

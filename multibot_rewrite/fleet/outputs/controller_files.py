@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of controllers that descriptions load: they are rewritten as the files of ``params`` are,
 and each robot's description loads the one that was made for it.
 

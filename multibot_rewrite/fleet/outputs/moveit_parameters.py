@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``NAME/moveit_parameters.yaml``: a robot's SRDF and MoveIt files as the parameters of its nodes.
 
 In place of what MoveItConfigsBuilder makes in a launch file, so move_group, servo_node and rviz2 can be

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file that a build writes with the source line of each line, and what each step of a build yields:
 files and findings."""
 

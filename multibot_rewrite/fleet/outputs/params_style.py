@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a build writes parameter files: with full names of nodes, or as nav2_bringup takes them.
 
 What nav2_bringup starts is below a namespace, with the rules ``/tf:=tf`` and ``/tf_static:=tf_static``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``relayed`` of a fleet file: each robot's tf on ``/tf``, too, so that one RViz shows all robots.
 
 Where frames differ, a ``relay`` of topic_tools for tf and one for tf_static, for each robot. It takes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The RViz configs of a fleet: what each window shows, and the command that opens it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a vendor's launch files want besides the robot's own outputs: the commands that take them, and
 files that are copied with the robot's namespace."""
 

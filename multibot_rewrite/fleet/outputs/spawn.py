@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spawning the robots of a fleet in Gazebo: arguments of the two spawners.
 
 Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spawn_entity.py`` and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keyboard teleoperation of each robot of a fleet.
 
 Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes ``cmd_vel``).

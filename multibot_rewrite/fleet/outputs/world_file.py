@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``world.sdf``: an empty world for gz-sim that runs the sensors of the robots.
 
 Gazebo's own empty.sdf has physics, user commands, the scene and contacts; a lidar, a camera or an IMU

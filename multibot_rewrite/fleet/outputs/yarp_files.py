@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files that plugins of gazebo-yarp-plugins load: each robot has its own and loads that.
 
 ``<yarpConfigurationFile>`` is found as Gazebo finds a URI (gazebo common/SystemPaths.cc FindFileURI:

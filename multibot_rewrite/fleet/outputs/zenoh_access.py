@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan of a fleet -> what each robot may say and hear in Zenoh: rules of access control. Pure.
 
 Source: zenoh ``DEFAULT_CONFIG.json5`` (access_control): a message passes where a rule's key expression

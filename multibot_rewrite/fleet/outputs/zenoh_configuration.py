@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Configurations of a fleet's Zenoh router and of each robot's sessions, by the key ``zenoh`` of its
 file.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of several descriptions is the robot: what launch files load, and whose names the files beside
 them have. Where nothing says it, the likeliest has rivals.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files beside a description -> those that it runs with, and the stacks that they say.
 
 Where several files are for the same thing (parameters of a node, an RViz config), the nearest is taken.

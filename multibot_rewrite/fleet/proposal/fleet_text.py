@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A proposal -> the text of its fleet file, with the reason of each key as a comment, and as data."""
 
 from __future__ import annotations

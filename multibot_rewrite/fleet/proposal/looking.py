@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description -> what a fleet file has to know of it: simulator, xacro arguments, and the values for
 these that launch files have where nobody gave any."""
 

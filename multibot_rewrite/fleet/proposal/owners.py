@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files beside a description belong to another one, by place and by what they name."""
 
 from __future__ import annotations

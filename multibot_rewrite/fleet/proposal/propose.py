@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions and folders -> a proposal for a fleet file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders -> the files of robots in them, by what they are for.
 
 A xacro counts as a description if it names a robot and no other file includes it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A proposal tried: does it build, with which files and in which layout? Nothing is written."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Do robots stand in each other? By their start poses and how far each reaches to the side."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two robots of a fleet that were given one device: its address, number or calibration, a port."""
 
 from __future__ import annotations

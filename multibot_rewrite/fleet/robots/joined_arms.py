@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several arms as one robot: their URDFs below one world link, their SRDFs in one.
 
 Sources: urdfdom model.cpp (a material that is declared twice ends the reading), moveit2 2.12.4

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One robot of a fleet, for launch scripts: what its nodes, simulator and tf need, as plain values."""
 
 from __future__ import annotations

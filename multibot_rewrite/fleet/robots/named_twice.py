@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics that have a robot's name from an argument of its xacro, and once more from its namespace."""
 
 from __future__ import annotations

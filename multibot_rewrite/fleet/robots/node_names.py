@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names and remappings of one robot's nodes, for launch files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The robots of a fleet file with their rewritten descriptions; one parse for each source."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes that a robot of a fleet file runs: its stacks, as its own files have them. Some run once
 for all robots, as one map_server with one map."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too?
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and

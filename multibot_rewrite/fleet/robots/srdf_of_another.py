@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SRDF that was not written for its URDF: one finding, in place of one for each name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rules about start poses that are not published."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The start poses of a fleet: a static transform for each robot, or an initial pose for amcl.
 
 Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_initial_pose``).

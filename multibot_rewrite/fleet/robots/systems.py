@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs on one robot, before its rewrite (by its sources) and after (by what was made)."""
 
 from __future__ import annotations

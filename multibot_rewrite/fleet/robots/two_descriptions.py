@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot whose simulator gets another file than robot_state_publisher: do the two fit? And an SDF that
 robot_state_publisher gets: is it read?"""
 

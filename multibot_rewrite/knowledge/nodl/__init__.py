@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """NoDL interface files (ros-tooling/nodl): what a package says of its own nodes."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of one NoDL 2 document -> a record; errors name file and line.
 
 What is allowed is what ``nodl_schema/schemas/nodl.schema.yaml`` and ``parameter.schema.yaml`` of

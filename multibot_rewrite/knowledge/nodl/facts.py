@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """NoDL documents -> facts of nodes, above those of the library.
 
 A document cannot say everything: conditions, helper nodes, which names an image_transport adds, the

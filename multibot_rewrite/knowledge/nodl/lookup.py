@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where NoDL documents are: in the ament index, in files and folders that a user names.
 
 A document does not say which node it is for; its place does. In the ament index it is the resource

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Endpoints of a node -> the text of its NoDL document, checked by reading it.
 
 A document has no conditions and no endpoint of several types: two types are two entries.

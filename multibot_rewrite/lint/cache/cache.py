@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cache of one run: what is remembered, how it is written, and what all of it rests on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Findings that a project has already: only new ones are reported.
 
 A finding is recognised by its code, its file and its message, so lines may move.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files changed since a revision, and which xacro files include one that did."""
 
 from __future__ import annotations

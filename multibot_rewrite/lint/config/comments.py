@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Findings that comments suppress, and comments that suppress nothing."""
 
 from __future__ import annotations

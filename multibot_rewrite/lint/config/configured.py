@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-lint.toml`` or ``[tool.urdf-lint]`` -> settings; what a command adds to them."""
 
 from __future__ import annotations

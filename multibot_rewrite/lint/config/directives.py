@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-lint:`` comments of a file: what they suppress, and in which part of the file.
 
 <!-- urdf-lint: ignore MB401, MB402 - a reason -->

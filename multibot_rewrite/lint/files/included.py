@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files xacro files include: their content is linted where it is used; what they know."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which URDF an SRDF belongs to: the one it names among the linted files, else one near it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file -> what rules check: its document, once for each set of xacro arguments."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which nodes of a graph to learn: without tools, and without helper nodes of other nodes."""
 
 from __future__ import annotations

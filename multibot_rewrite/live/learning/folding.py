@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several endpoints in a graph that are one in a node's code: an action, an image, a known part."""
 
 from __future__ import annotations

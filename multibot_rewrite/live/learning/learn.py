@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The endpoints of running nodes, learned from their graph. Pure, needs no ROS.
 
 The code and the remap rules of a running node are not visible, only the resulting names. Of all

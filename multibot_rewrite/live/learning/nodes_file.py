@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Learned nodes as a file of nodes and stacks, checked by reading it as ``--nodes`` does."""
 
 from __future__ import annotations

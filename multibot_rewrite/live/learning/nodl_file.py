@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Learned nodes as NoDL documents, one for each node, checked by reading them.
 
 A document has no helper nodes, conditions or several types: helpers' endpoints are the node's own, two

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The transforms of a snapshot as trees to be drawn over the robots, and where they differ from the
 description."""
 

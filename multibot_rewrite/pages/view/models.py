@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rewritten description -> links with shapes, and joints. The only import of yourdfpy and trimesh.
 
 Meshes are looked for as ROS does: package://, file://, and paths beside the description.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scene -> one HTML file that fetches nothing."""
 
 from __future__ import annotations

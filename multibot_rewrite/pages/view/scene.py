@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planned fleet -> the scene: each robot's model at its pose, and what every name was before."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SDF model -> links with shapes, and joints, as the view draws them.
 
 Source: sdformat.org, "Pose Frame Semantics": a pose is in the frame ``relative_to``; else that of a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A bag of rosbag2, MCAP or sqlite3 -> what it holds. The only module that imports rosbags.
 
 A bag may be cut off or made by anybody: whatever its reader raises, the bag is at fault.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a recording holds: frozen records. It knows topics and not nodes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of which only one can be active: they command the same joint, sensor or gpio.
 
 Source: ros2_control controller_manager.cpp and resource_manager.cpp (a command interface is claimed by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The interfaces that a controller claims, from templates of its node's table and its parameters.
 
 A template is a name with parameters in <>: ``<joints>/<command_interfaces>`` stands for every joint

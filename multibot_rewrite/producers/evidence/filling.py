@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A known node and the parameters that it gets -> the node as it runs with them.
 
 Endpoints whose name a parameter sets get that name, conditions are decided, frames get their values.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description -> the interfaces that its ros2_control systems export, and the nodes of its hardware.
 
 Sources: ros2_control hardware_interface component_parser.cpp (``<joint>``, ``<sensor>`` and ``<gpio>``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of MoveIt -> its controllers, and the joints that a robot's SRDF plans for.
 
 Sources: moveit2 moveit_simple_controller_manager_plugin.cpp (``controller_names``, of each a map);

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs.
 
 A file and a stack that disagree: the file wins, and the disagreement is a note.

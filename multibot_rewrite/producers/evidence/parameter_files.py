@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files -> the nodes they are for, with all values that each node gets.
 
 Sources: rcl_yaml_param_parser (a later section wins; wildcards count for every node that they match);

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records of evidence: what a robot's files say of its nodes, each with its place."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A known node under the remap rules of a launch file, or of the plugin that loads it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SRDF beside its URDF -> what MoveIt makes of it: groups, passive and virtual joints.
 
 Sources: srdfdom model.cpp; moveit2 robot_model.cpp (fixed and mimic joints are no variables of a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The process that reads a launch file: ``python -m multibot_rewrite.producers.launch``.
 
 Standard input has the order, standard output gets the graph; what the launch file prints goes to

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a bridge to Gazebo is told -> its topics and services in ROS.
 
 Source: ros_gz jazzy 739cb42, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@TYPE[GZ_TYPE``, with ``[``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files are programs: they are read in a process of their own, which has limited time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``Command`` substitutions would print, where that is known without starting their programs.
 
 A xacro file is expanded behind the boundary that all xacro files have, and ``urdf-postfix`` is this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The interfaces of ros2_control in a launch: what managers export, what spawned controllers claim."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Actions that start nodes -> records of these nodes.
 
 Source: launch_ros jazzy, actions/node.py, actions/load_composable_nodes.py (humble to rolling keep what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The one door to launch and launch_ros: imported where they are needed, never before."""
 
 from __future__ import annotations

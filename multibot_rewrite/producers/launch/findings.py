@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said of launch files: what they hide, what they start, and what they do not start."""
 
 from __future__ import annotations

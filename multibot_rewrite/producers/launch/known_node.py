@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launched node -> what is known of it, as this program has it with these arguments."""
 
 from __future__ import annotations

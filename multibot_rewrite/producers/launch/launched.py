@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch starts, with all that is known of it: what the rules for launch files ask."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that a launch makes of others, such as nav2_common's RewrittenYaml -> what they are made of.
 
 Source: nav2_common jazzy, launch/rewritten_yaml.py and replace_string.py (``name`` is the file that

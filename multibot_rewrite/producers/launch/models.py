@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions that a launch publishes or puts into a simulator -> what plugins in them make.
 
 Source: gz_ros2_control of humble to rolling, gz_ros2_control_plugin.cpp: each file of ``<parameters>``

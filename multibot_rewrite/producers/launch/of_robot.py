@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes of a robot's stacks and what its launch files start -> the nodes that it runs.
 
 A node that is launched runs: that is the surest evidence there is. What a stack has and no launch file

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launch file by its package and name, as ``ros2 launch`` finds it.
 
 Source: ros2launch api.py get_share_file_path_from_package (any file of that name below the package's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where an action of a launch file stands: kept when it is made."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known of the programs that launch files start: ``programs.yaml``."""
 
 from __future__ import annotations

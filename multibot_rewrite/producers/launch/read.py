@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launch file and its arguments -> the nodes that it would start."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The descriptions that a launch file reads itself: of a text that a node gets, the file is known."""
 
 from __future__ import annotations

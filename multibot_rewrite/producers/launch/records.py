@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch files start, as records; how they pass from the process that reads them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The words behind a program's name -> what rcl makes of them.
 
 Source: rcl arguments.c (what stands between ``--ros-args`` and ``--`` is ROS's own).

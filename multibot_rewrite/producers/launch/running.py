@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> its nodes as they run, with their parameters and remap rules.
 
 Every launched node stands for itself: nothing is known here of robots, stacks and layouts. A launch

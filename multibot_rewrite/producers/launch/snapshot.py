@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> the graph that it would make: a snapshot, and what is not known of it.
 
 Names are those that rcl makes of the rules, transforms those that parameters name. What depends on a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Packages that are there as sources, for launch files that look for them.
 
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spawners and the controller managers that launch files start: each asks for one that runs.
 
 Source: ros2_control humble 2.37 and jazzy, ``controller_manager/spawner.py``: a relative name of a

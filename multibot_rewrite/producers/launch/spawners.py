@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arguments of ``controller_manager spawner`` -> the controllers that it loads.
 
 Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has

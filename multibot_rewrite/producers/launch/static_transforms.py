@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launched static_transform_publisher -> the node with the transform that it sends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ``system_model.yaml`` that play_launch writes -> the nodes in it; ROS is not needed.
 
 Source: NEWSLabNTU/play_launch, docs/design/system-model.md, scripts/compare_models.py: below

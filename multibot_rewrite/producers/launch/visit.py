@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The entities of a launch description, visited in the order of a launch.
 
 What only sets something up is executed, what would start something is described. An entity is known

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the nodes of a watched graph answer, again and again; the function that asks is passed in."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Asking nodes for their states: ``python -m multibot_rewrite.producers.ros.ask``, a child process.
 
 All services are called at once, and all answers are waited for together, so that the time is bounded

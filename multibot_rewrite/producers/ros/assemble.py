@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pure part of a snapshot: when the graph is settled, what to query, how answers are joined."""
 
 from __future__ import annotations

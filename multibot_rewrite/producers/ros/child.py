@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command's side of the child processes that use rclpy.
 
 rcl may end its process, so the command never loads it.

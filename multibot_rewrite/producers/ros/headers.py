@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One message a sensor topic, for the frame that its header names; the function that subscribes is
 passed in.
 

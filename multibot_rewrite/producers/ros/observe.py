@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Observing the live graph: ``python -m multibot_rewrite.producers.ros.observe``, a child process.
 
 It sends one snapshot when the graph is settled or, when watching, one after each change.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Queries about the graph through an rclpy node, with the answers as records.
 
 The node is passed in: only ``graph.live.ros`` imports rclpy.

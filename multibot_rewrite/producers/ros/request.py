@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The request to a child process that uses rclpy, and the messages between it and the command."""
 
 from __future__ import annotations

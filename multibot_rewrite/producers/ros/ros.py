@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The only module that imports rclpy, with the functions that the others need.
 
 It runs in child processes (``live.observe``, ``live.stub_nodes``), since rcl may end its process.

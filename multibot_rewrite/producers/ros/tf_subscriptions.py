@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Subscriptions to the tf topics of a graph; the function that subscribes is passed in."""
 
 from __future__ import annotations

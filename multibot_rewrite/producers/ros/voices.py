@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Is a transform sent by one publisher, or by several? Pure.
 
 tf messages do not say who sent them. A publisher numbers its messages, each higher than the last: where

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Start, protocol and end of a child process that uses rclpy.
 
 Its order is the first line of its standard input. It ends when that input is closed, on SIGTERM

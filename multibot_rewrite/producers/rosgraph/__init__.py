@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """Snapshots as messages of the type ``rosgraph_msgs/Graph``."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The messages of rosgraph_msgs that describe a graph, and what their numbers mean.
 
 They are those of ros2/rcl_interfaces, rosgraph_msgs/msg: since 1.2.3 in Humble, 2.3.2 in Kilted and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A message of the type ``rosgraph_msgs/Graph`` -> a snapshot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A snapshot -> a message of the type ``rosgraph_msgs/Graph``, as ``ros2 topic echo`` prints it."""
 
 from __future__ import annotations

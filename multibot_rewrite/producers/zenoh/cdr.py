@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frames in a serialized ``tf2_msgs/msg/TFMessage``. Pure.
 
 Source: the plain CDR of DDS, which rmw_zenoh serializes with (``cdr.cpp``): four bytes of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Zenoh router's view of the graph: its liveliness tokens, and the tf that it hears meanwhile.
 
 The tokens are all there at once, so there is nothing to wait for but samples of tf.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The only module that imports zenoh, with the functions that the others need.
 
 It comes with the extra ``zenoh`` (eclipse-zenoh on PyPI), and is imported when a router is asked.

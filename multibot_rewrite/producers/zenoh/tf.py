@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The transforms that arrive through a Zenoh router while a snapshot is taken."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Liveliness tokens of rmw_zenoh -> the nodes and endpoints that they announce. Pure.
 
 Source: rmw_zenoh ``rmw_zenoh_cpp/src/detail/liveliness_utils.cpp`` at 3411fde: ``KeyexprIndex`` (the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ``<capsule>`` as a cylinder and two spheres: the same set of points.
 
 The ``length`` is that of the cylinder alone (urdfdom's README, version 1.1). The cylinder stays where

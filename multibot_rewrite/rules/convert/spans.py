@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where elements and attributes of a document are, and the edits of attributes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits that make a description one of another version, where it means the same in both."""
 
 from __future__ import annotations

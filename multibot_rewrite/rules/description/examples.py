@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the examples of rules are put together: an element a line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB0: the lint itself: rules that crash, files that take too long, comments that suppress findings."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB9: what a rewrite for several robots leaves as it is, because its meaning is not known."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wheels of a plugin that drives a robot on two rows of them, and where they are.
 
 Sources: gz-sim src/systems/diff_drive/DiffDrive.cc (the speed of a left wheel is (v - w *

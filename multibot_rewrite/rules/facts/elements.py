@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The elements of a document by their tags: found once for all rules."""
 
 from __future__ import annotations

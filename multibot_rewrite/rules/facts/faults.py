@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the structure of a document and the values in it: found once for all rules."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What several rules need of one document is computed once and kept with its subject."""
 
 from __future__ import annotations

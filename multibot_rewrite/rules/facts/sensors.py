@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The simulated sensors of a description, and where they look from."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a description has for a simulator: hardware, plugins that load it, plugins that drive joints.
 
 Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of

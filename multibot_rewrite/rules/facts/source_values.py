@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a value was written before xacro expanded it: can a caller set another one for each robot?"""
 
 from __future__ import annotations

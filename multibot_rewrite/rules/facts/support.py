@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a robot on wheels touches the ground, with every joint at 0."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The checks of generate_parameter_library on a value, and those of ``demanded.schema``.
 
 Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers in parameter files: what MoveIt sends to, and sections that no manager declares.
 
 Sources: moveit2 moveit_simple_controller_manager_plugin.cpp (``controller_names``; of each the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The size of a robot as its costmaps have it: against the inflation, and against the description.
 
 Sources: nav2_costmap_2d costmap_2d_ros.cpp (a valid footprint counts, the radius then has no effect),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of a file against what their nodes declare: unknown, of another type, out of bounds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What nodes demand of a parameter by others: an order, a condition, another text; and its class.
 
 ``knowledge/demanded.schema`` has the demands, ``knowledge/plugin_classes.schema`` the classes.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What examples of rules stand beside, and are made of."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a file, and the parameter files of the same robot, set for nodes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a behavior tree or Lua file takes from elsewhere: other files, names made when it runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file beside a description -> what the rules for its kind find in it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keys that are repeated, overridden or without a value, and words of a list without parameters.
 
 Nodes read ``NAME.type``, ``NAME.topic`` or ``NAME.plugin`` for each NAME of a list: sources, layers,

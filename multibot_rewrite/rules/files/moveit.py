@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Groups and controller managers of a MoveIt file that the robots of a fleet do not have."""
 
 from __future__ import annotations

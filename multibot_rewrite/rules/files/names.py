@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in files beside a description that the description does not have, or whose use is not known."""
 
 from __future__ import annotations

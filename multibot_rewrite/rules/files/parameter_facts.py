@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters that nodes declare: by the sources of their packages where those are there, else by
 installed NoDL documents and by what is known."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that generate_parameter_library makes of a YAML file.
 
 Source: https://github.com/PickNikRobotics/generate_parameter_library (README, "YAML Syntax").

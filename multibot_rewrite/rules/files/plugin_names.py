@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Classes of plugins in parameter files, against those that packages register for pluginlib.
 
 Sources: pluginlib class_loader_imp.hpp (``createInstance`` throws for a name that no plugin description

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
 
 Sources: pluginlib loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp

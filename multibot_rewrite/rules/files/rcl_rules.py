@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rcl rejects in any parameter file, whatever node it is for, and what makes it skip a section.
 
 Source: rcl_yaml_param_parser parse.c (``parse_value``: a sequence is of one type and of single values;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rule finds in a file, before it is a finding."""
 
 from __future__ import annotations

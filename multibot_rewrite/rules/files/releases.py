@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a release lacks, what is deprecated in it, and what a broadcaster no longer sends in it."""
 
 from __future__ import annotations

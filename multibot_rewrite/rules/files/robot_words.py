@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words for robots in names and values: a build puts them in itself, so that a source has none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that ROS refuses, placeholders in names, and frames that tf2 refuses or takes for others."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Displays of RViz that show nothing, whatever robot they are for."""
 
 from __future__ import annotations

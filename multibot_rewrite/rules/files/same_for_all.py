@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values that stay the same for all robots, or that get a robot's name twice."""
 
 from __future__ import annotations

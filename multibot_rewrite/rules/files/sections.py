@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sections of a parameter file that robots cannot have each for itself."""
 
 from __future__ import annotations

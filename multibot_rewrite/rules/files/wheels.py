@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wheels of a diff_drive_controller against the descriptions of its package.
 
 Source: ros2_controllers diff_drive_controller/src/diff_drive_controller.cpp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a rule about a launch file is declared, and what its examples are made of."""
 
 from __future__ import annotations

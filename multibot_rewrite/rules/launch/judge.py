@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launch -> what the rules for launch files find in it, in the order of the codes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the models that a launch spawns: two of one name, at one place, on one topic.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8

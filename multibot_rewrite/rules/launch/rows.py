@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the rows of the bridges that a launch starts, beside the models that it spawns."""
 
 from __future__ import annotations

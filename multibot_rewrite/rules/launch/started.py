@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What of a launch file does not start, or waits for ever: the launch itself, controllers, models.
 
 Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the words that a launch file gives its nodes: transforms, rules, files, programs.
 
 Source: tf2_ros jazzy static_transform_broadcaster_program.cpp (angles in radians, eight or nine words

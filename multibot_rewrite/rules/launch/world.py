@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether the world that a launch starts runs what its robots need.
 
 Source: gz-sim8 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sentences for findings: the most likely cause, and what to do about it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about what a plan asks beyond names: who may send, what is offered, which node of several."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rule about planned topics, services and actions: does their node have them."""
 
 from __future__ import annotations

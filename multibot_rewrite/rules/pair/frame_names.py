@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about the names of tf frames: each robot's own, as the description and the layout have them."""
 
 from __future__ import annotations

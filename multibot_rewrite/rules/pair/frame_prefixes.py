@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A prefix that is in front of planned frames: frame_prefix beside a rewritten description.
 
 Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of parent and

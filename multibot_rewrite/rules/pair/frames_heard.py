@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rule about planned frames in no transform: no joint states, or another robot's description."""
 
 from __future__ import annotations

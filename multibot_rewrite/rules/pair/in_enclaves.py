@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about enclaves of SROS2: is every node of a robot in the robot's own?"""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about names of the wrong robot: those that belong to no robot, and another robot's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a plan and what is seen beside it differ: the look-ups that several rules need."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wrong names of a frame that are usual: without the robot's name, or with it once more."""
 
 from __future__ import annotations

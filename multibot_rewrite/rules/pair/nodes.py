@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about nodes: is every planned node running, only once, and is every running node planned."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about states of the plan: life cycle, parameters, clocks, machines."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """By a plan: a relative topic below the node's own namespace, where nothing publishes it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics that a robot needs by the plan, and that nothing publishes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was probably meant: similar names, and running nodes that are probably a missing one."""
 
 from __future__ import annotations

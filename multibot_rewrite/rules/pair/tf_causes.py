@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why a tf tree is in pieces: a name on one side, a node that does not run, the wrong parameters."""
 
 from __future__ import annotations

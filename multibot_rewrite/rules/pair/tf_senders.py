@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which node sends a transform, by the plan; a transform itself does not say it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tf trees of a snapshot: the transforms on a tf topic and its tf_static, and their senders."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules about transforms: one parent for each frame, one tree for each robot, the right tf topic."""
 
 from __future__ import annotations

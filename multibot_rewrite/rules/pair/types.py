@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """By a plan: which side of a name has the wrong type."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows of ``sdf.schema``: read when the first description needs them, by section.
 
 It is made from the sources by ``tools.interfaces``; its first lines have its grammar.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A URDF against the schema of what parsers look for: one pass, every fault of its structure."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters of a ``<plugin>`` and of ros2_control hardware against what their code reads.
 
 What it reads is in the rows of the vocabulary. A parameter counts as known where any release reads

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who reads a description in a release, and which version of URDF (``readers.schema``)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Gazebo reads below ``<gazebo>`` against the specification of SDF: one pass, every fault.
 
 Sources: ``sdf.schema``; parser_urdf.cc of sdformat (ParseSDFExtension, InsertSDFExtensionLink and

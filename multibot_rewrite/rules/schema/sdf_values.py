@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What libsdformat makes of a text, by the type that is asked for.
 
 Source: gazebosim/sdformat sdformat14_14.9.0 src/Param.cc (ValueFromStringImpl,

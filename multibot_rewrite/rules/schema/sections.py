@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The schema as data: what parsers of URDF look for in each element, read from ``urdf.schema``.
 
 A version of URDF has a schema of its own: what came later is in ``later``, and not read. Many elements

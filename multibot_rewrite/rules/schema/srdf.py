@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SRDF against what srdfdom and MoveIt read of it: one pass, every fault.
 
 Sources: srdfdom model.cpp; moveit_core robot_model.cpp (joint properties).

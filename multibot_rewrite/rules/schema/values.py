@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an attribute's value must be by its type in ``urdf.schema``, and what is wrong with it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The version of URDF that a description declares, read as urdfdom reads it.
 
 Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attribute it is 1.0.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of what only one process can have: a device, a port or a file that two robots name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of time: simulated time without a clock, two clocks, clocks mixed in one robot."""
 
 from __future__ import annotations

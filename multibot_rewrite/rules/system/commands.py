@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of commands: who may move a robot, and how many send at a time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Equal robots compared: what comes from one and not, or less often, from another."""
 
 from __future__ import annotations

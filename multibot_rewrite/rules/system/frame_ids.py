@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of ros2_control and MoveIt: an interface that is claimed and not exported, or claimed twice.
 
 Source: ros2_control controller_manager.cpp (a controller whose interfaces do not exist is not

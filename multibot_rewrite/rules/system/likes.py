@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Equal robots compared: the nodes and ends that one lacks and its likes have."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of where a robot is: nothing joins the map and the robot, or the odometry is another's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of what nodes ask of tf by their parameters: a frame, or a transform, that nothing sends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of connections: both sides of a name are there and do not connect, by type or QoS."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of nodes: two of one name, two managers of one node."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of what tf2 does not take: transforms that it drops as they come."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of what is between a sender and a robot: relays to another robot, limits left out."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of the nodes on a tf topic can have sent a transform, by what they do: a transform does not say
 who sent it."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of data: one topic written or read by several robots, a map or joint states twice."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of ``header.stamp``: what a robot measures is stamped with another time than now."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of states, which nodes were asked for: life cycle, controllers, clocks by parameter."""
 
 from __future__ import annotations

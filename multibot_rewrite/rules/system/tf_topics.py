@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of tf topics: one robot on two of them, a tree in pieces."""
 
 from __future__ import annotations

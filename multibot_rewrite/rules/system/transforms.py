@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of transforms: two parents, cycles, frames of several robots that collide."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dangers of what is not there: an end whose node's code or parameters name it, and nothing sends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Findings as a report. One file a format; only the one that is asked for is imported.
 
 Each has ``render(findings, report)``. The text can always be encoded as UTF-8 and ends with a line

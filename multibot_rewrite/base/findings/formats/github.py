@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Workflow commands: GitHub shows each finding as an annotation beside its line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """GitLab's Code Quality report, which merge requests show."""
 
 from __future__ import annotations

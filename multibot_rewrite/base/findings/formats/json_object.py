@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One JSON object, the same from release to release: see docs/lint.md."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JUnit XML for Jenkins and others: a suite for each file, a case for each finding."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A table a file: a comment on a pull request, or the summary of a job."""
 
 from __future__ import annotations

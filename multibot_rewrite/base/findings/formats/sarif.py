@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SARIF 2.1.0, as GitHub's code scanning and other collectors of findings read it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What several formats need: text that no reader stumbles over, paths, identities that last."""
 
 from __future__ import annotations

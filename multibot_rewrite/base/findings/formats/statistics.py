@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often each rule found something, and in how many files: the most frequent first."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lines for people and editors, as compilers write them: ``file:line:column: level: CODE message
 (hint)``, with a node or robot in the place of the file where it is about one."""
 

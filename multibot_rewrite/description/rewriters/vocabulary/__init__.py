@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vocabulary: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily.
 
 A file is a list of sections. The whole grammar:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vocabulary that other installed packages bring: entry points ``multibot_rewrite.vocabulary``.
 
 An entry point names a package whose ``*.vocab`` files are read; its code is not imported.

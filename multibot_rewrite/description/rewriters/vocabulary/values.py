@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the code of a plugin or of hardware reads: the type, words and range of each value."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics and services that a plugin's code names, as a section has them: ``odom=pkg/msg/Name``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a child has to ask its parent for: files, packages, variables of the environment."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fence that needs no kernel: Python tells a hook what is about to be done, and it says no.
 
 It is for good messages, and for systems without the fences of Linux. Alone it is no strong boundary:

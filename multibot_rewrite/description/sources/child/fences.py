@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All fences around a process, put up once what it needs is loaded."""
 
 from __future__ import annotations

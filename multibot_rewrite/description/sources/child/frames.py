@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frames that a child and its parent send each other: a letter, a length, and that many bytes.
 
 A child asks for what it needs (QUESTION), one thing at a time, and gets a VALUE or a REFUSAL. Its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Landlock: the kernel refuses this process every file, TCP port, and signal to others.
 
 No rule is added to the set, so nothing of what it handles is left. Source: Linux,

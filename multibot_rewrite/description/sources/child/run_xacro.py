@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One expansion, in the process that was made for it, and where each of its elements was written. The
 only import of xacro.
 

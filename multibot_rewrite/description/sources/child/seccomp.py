@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """seccomp: the kernel refuses this process every system call but a few.
 
 What is left computes, asks for memory, and reads and writes what is open. Sources: Linux,

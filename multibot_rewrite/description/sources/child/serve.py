@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A process that forks one child for each expansion: it starts faster than a new interpreter.
 
 It reads nothing that is not its parent's. A child gets a socket of its own, which leads to the parent.

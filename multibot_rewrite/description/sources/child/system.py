@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls of Linux that Python has no function for."""
 
 from __future__ import annotations

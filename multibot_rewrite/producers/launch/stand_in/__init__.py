@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A stand-in for launch and launch_ros where they are not: plain launch files in Python are read.
 
 ``standing_in`` lets ``import launch`` find it. Nothing is started.

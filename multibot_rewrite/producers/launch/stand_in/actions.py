@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Actions that set up a launch, and launch files, of the stand-in for launch.
 
 An action keeps what it is given; what only sets something up does so when it is visited. Source: launch

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What can be imported of launch and launch_ros, by module.
 
 Source: launch and launch_ros jazzy, ``__all__`` of each package.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Substitutions of launch_ros, and the index of packages, for machines without them.
 
 Source: launch_ros jazzy, substitutions/; ament_index_python jazzy, packages.py and resources.py.

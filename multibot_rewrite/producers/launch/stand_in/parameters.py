@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters as a launch file gives them to a node, with the types that launch_ros makes of them.
 
 Source: launch_ros jazzy, utilities/evaluate_parameters.py, parameter_descriptions.py.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A text with ``$(name value ...)`` in it -> its parts.
 
 Source: launch jazzy, share/launch/frontend/grammar.lark, frontend/parse_substitution.py, and ``parse``

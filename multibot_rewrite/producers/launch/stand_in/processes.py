@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Programs that a launch file starts, their environment, and what is done when something happens to
 them: nothing of it happens here. Names and signatures are those of launch jazzy.
 """

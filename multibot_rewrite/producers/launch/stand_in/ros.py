@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """As much of launch_ros as plain launch files use, for machines without it.
 
 Names and signatures are those of launch_ros jazzy. Source: launch_ros jazzy, actions/node.py,

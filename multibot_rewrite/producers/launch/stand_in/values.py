@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Substitutions, conditions and the context of the stand-in for launch.
 
 Source: launch jazzy, substitutions/, conditions/, launch_context.py, utilities/.

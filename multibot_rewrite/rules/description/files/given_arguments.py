@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """xacro arguments that are given and that nothing takes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a ``<plugin>`` or ``<hardware>`` loads: a library without a name, a class that it does not
 have."""
 

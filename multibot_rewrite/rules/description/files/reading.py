@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that cannot be read, or are not a robot description as they are."""
 
 from __future__ import annotations

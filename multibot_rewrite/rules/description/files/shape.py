@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Elements, attributes and parameters that their readers do not expect, or miss."""
 
 from __future__ import annotations

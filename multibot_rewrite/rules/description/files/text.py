@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The XML declaration, byte order mark and namespaces."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values that their readers reject, misread, or take for something else."""
 
 from __future__ import annotations

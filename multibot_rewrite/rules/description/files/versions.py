@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Versions of URDF: what the declared one does not read, and what the release's programs do not."""
 
 from __future__ import annotations

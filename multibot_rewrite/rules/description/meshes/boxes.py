@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large the meshes of a description are, and where they end."""
 
 from __future__ import annotations

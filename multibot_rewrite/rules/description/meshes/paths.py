@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How files are named: absolute paths, schemes, backslashes, formats that not every program reads."""
 
 from __future__ import annotations

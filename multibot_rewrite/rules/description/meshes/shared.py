@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mesh and texture files that a description names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB4: what goes wrong when a second robot uses the same description."""
 
 # The files of its rules, loaded where they are asked.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames and tf that two robots of one description would share."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the named robots would share in the running system, as the programs read the rewritten file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rewrite for the named robots rejects or warns about."""
 
 from __future__ import annotations

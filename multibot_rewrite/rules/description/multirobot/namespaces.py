@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Namespaces of plugins and of Gazebo itself, and the robot description that plugins read."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Prefixes that a xacro macro or file takes: names that lack them, and unused ones."""
 
 from __future__ import annotations

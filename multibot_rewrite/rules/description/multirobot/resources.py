@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files, devices, sensors and systems of the world that exist only once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules about several robots share: which claims they check, and examples."""
 
 from __future__ import annotations

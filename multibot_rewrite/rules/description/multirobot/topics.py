@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics that two robots of one description would share."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names of a xacro source by the macro they are written in, and the prefixes it takes."""
 
 from __future__ import annotations

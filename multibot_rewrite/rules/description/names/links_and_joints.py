@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of links, joints and the robot that are not valid in URDF, SDF or tf, or in other formats
 (USD, MJCF) that the option targets names."""
 

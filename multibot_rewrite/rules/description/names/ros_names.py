@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that are not valid in ROS: frames, topics, interfaces, the robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules about names share: the links, joints and robot that have one."""
 
 from __future__ import annotations

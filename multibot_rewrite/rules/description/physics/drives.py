@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives against the robot: where their wheels are, how large, which way they turn, their grip."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The inertia of links: missing, impossible, or in the wrong unit."""
 
 from __future__ import annotations

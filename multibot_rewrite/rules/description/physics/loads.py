@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What gravity does to a robot: torques beyond a motor's effort, and wheels that do not carry it."""
 
 from __future__ import annotations

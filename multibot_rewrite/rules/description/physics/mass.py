@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mass of links, with and without what is fixed to them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the parts of a link are: its collision, its visual and its centre of mass."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sensors against the robot: what they look at, and from where."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shapes of visuals and collisions, and the scales of their meshes."""
 
 from __future__ import annotations

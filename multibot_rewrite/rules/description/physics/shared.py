@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules about mass, inertia and shapes share: how they are read, and examples."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB2: names that nothing declares, or that are declared twice."""
 
 # The files of its rules, loaded where they are asked.

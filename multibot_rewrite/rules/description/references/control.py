@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Joints that <ros2_control> and transmissions drive, or should."""
 
 from __future__ import annotations

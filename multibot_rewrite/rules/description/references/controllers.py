@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Interfaces that controllers claim, in the file of their parameters that belongs to a description."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """<gazebo> blocks that contradict each other, or whose reference has two meanings."""
 
 from __future__ import annotations

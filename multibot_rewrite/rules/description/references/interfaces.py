@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Interfaces of ros2_control systems: twice, misspelt, without a state."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names of a document that nothing declares: one pass over it for all rules."""
 
 from __future__ import annotations

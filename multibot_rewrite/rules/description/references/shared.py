@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Examples that rules about references share."""
 
 from __future__ import annotations

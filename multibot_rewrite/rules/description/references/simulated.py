@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ros2_control in a simulator: what loads it, whose hardware it is, and who else drives its joints."""
 
 from __future__ import annotations

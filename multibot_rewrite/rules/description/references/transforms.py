@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames that are no links, and frames that the joints of a description place and a plugin as well."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Links, joints and other names that are used and not declared."""
 
 from __future__ import annotations

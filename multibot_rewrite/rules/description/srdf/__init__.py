@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB8: an SRDF against its URDF."""
 
 # The files of its rules, loaded where they are asked.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Links, joints, groups and virtual joints of an SRDF that its URDF, or the SRDF, does not have."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pairs of links that are not checked for collision."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules about an SRDF share: what srdfdom reads, and the robot of the examples."""
 
 from __future__ import annotations

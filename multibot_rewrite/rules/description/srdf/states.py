@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Planning groups and their named states."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values in <ros2_control> that its parser or the hardware refuses, or that leave the joint's limits.
 
 Sources: ros2_control hardware_interface/src/component_parser.cpp (``parse_rw_rate_attribute``,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Types, axes and origins of joints."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Limits of joints: missing, inverted, empty, in the wrong unit; soft limits, and dynamics."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Joints that mimic others."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules about the tree and its joints share: the types of joints, and examples."""
 
 from __future__ import annotations

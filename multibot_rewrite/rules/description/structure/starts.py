@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Positions that a description gives joints, against their limits: those they follow, those they
 start at."""
 

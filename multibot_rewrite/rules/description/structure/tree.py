@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The kinematic tree: one root, no loops, every link reached."""
 
 from __future__ import annotations

@@ -1,0 +1,32 @@
+"""A reader tries the pages one after the other in one clone: no page is in the way of the next."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import live_commands
+import page_commands
+import pytest
+from paths import ROOT
+
+PAGES = (
+    "README.md",
+    "docs/tutorials/two-robots-gazebo.md",
+    "docs/tutorials/nav2-three-robots.md",
+    "docs/tutorials/two-arms-moveit.md",
+    "docs/check.md",
+    "docs/tutorials/lint-in-ci.md",
+    "docs/tutorials/layouts.md",
+    "docs/recipes.md",
+    "docs/plan.md",
+)
+
+
+@pytest.mark.deep
+@pytest.mark.live
+def test_every_page_works_behind_those_before_it(tmp_path: Path, tf2: dict[str, str]) -> None:
+    there = page_commands.reader(tmp_path, live_commands.domain(89), **tf2)
+    for name in PAGES:
+        done = list(page_commands.steps((ROOT / name).read_text(), there))
+        assert done, name
+        page_commands.assert_as_shown(name, {name: done})
