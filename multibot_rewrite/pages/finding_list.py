@@ -106,10 +106,7 @@ def _snippet(place: str, lines: Sequence[str]) -> str:
     if not lines:
         return ""
     wanted = place.rpartition(":")[2]
-    marked = (
-        f"<b>{safe(line)}</b>" if line.split()[0] == wanted else safe(line)
-        for line in lines
-    )
+    marked = (f"<b>{safe(line)}</b>" if line.split()[0] == wanted else safe(line) for line in lines)
     return f"<pre>{chr(10).join(marked)}</pre>"
 
 
