@@ -1,0 +1,98 @@
+"""What ``build`` and ``explain`` say and refuse, without a fleet."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.cli import build, check, explain
+from multibot_rewrite.fleet.manifest import OutputChanges
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
+
+
+def options(**given: Any) -> argparse.Namespace:
+    usual = {
+        "quiet": False,
+        "verbose": False,
+        "program": "multibot",
+        "output": "out",
+        "fleet": "f.yaml",
+    }
+    return argparse.Namespace(**{**usual, **given})
+
+
+def said(call: Any, *given: object) -> str:
+    with pytest.raises(UsageError) as caught:
+        call(*given)
+    return str(caught.value)
+
+
+def changes(**given: Any) -> OutputChanges:
+    return OutputChanges(*((),) * len(OutputChanges._fields))._replace(**given)
+
+
+def test_a_fleet_has_a_robot(tmp_path: Path) -> None:
+    given = options(
+        output=str(tmp_path / "out"), undo=False, select=[], ignore=[], format="text", count=0
+    )
+    assert said(build.run, given) == "--count 0: a fleet has at least one robot"
+
+
+def test_a_build_goes_into_a_folder_and_not_over_its_input(tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    file.write_text("")
+    assert said(build._check_folder, str(file)) == f"{file}: it is a file; name a folder"
+    build._check_folder(str(tmp_path))
+    build._check_folder(str(tmp_path / "new"))
+    made = [OutputFile("a.yaml", b"", ())]
+    assert said(build._check_inputs, str(tmp_path), made, [str(file)]) == (
+        f"{file} is a file that is read; choose another folder for --output"
+    )
+    build._check_inputs(str(tmp_path), [OutputFile("b.yaml", b"", ())], [str(file)])
+
+
+def test_what_a_check_of_a_build_says(capsys: pytest.CaptureFixture[str]) -> None:
+    stale = changes(write=("a", "b"), remove=("c",))
+    assert build._stale(options(), stale) == 1
+    told = capsys.readouterr()
+    assert told.out == "a: stale\nb: stale\nc: left over\n"
+    assert told.err == "multibot: 3 files of out differ from what f.yaml makes\n"
+    assert build._stale(options(), changes(remove=("c",))) == 1
+    assert capsys.readouterr().err == "multibot: 1 file of out differ from what f.yaml makes\n"
+    assert build._stale(options(), changes()) == 0
+    assert capsys.readouterr().err == "multibot: out is up to date\n"
+
+
+def test_files_that_are_there_are_known_by_their_hashes(tmp_path: Path) -> None:
+    """sha256 of nothing and of "a", as sha256sum has them."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "a").write_bytes(b"a")
+    found = build._there(str(tmp_path), ["sub/a", "sub", "gone"])
+    assert list(found) == ["sub/a"]
+    assert "ca978112ca1bbdcafac231b39a23dc4da786eff8147c4e72b9807785afee48bb" in found["sub/a"]
+    assert build._known(str(tmp_path)) == {}
+
+
+def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> None:
+    given = options(output=None, codes=["MG101,MB101", "MG101"])
+    assert explain.run(given) == 0
+    text = capfd.readouterr().out
+    assert text.startswith("MG101 ") and text.count("\nMB101 ") == 1 and text.count("Why: ") == 2
+    assert explain.run(options(output=None, codes=[])) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert any(it.startswith("MG101 error ") for it in lines) and lines == sorted(lines)
+    for word, hint in (("", "see multibot explain"), ("MG1019", "did you mean 'MG101'?")):
+        assert said(explain.run, options(output=None, codes=[word])) == (
+            f"no rule has the code {word!r}, and none begins with it; {hint}"
+        )
+
+
+def test_the_file_of_a_plan() -> None:
+    assert check.plan_name(options(plan="p.yaml", input="i")) == "p.yaml"
+    assert (
+        check.plan_name(options(input="i")) == check.plan_name(options(plan=None, input="i")) == "i"
+    )
