@@ -75,6 +75,11 @@ def names(fact: Fact, node: NodeFacts) -> list[str]:
     return same or given or ([fact.name] if "<" not in fact.name else [])
 
 
+# What pal_statistics, another repository, publishes below each topic that it gets
+# (controller_manager.cpp INITIALIZE_ROS2_CONTROL_INTROSPECTION_REGISTRY).
+REGISTRY = {"full": "Statistics", "names": "StatisticsNames", "values": "StatisticsValues"}
+
+
 def endpoints(kind: str, node: NodeFacts, placed: NodeTable, release: str) -> Iterator[End]:
     """What a node has by its sources."""
     bound = bind(placed.name, placed.namespace, parsed(placed.rules))
@@ -95,6 +100,12 @@ def endpoints(kind: str, node: NodeFacts, placed: NodeTable, release: str) -> It
         )
         for it in SERVICES
     ]
+    if kind == "controller_manager" and release != "humble":
+        declared += [
+            ("publishes", f"~/{registry}/{it}", f"pal_statistics_msgs/msg/{t}", "")
+            for registry in ("introspection_data", "statistics")
+            for it, t in REGISTRY.items()
+        ]
     if lifecycle:
         declared += [
             ("serves", f"~/{it}", f"lifecycle_msgs/srv/{t}", "") for it, t in STATES.items()
