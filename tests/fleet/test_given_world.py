@@ -95,7 +95,7 @@ def test_what_is_said_of_it(fleet: Path, capsys: pytest.CaptureFixture[str]) -> 
     _built(fleet)
     said = capsys.readouterr().err
     assert "fleet.yaml:4:1: note: MF846 the world's 'boat' is left out" in said
-    assert "MF846 Scoring of the world names one robot in <vehicle>: it is told of r1 alone" in said
+    assert "MF846 Scoring of the world names one robot in <vehicle>: now r1 alone" in said
     assert "USVWind" not in said
 
 

@@ -40,7 +40,7 @@ WORLD_ROBOT = declare(
     NOTE,
     what="The world of the fleet has the robot in it, or a plugin that names it. The robot is left "
     "out, a block that names it is written for each robot. A warning where a plugin can name one robot "
-    "alone: it is told of the first.",
+    "alone: it names the first.",
     why="The launch file spawns each robot at its pose. A robot that the world has as well would stand "
     "beside them with names that no node uses.",
     fix="Nothing for a note. Of a plugin for one robot check that the first one is meant.",
@@ -163,9 +163,7 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
     if named and len(kind.robots) > 1:
         who = plugin.get("name") or plugin.get("filename") or "plugin"
         first = kind.robots[0].spec.name
-        message = (
-            f"{who} of the world names one robot in <{named[0].tag}>: it is told of {first} alone"
-        )
+        message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
         yield _said(it, named[0], message, WARNING)
 
 
