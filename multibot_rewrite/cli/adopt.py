@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot adopt``: a description package gets an argument that puts a prefix before its names."""
 
 from __future__ import annotations

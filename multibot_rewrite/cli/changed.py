@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of a package that a command changes: all written or none, or shown as a patch."""
 
 from __future__ import annotations

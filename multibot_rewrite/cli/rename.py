@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot rename``: one name of a package's descriptions changed where it is made and used."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description package for one robot gets an argument that puts a prefix before its names.
 
 Which values hold names of the robot is what a rewrite with ``--affix prefix`` asks, too. ``${prefix}``

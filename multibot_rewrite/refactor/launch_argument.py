@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A launch file passes a new xacro argument on: declared, with an empty default, and given to
 ``xacro``.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A folder -> its descriptions, each xacro expanded with what its arguments are by default."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where ``${prefix}`` goes in the sources, so that the names of a description get it and nothing else.
 
 A name is used in an attribute or a text of a xacro element. There the prefix goes, whatever makes the

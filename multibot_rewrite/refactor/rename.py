@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One name of a package's descriptions changed everywhere: where it is made, and where it is used.
 
 Which values hold the name is what a rewrite asks, too: the rewriters find it, the map of renames has

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Changes of the values of an expansion -> edits of the xacro files that make them.
 
 A value is put together from pieces (``description/sources/pieces.py``). A change can be made where all

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The topics of something that is no ROS 2 node: of Gazebo's transport, and of plugins of ROS 1."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known about a line of a xacro file: the values that it makes, and which pieces make them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where in the xacro files each piece of a value was written.
 
 A child tells numbers (``child/pieces.py``); they are looked up in the files as they were read here, and

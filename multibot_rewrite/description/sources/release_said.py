@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which ROS 2 release a description is for, where nobody said it: by the libraries that it loads, else
 by the CI and the packages of its repository.
 

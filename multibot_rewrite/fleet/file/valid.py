@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Is data as a JSON Schema wants it? Yes or no, for the keywords that the fleet file's schema has.
 
 jsonschema says what is wrong. It is asked only then: it takes longer to import than a fleet to plan.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes and groups of nodes as Python: the actions of ``fleet.launch.py``."""
 
 from __future__ import annotations

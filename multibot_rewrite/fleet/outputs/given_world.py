@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``world.sdf`` from a world of the user's: without the robot that it has, since the launch file spawns
 each of the fleet; what names that robot names those of the fleet.
 

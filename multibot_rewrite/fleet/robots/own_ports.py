@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports of simulated robots, such as the one at which an autopilot is met: each further robot that has
 the number of an earlier one gets the next that is free.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch says of the conditions of a node's endpoints: its program, its command line, the files
 that its parameters name, and who listens. What it does not say stays open."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The transforms that a launched node sends, and what it puts before its frames."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many DDS participants run on this machine, whoever has heard of them: each has ports of its own.
 
 Source: DDSI-RTPS 9.6.2.3, which Fast DDS and Cyclone DDS keep to: the port at which a participant is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sections of vocabulary files, each parsed when it is first asked for."""
 
 from __future__ import annotations

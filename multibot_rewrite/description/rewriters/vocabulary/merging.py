@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What two sections of vocabulary files say of one thing."""
 
 from __future__ import annotations

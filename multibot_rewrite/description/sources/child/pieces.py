@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Texts that know where they were written: what xacro makes of them, piece by piece.
 
 A value of an expansion is put together from what stands in an element, a property, the call of a macro,
