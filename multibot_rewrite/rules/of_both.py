@@ -57,8 +57,8 @@ ONE_DEVICE = declare(
     what="Two robots have one device: an address, serial number or calibration of their hardware, a "
     "port or file that only one process can have. A note for what two computers can both have (a "
     "device /dev/ttyUSB0, a port or a folder for output of a node that is not known), for a "
-    "description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address, and for a "
-    "parameter file that names the calibration of a camera.",
+    "description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address, and "
+    "for a parameter file that names the calibration of a camera.",
     why="Both drivers command one arm, or the second one is refused; both nodes write into one file "
     "and damage it. With another arm's calibration the tool is millimetres from where tf has it; with "
     "another camera's one robot measures wrongly.",
