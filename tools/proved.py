@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m tools.proved FOLDER...``: of how many public descriptions is a rewrite proved, and why.
 
 A folder is the corpus of the tests, or has checkouts of the repositories of ``proved.tsv``. Every

@@ -242,7 +242,8 @@ def _ros_affix(
     if kind == "stem" and in_namespace:
         return _namespace_affix("/", text) if text.startswith("/") else None
     if kind == "stem":
-        return _name_affix(naming.affix, separator, text)
+        # The root as a namespace: /robot1.
+        return _name_affix(naming.affix, separator if text.strip("/") else "", text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
 
 

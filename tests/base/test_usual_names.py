@@ -164,7 +164,7 @@ def test_words_that_stand_for_a_robot() -> None:
         (
             other_words.COMMANDS,
             """arguments coverage vocabulary doctor diagnose lint remap zenoh rewrite postfix prefix
-            rename strip undo clean new create generate make launch run start up simulate test
+            strip undo clean new create generate make launch run start up simulate test
             verify watch report graph record show visualize rviz""",
         ),
         (

@@ -100,7 +100,7 @@ def test_every_kind_is_tried() -> None:
     assert set(SPELLERS) == {
         "joint", "interface", "controller", "node", "namespace", "stem", "link_prefix",
         "joint_prefix", "gpio_prefix", "joint_stem", "doubles", "doubles_as_is", "component", "words",
-        "frame", "link", "sensor", "gpio", "hardware", "group",
+        "frame", "link", "sensor", "gpio", "hardware", "group", "port", "output",
     }  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 
 PARAMS = File("r1/p.yaml")
 FULL = RobotStarts(
-    "r1", "rover.urdf at home", ("r1/p.yaml",),
+    "r1", "rover.urdf", "/r1", ("r1/p.yaml",),
     (
         Start(
             "nav2_amcl", "amcl", "/r1", "amcl",
@@ -41,11 +41,11 @@ FULL = RobotStarts(
     (Start("tf_bridge", "b", parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),),
     (Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz"))),),
 )  # fmt: skip
-BARE = RobotStarts("r1", "rover.urdf", (), (Start("p", "e"),), (), ())
+BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),), (), ())
 SAID = not_bridged("r1")
 FUNCTION = f'''\
 def start_r1():
-    """Start rover.urdf at home."""
+    """Start rover.urdf in /r1."""
     # Not started: x (no program)
     params = [file('r1/p.yaml')]
     return [

@@ -314,7 +314,7 @@ def test_a_launched_program_is_a_known_node(
 
 def test_a_node_of_a_stack_comes_first_with_the_ends_of_its_program() -> None:
     ends = (
-        Endpoint(TOPIC, PUBLISHES, "a", when="argument: --stereo|-s"),
+        Endpoint(TOPIC, PUBLISHES, "a", when="-s set"),
         Endpoint(TOPIC, PUBLISHES, "b", when="program: driver|other"),
         Endpoint(SERVICE, SERVES, "c", when="program: else"),
     )

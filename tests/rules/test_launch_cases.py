@@ -121,8 +121,8 @@ def test_a_remap_rule_for_a_name_that_is_nearly_there(
     rule: str, texts: list[str], known: Knowledge
 ) -> None:
     node = started(*STATE, remappings=((rule, "x"),))
-    assert said(judged(known, "MG712", node)) == texts
-    assert judged(known, "MG712", UNKNOWN._replace(remappings=((rule, "x"),))) == []
+    assert said(judged(known, "MR103", node)) == texts
+    assert judged(known, "MR103", UNKNOWN._replace(remappings=((rule, "x"),))) == []
 
 
 def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:

@@ -228,7 +228,7 @@ ADOPT = Command(
     "adopt",
     "adopt",
     "%(prog)s FOLDER [NAME:=VALUE...] [options]",
-    "Give a description package for one robot an argument for a prefix.",
+    "Give a description package an argument for a prefix.",
     (
         Example("multibot adopt my_robot_description", "print the patch"),
         Example("multibot adopt my_robot_description --in-place"),

@@ -34,6 +34,7 @@ from multibot_rewrite.cli.options import (
     output,
     output_group,
     path_option,
+    rare,
     repeated,
     several,
     switch,
@@ -250,13 +251,15 @@ REHEARSE = Command(
         OptionGroup(
             "rehearsal",
             (
-                several(
-                    "--without-rules",
-                    "WAY",
-                    f"leave out rules that are given at {', '.join(WAYS)}; all: start nodes with"
-                    " namespace and name alone",
-                    [],
-                    values.some_of((EVERY_WAY, *WAYS)),
+                rare(
+                    several(
+                        "--without-rules",
+                        "WAY",
+                        f"leave out rules that are given at {', '.join(WAYS)}; all: start nodes with"
+                        " namespace and name alone",
+                        [],
+                        values.some_of((EVERY_WAY, *WAYS)),
+                    ),
                 ),
             ),
         ),

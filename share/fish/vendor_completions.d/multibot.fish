@@ -1,6 +1,6 @@
 # Made by share/make.py.
 complete -c multibot -l version -d 'show the version'
-complete -c multibot -n __fish_use_subcommand -f -a adopt -d 'Give a description package for one robot an argument for a prefix.'
+complete -c multibot -n __fish_use_subcommand -f -a adopt -d 'Give a description package an argument for a prefix.'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
@@ -135,7 +135,6 @@ complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l distro -r -f -
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -s o -l output -r -d 'write the findings there, not to standard output'
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l save-snapshot -r -d 'write the graph that came up, as multibot snapshot does'
-complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l without-rules -r -d 'leave out rules that are given at process, host, component, spawner, plugin'
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l report -r -d 'write a page to look at, one HTML file'
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l timeout -r -d 'look S seconds (default: 15)'
 complete -c multibot -n '__fish_seen_subcommand_from rehearse' -l domain -r -d 'instead of ROS_DOMAIN_ID, 0 to 232'

@@ -21,6 +21,7 @@ from multibot_rewrite.description.sources import conversation
 from multibot_rewrite.description.sources.child.frames import (
     CALLS,
     ORIGINS,
+    PIECES,
     QUESTION,
     REPORT,
     TEXT,
@@ -31,6 +32,7 @@ from multibot_rewrite.description.sources.expand import expand, expand_traced
 SOURCE = b'<robot name="r"><link name="a"/></robot>'
 GOOD = {
     "notes": "", "fences": [], "files": [["FILE", 2]], "macros": ["m"], "root": ["", "robot"],
+    "words": [],
 }  # fmt: skip
 FAILED = {"reason": "r", "file": "f", "position": None, "place": None, "call": -1}
 
@@ -96,7 +98,8 @@ def lie(monkeypatch: pytest.MonkeyPatch, data: bytes) -> None:
 
 def told(report: object, text: bytes = SOURCE, origins: bytes = b"", calls: bytes = b"") -> bytes:
     head = framed(REPORT, json.dumps(report).encode())
-    return head + framed(TEXT, text) + framed(ORIGINS, origins) + framed(CALLS, calls)
+    rows = framed(ORIGINS, origins) + framed(CALLS, calls) + framed(PIECES, b"")
+    return head + framed(TEXT, text) + rows
 
 
 LIES = {
@@ -171,7 +174,10 @@ def test_a_failure_is_placed_where_something_is(
 ) -> None:
     error = {**FAILED, "file": file, "place": [number, number, "na(me"], "call": number}
     report = framed(REPORT, json.dumps({**GOOD, "error": error}).encode())
-    lie(monkeypatch, report + framed(CALLS, array("i", [number] * 4).tobytes()))
+    lie(
+        monkeypatch,
+        report + framed(CALLS, array("i", [number] * 4).tobytes()) + framed(PIECES, b""),
+    )
     with pytest.raises(InputError, match="xacro failed: r; run xacro"):
         expand(file, {})
 
@@ -228,7 +234,7 @@ def test_no_answer_may_be_an_answer_next_time(
 
 def test_what_xacro_says_is_an_answer(file: str, monkeypatch: pytest.MonkeyPatch) -> None:
     report = json.dumps(GOOD | {"error": FAILED}).encode()
-    lie(monkeypatch, framed(REPORT, report) + framed(CALLS, b""))
+    lie(monkeypatch, framed(REPORT, report) + framed(CALLS, b"") + framed(PIECES, b""))
     said, asked = recorded(partial(refusal, file))
     assert "): r; " in said
     assert asked is not None

@@ -149,7 +149,7 @@ same_text = rule(
     why="Nothing in the text keeps the robots apart: what it opens is apart only if everything that is "
     "known of it is right.",
     fix="Use a layout that gives each robot names of its own, as --layout both.",
-    bad='<link name="a"/>\n<gazebo><plugin name="p" filename="libgazebo_ros_control.so"/></gazebo>',
+    bad='<link name="a"/>\n<gazebo><plugin name="p" filename="libacme_arm.so"/></gazebo>',
     good='<link name="a"/>\n<gazebo><plugin name="p" filename="libgazebo_grasp_fix.so"/></gazebo>',
     line=2,
     options={"robots": TWO, "naming": AS_WRITTEN},
