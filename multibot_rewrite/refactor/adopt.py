@@ -77,15 +77,16 @@ def adopt(
     distro: str = "",
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
-    becomes a xacro. Writes nothing. Raises UsageError where there is no description, InputError where
-    no place for the prefix changes names alone."""
+    becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
+    expanded, or no place for the prefix changes names alone."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     unread = dict(package.unread)
     found = list(_as_xacros(package.descriptions, tree, how, unread))
     if not found:
-        raise UsageError(f"{folder}: there is no description of a robot in it that can be expanded")
+        why = next(iter(unread.values()), f"{folder}: there is no description of a robot in it")
+        raise InputError(why)
     argument = _free_name(found)
     texts = _texts(found)
     edits: set[SourceEdit] = set()

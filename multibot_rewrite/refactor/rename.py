@@ -112,6 +112,8 @@ def rename_symbol(
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
+    if not package.descriptions:
+        raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
     _check_free(symbol, package)

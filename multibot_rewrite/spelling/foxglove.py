@@ -15,6 +15,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
@@ -41,8 +42,6 @@ _CLICKED = {
     "poseEstimateTopic": "initialpose",
     "pointTopic": "clicked_point",
 }
-_BODIES = ("base_link", "base_footprint")
-_WORLDS = ("map", "world")
 Panels = Mapping[str, Mapping[str, Any]]
 
 
@@ -88,14 +87,14 @@ def _world(plan: System) -> str:
     """The frame of all robots in which they stand, else the first robot's first."""
     shared = plan.shared_frames
     parents = [it.parent for it in plan.edges if it.parent in shared]
-    usual = [it for it in _WORLDS if it in shared]
+    usual = [it for it in WORLD_FRAMES if it in shared]
     own = (it for robot in plan.robots for it in robot.frames)
     return next(iter([*parents, *usual]), "") or next(own, "")
 
 
 def _own(plan: System, robot: Robot) -> Panels:
     """The robot in 3D, its images, and buttons that drive it."""
-    bodies = [it for it in robot.frames if any(body in it for body in _BODIES)]
+    bodies = [it for it in robot.frames if any(body in it for body in BODY_FRAMES)]
     frame = next(iter(bodies or robot.frames), "")
     panels: dict[str, Mapping[str, Any]] = {
         f"3D!{robot.name}": _scene(plan, [robot], frame),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite import InputError, UsageError, adopt
+from multibot_rewrite import InputError, adopt
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 
@@ -166,7 +166,7 @@ def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_a_robot_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="there is no description"):
+    with pytest.raises(InputError, match="there is no description"):
         adopt(str(tmp_path))
 
 

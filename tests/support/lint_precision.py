@@ -163,7 +163,7 @@ def counted() -> str:
 
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(ROOT / "tests/lint")]
+    sys.path[:0] = [str(ROOT / "tests/lint"), str(ROOT)]
     if sys.argv[1:] == ["counts"]:
         PRECISION.write_text(counted())
     else:

@@ -9,7 +9,7 @@ Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
@@ -78,13 +78,16 @@ def release_in_repository(file: str) -> str:
     return f"{OF_OLD} package.xml depends on {found[1].decode()}" if found else ""
 
 
-def _ci_files(top: str) -> Iterator[str]:
+@outside
+def _ci_files(top: str) -> tuple[str, ...]:
+    found: list[str] = []
     for place in _CI:
         path = os.path.join(top, place)
         names = sorted(os.listdir(path)) if os.path.isdir(path) else []
-        yield from (os.path.join(path, it) for it in names if it.endswith((".yml", ".yaml")))
+        found += [os.path.join(path, it) for it in names if it.endswith((".yml", ".yaml"))]
         if os.path.isfile(path):
-            yield path
+            found.append(path)
+    return tuple(found)
 
 
 def _releases_in(path: str) -> set[str]:

@@ -72,13 +72,15 @@ def collect(
     claims, hosts = _walk(document, tree, format_)
     release = tree.vocabulary.release
     claims = below_models(claims, document.source, release)
+    # No word of ROS is one that topics of Gazebo are made of.
+    of_gz = claims
     if not layout.namespaced:
         served = ((it.element, it.node.section) for it in hosts if it.node.section is not None)
         claims = own_namespaces(claims, served)
     declared = _declared(claims, urdf_declarations)
     inventory = Inventory(document, claims, hosts, declared, format_, [], release)
     rules = names_in_rules(claims, inventory.served)
-    rules = {**rules, **names_in_topics(claims, declared, layout.renames_models)}
+    rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
     apart = layout.at_run_time
     return inventory._replace(names=resolved_names(claims, declared, apart, rules))
 
