@@ -30,10 +30,14 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
     # Without robots a lint loads none of it.
     from multibot_rewrite.description.checks.meeting import shared_by_all
     from multibot_rewrite.description.steps.apply import cut
+    from multibot_rewrite.description.steps.collect import collect
     from multibot_rewrite.description.steps.plan import make_plan
 
     naming, document = subject.settings.naming, subject.document
-    plan = make_plan(subject.inventory, naming)
+    inventory = subject.inventory
+    if not naming.read_as.namespaced:
+        inventory = collect(document, subject.tree, layout=naming.read_as)
+    plan = make_plan(inventory, naming)
     if any(it.level == ERROR for it in plan.findings):
         return ()
     pieces = cut(document.source, plan.edits)
