@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -285,7 +286,15 @@ def judge(found: list[Trial], least: float = LEAST_LOADED) -> None:
 def all_files() -> dict[str, Path]:
     """Fixtures, corpus and wheels, as far as they are there."""
     fixtures = {path.name: path for path in sorted((FIXTURES / "robots").glob("*.urdf"))}
-    return {**fixtures, **corpus_files(), **wheel_files()}
+    found = {**fixtures, **corpus_files(), **wheel_files()}
+    return {name: path for name, path in found.items() if is_xml(path)}
+
+
+def is_xml(path: Path) -> bool:
+    """Can the referees read it? Gazebo's parser takes prefixes that are not declared, theirs do not."""
+    with suppress(etree.XMLSyntaxError):
+        return etree.fromstring(path.read_bytes()) is not None
+    return False
 
 
 def sample() -> dict[str, Path]:

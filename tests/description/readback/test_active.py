@@ -248,7 +248,7 @@ def control_of_ros_1(namespace: str) -> str:
     [
         ("<robotNamespace>/a</robotNamespace>", "postfix", "/a_robot1"),
         ("<robotNamespace>/a</robotNamespace>", "tf-per-robot", "/robot1/a"),
-        ("<robotNamespace>/</robotNamespace>", "postfix", "/_robot1"),
+        ("<robotNamespace>/</robotNamespace>", "postfix", "/robot1"),
         ("<robotNamespace/>", "postfix", "/robot1"),
         ("<robotNamespace/>", "tf-per-robot", "/robot1"),
         ("", "tf-per-robot", "/robot1"),
