@@ -10,7 +10,6 @@ from io import StringIO
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
@@ -19,9 +18,7 @@ from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.proposal.searching import Found, search
-
-# Of an SRDF that has no URDF here; its names are then used, not declared.
-_NO_URDF: Declared = {"link": {}}
+from multibot_rewrite.lint.files.subjects import NO_URDF
 
 
 class Expanding(NamedTuple):
@@ -92,7 +89,7 @@ def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] 
     if alone.format != SRDF_SECTION:
         return alone
     pairs = [collect(document, tree, it.declared) for it in urdfs if it.format != SRDF_SECTION]
-    return min(pairs, key=_lacks, default=collect(document, tree, _NO_URDF))
+    return min(pairs, key=_lacks, default=collect(document, tree, NO_URDF))
 
 
 def _lacks(pair: Inventory) -> int:

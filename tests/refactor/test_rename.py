@@ -57,6 +57,23 @@ def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(package: Pat
     assert made.mentions == (f"{package}/node.py:1",)
 
 
+def test_lines_that_are_left_are_in_the_order_of_their_paths(package: Path) -> None:
+    for name in ("zeta", "beta", "kappa", "alpha"):
+        (package / name).mkdir()
+        (package / name / "n.py").write_text('F = "base_link"\n')
+    made = rename_symbol("base_link", "chassis", str(package))
+    inside = [f"{package}/{name}/n.py:1" for name in ("alpha", "beta", "kappa", "zeta")]
+    assert list(made.mentions) == [f"{package}/node.py:1", *inside]
+
+
+def test_an_srdf_alone_declares_no_link(tmp_path: Path) -> None:
+    (tmp_path / "r.srdf").write_text(
+        '<robot name="r"><group name="g"><link name="a"/></group></robot>'
+    )
+    with pytest.raises(UsageError, match="no description has a link 'a'"):
+        rename_symbol("a", "b", str(tmp_path))
+
+
 def test_what_is_the_same_in_old_and_new_stays(package: Path) -> None:
     """Only ``left`` of ``left_wheel`` is in the call; it makes the joint, too."""
     with pytest.raises(InputError, match=r"makes others, too: .*name=\"front_joint\""):
