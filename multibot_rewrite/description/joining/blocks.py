@@ -10,17 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.joining.kept import was
 from multibot_rewrite.description.joining.spans import Spans
-from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.readback.xml import plain, text_of
 from multibot_rewrite.description.steps.collect import Inventory
 
 _FILES = "parameters"
+# What stands in a block for itself; anything else is a setting of the robot.
+_THINGS = ("plugin", "joint", "link", "frame", "model", "gripper", "sensor", "light")
 
 
 class Once(NamedTuple):
@@ -34,14 +35,14 @@ class Once(NamedTuple):
 def said_once(joined: Inventory, part: Inventory) -> Once:
     """What of a part's blocks for the whole robot is left out, as an earlier part says it."""
     managers = _managers(joined)
-    said = {_plain(it) for block in _blocks(joined) for it in _inside(block)}
+    said = {plain(it) for block in _blocks(joined) for it in _inside(block)}
     spans, before = Spans(part.document), Spans(joined.document)
     edits: list[Edit] = []
     more: list[Edit] = []
     notes: list[str] = []
     others = _managers(part) if managers else []
     for block in _blocks(part):
-        doubles = [it for it in _inside(block) if _plain(it) in said]
+        doubles = [it for it in _inside(block) if plain(it) in said]
         for plugin in (it for it in others if it.getparent() is block and it not in doubles):
             doubles.append(plugin)
             more += _more_files(before, managers[0], plugin, spans)
@@ -71,18 +72,6 @@ def _managers(inventory: Inventory) -> list[_Element]:
     return [element for element, section in inventory.served if section.process_wide]
 
 
-def _plain(element: _Element) -> bytes:
-    """An element without comments and blanks: what its readers see."""
-    return etree.tostring(_copied(element), method="c14n", with_comments=False)
-
-
-def _copied(element: _Element) -> _Element:
-    made = etree.Element(str(element.tag), {str(k): str(v) for k, v in element.items()})
-    made.text = text_of(element) or None
-    made.extend(_copied(it) for it in _inside(element))
-    return made
-
-
 def _files(plugin: _Element) -> list[_Element]:
     return list(plugin.iterchildren(_FILES))
 
@@ -108,14 +97,14 @@ def _filled(old: bytes, inside: bytes, plugin: _Element) -> bytes:
 
 
 def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:
-    first = {_plain(it) for it in _inside(plugin)}
+    first = {plain(it) for it in _inside(plugin)}
     for it in _inside(other):
-        if it.tag != _FILES and _plain(it) not in first:
+        if it.tag != _FILES and plain(it) not in first:
             where = f"{part.document.file}:{it.sourceline}"
             yield f"{where}: <{it.tag}> is left out: the plugin of an earlier part counts"
 
 
 def _of_the_whole(block: _Element, gone: Iterable[_Element], part: Inventory) -> Iterator[str]:
     for it in _inside(block):
-        if it.tag != "plugin" and it not in gone:
+        if it.tag not in _THINGS and it not in gone:
             yield f"{part.document.file}:{it.sourceline}: <{it.tag}> is now said of the whole robot"

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, ProofError
@@ -20,7 +19,7 @@ from multibot_rewrite.description.checks.links_and_joints import WORLD
 from multibot_rewrite.description.joining.kept import Section, is_joined_whole, sections
 from multibot_rewrite.description.joining.materials import bare
 from multibot_rewrite.description.joining.part import ReadPart, prefixing
-from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.readback.xml import plain, read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 
 _KINDS = ("link", "joint")
@@ -97,12 +96,8 @@ def _changed(own: _Element, joints: dict[str, _Element], moved: bool) -> Iterato
         parent = it.find("parent")
         if moved and parent is not None and parent.get("link") == WORLD:
             continue
-        if name not in joints or _plain(joints[name]) != _plain(it):
+        if name not in joints or plain(joints[name]) != plain(it):
             yield f"joint {name!r} is not what it was"
-
-
-def _plain(element: _Element) -> bytes:
-    return etree.tostring(element, method="c14n", with_comments=False, with_tail=False)
 
 
 def _check_mount(mounted: Mounted, joints: dict[str, _Element]) -> None:
@@ -116,6 +111,7 @@ def _check_mount(mounted: Mounted, joints: dict[str, _Element]) -> None:
 
 def _check_roots(root: _Element) -> None:
     links = {it.get("name") for it in root.iterchildren("link")}
-    children = [it.get("link") for it in root.iterfind("joint/child")]
+    first = (it.find("child") for it in root.iterchildren("joint"))
+    children = [it.get("link") for it in first if it is not None]
     if len(links - set(children)) != 1 or len(children) != len(set(children)):
         raise ProofError("the joined description is not one tree")

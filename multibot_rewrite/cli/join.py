@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``multibot join``: several descriptions become one robot, or are taken out of it again."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli.output import deliver, note, write_files
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.description.joining.part import ZERO, Part
+from multibot_rewrite.refactor.join import join, split
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the joined description, or its parts; returns the exit code."""
+    options.vocabulary = [*configured_vocabulary(options.words[0]), *options.vocabulary]
+    return (_split if options.split else _join)(options)
+
+
+def _join(options: argparse.Namespace) -> int:
+    parts = list(_parts(options))
+    made = join(
+        parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
+    )
+    deliver(options, made.data)
+    for it in (*map(str, made.findings), *made.notes):
+        note(options, it)
+    note(options, f"{', '.join(made.parts)}: joined; proved")
+    return DONE
+
+
+def _split(options: argparse.Namespace) -> int:
+    if len(options.words) != 1:
+        raise UsageError("--split takes one file, which multibot join made")
+    made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
+    items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
+    write_files(options, items)
+    note(options, f"{options.split}: {', '.join(os.path.basename(path) for path, _ in items)}")
+    return DONE
+
+
+def _parts(options: argparse.Namespace) -> Iterator[Part]:
+    """The parts as the words name them: each file with the xacro arguments behind it."""
+    files: list[tuple[str, dict[str, str]]] = []
+    for word in options.words:
+        name, is_argument, text = word.partition(":=")
+        if not is_argument:
+            files.append((word, {}))
+        elif not files:
+            raise UsageError(f"{word}: write it behind the xacro that it is for")
+        else:
+            files[-1][1][name] = text
+    many = len(files)
+    ends = _for_each("--at", options.at, many)
+    poses = _for_each("--pose", options.pose, many)
+    prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
+    for (file, given), at, pose, prefix in zip(files, ends, poses, prefixes, strict=True):
+        yield Part(file, at, _numbers(pose), prefix, xacro_args=given)
+
+
+def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
+    """The value for each part; the first part has none unless there is one for all."""
+    if not values:
+        return [""] * many
+    if len(values) == many - 1:
+        return ["", *values]
+    if of_all and len(values) == many:
+        return list(values)
+    few = plural(many - 1, "part")
+    raise UsageError(
+        f"{option} is there {plural(len(values), 'time')} for {few} behind the first; "
+        f'write it once for each, in their order, {option} "" for none'
+    )
+
+
+def _numbers(pose: str) -> Sequence[float]:
+    if not pose:
+        return ZERO
+    try:
+        return tuple(map(float, pose.replace(",", " ").split()))
+    except ValueError:
+        raise UsageError(f'--pose "{pose}": write six numbers, "x y z roll pitch yaw"') from None

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Several descriptions become one robot, and are taken out of it again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
+from multibot_rewrite.description.joining.part import Part, prefixing
+from multibot_rewrite.description.joining.proof import split_text
+from multibot_rewrite.description.readback.meeting import meetings, said
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.read import Source, read_whole
+
+
+class Joined(NamedTuple):
+    """One robot of several descriptions. ``parts`` are their names; ``notes`` are what was left out
+    and what two parts have in the running system, ``findings`` are about names without the prefix."""
+
+    data: bytes
+    parts: tuple[str, ...]
+    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def text(self) -> str:
+        """The description as str, for ``robot_description``; raises nothing."""
+        return self.data.decode()
+
+
+@checked
+def join(
+    parts: Iterable[Part], *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+) -> Joined:
+    """Join descriptions: each part after the first is fixed to a link of those before it.
+
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Raises
+    UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
+    name that two of them have, a part with two roots. Raises RewriteRefused and ProofError as
+    ``rewrite``.
+    """
+    wrong = next((it for it in parts if not isinstance(it, Part)), None)
+    if wrong is not None:
+        raise UsageError(f"join(): parts has a {type(wrong).__name__}; write Part('arm.urdf')")
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    made = join_texts([_given(it, trust) for it in parts], tree)
+    names = tuple(it.part.name for it in made.parts)
+    return Joined(made.data, names, (*made.notes, *_met(made, tree)), made.findings)
+
+
+@checked
+def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
+    """The parts of what ``join`` made, by name, as they were. Raises InputError for a text that no
+    join made or that was edited where a part cannot be told any more, RewriteRefused as ``strip``."""
+    read_in = read_whole(source, {})
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    return split_text(read_in.data, read_in.file, tree)
+
+
+def _given(part: Part, trust: bool) -> Given:
+    read_in = read_whole(part.description, part.xacro_args, trust)
+    return Given(part, read_in.data, read_in.file)
+
+
+def _met(made: JoinedText, tree: Tree) -> Iterator[str]:
+    """Topics, nodes and frames that two parts have in the running system."""
+    vocabulary = tree.vocabulary
+    named = {it.part.name: read(it.text, it.part.file, vocabulary).names for it in made.parts}
+    for it in meetings(named, prefixing()):
+        what = said(f"{it.robot} and {it.other}", it.name, it.twin)
+        yield f"{what}; a prefix is for links and joints, not for a {it.name.kind}"
