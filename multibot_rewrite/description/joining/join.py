@@ -82,12 +82,12 @@ def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
 
 
 def _check_given(given: Sequence[Given], parts: Sequence[ReadPart]) -> None:
+    if given[0].part.at:
+        raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
     names = [it.name for it in parts]
     twice = next((it for at, it in enumerate(names) if it in names[:at]), None)
     if twice is not None:
         raise UsageError(f"two parts are called {twice!r}; give one a name or prefix of its own")
-    if given[0].part.at:
-        raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
     for it in given:
         pose = tuple(it.part.pose)
         if len(pose) != 6 or not all(

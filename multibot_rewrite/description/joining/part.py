@@ -7,7 +7,7 @@ Sources: urdfdom model.cpp (``initTree``, ``initRoot``: one root, one joint abov
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.lazy import lazy_compile
@@ -88,15 +88,15 @@ class ReadPart(NamedTuple):
         return self.robot.below.get(WORLD, ()) if self.root == WORLD else ()
 
 
-def prefixing() -> Naming:
-    """The naming that puts a prefix, as it is written, before the names of a description."""
-    named = make_naming("frames-per-robot", PREFIX)
-    return named._replace(separators=dict.fromkeys(PREFIXED, ""))
+def prefixing(kinds: Iterable[str] = PREFIXED) -> Naming:
+    """The naming that puts a prefix, as it is written, before names of these kinds."""
+    return make_naming("frames-per-robot", PREFIX)._replace(separators=dict.fromkeys(kinds, ""))
 
 
-def name_of(part: Part, file: str) -> str:
-    """What a part is called."""
-    stem = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
+def name_of(part: Part, file: str, robot: str) -> str:
+    """What a part is called; one that is no file has the name of its ``robot``."""
+    last = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
+    stem = robot if file.startswith("<") else last
     for ending in _ENDINGS:
         stem = stem.removesuffix(ending)
     found = part.name or part.prefix.strip("_") or stem
@@ -115,15 +115,16 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
     inventory = collect(read_document(data, file), tree)
     for what in _faults(inventory):
         raise InputError(f"{file}: {what}")
-    findings: tuple[Finding, ...] = ()
+    prepared = pipeline.prepare(data, file, prefixing(PREFIXED if part.prefix else ()), tree)
     text = data
+    findings: tuple[Finding, ...] = ()
     if part.prefix:
-        prepared = pipeline.prepare(data, file, prefixing(), tree)
         findings = tuple(it for it in prepared.findings if it.code in TOLD)
         text = next(pipeline.render(prepared, [part.prefix], again=True))
         inventory = collect(read_document(text, file), tree)
     robot = read_robot(inventory.document.root)
-    return ReadPart(name_of(part, file), file, part.prefix, data, text, inventory, robot, findings)
+    name = name_of(part, file, inventory.document.root.get("name", ""))
+    return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
 
 
 def _faults(inventory: Inventory) -> Iterator[str]:

@@ -16,7 +16,7 @@ from multibot_rewrite.description.steps.document import Document, tag_end
 
 def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:
     """The edits that declare them; elements that the ``others`` leave out need none."""
-    return list(_edits(joined, spans, {it.start for it in others}))
+    return list(_edits(joined, spans, {it.start for it in others if it.start < it.end}))
 
 
 def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[Edit]:
