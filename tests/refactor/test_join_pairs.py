@@ -1,0 +1,60 @@
+"""Public parts joined in pairs: pinocchio has every link where its part has it, and every joint."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import joined_pairs
+import pytest
+from joined_pairs import PREFIX, WRONG, counted, largest_gap, seen
+
+from multibot_rewrite import split
+
+# A product of two matrices in doubles.
+ROUNDED = 1e-14
+needs_pin = pytest.mark.skipif(
+    importlib.util.find_spec("pinocchio") is None, reason="pinocchio is missing: pip install pin"
+)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """urdfdom says from C++ what it thinks of a file."""
+    kept, sink = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(sink, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(sink)
+
+
+@needs_pin
+@pytest.mark.sample(33)
+@pytest.mark.parametrize("name", joined_pairs.pairs())
+def test_every_link_is_where_its_part_has_it(name: str) -> None:
+    pair = joined_pairs.pairs()[name]
+    made = joined_pairs.joined_pair(pair)
+    with quiet():
+        whole, host, tool = seen(made.data), *(seen(it.read_bytes()) for it in (pair[0], pair[2]))
+        gap = largest_gap(pair, made.data, PREFIX)
+    assert gap < ROUNDED
+    moving = {PREFIX + it for it in tool.joints if it != "universe"}
+    assert whole.joints == host.joints | moving
+    assert whole.mass == pytest.approx(host.mass + tool.mass, abs=1e-12)
+    assert split(made.data) == {"host": pair.host.read_bytes(), "tool": pair.tool.read_bytes()}
+    found = counted(made.data)
+    before = counted(pair.host.read_bytes()) + counted(pair.tool.read_bytes())
+    assert [found[it] for it in WRONG] == [before[it] for it in WRONG]
+
+
+def test_there_are_enough_pairs() -> None:
+    """Else the table says little."""
+    found = joined_pairs.pairs()
+    if len(found) < len(joined_pairs.HOSTS) * len(joined_pairs.TOOLS) / 2:
+        pytest.skip("the corpus is not here")
+    assert len(found) >= 40
