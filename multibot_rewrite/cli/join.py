@@ -10,10 +10,11 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import deliver, note, write_files
+from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.joining.part import ZERO, Part
-from multibot_rewrite.refactor.join import join, split
+from multibot_rewrite.refactor.join import Joined, join, split
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,11 +28,32 @@ def _join(options: argparse.Namespace) -> int:
     made = join(
         parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
     )
-    deliver(options, made.data)
+    _deliver(options, made)
     for it in (*map(str, made.findings), *made.notes):
         note(options, it)
     note(options, f"{', '.join(made.parts)}: joined; proved")
     return DONE
+
+
+def _deliver(options: argparse.Namespace, made: Joined) -> None:
+    """The description, with the files that belong to it beside it."""
+    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
+    more = [(ending, data) for ending, data in beside if data]
+    if not more:
+        deliver(options, made.data)
+        return
+    if not goes_to_file(options):
+        raise UsageError("several files are made: name the description with -o robot.urdf")
+    stem = options.output.removesuffix(".urdf")
+    check_target(options.output, _read(options))
+    write_files(
+        options,
+        [(options.output, made.data), *((f"{stem}{ending}", data) for ending, data in more)],
+    )
+
+
+def _read(options: argparse.Namespace) -> Iterator[str]:
+    yield from (word for word in options.words if ":=" not in word)
 
 
 def _split(options: argparse.Namespace) -> int:
@@ -59,23 +81,26 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     ends = _for_each("--at", options.at, many)
     poses = _for_each("--pose", options.pose, many)
     prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
-    for (file, given), at, pose, prefix in zip(files, ends, poses, prefixes, strict=True):
-        yield Part(file, at, _numbers(pose), prefix, xacro_args=given)
+    srdfs = _of_each("--srdf", options.srdf, many)
+    controllers = _of_each("--controllers", options.controllers, many)
+    every = zip(files, ends, poses, prefixes, srdfs, controllers, strict=True)
+    for (file, given), at, pose, prefix, srdf, yaml in every:
+        where = at, _numbers(pose), prefix
+        yield Part(file, *where, "", given, srdf or None, tuple(filter(None, yaml.split(","))))
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
     """The value for each part; the first part has none unless there is one for all."""
-    if not values:
-        return [""] * many
-    if len(values) == many - 1:
-        return ["", *values]
     if of_all and len(values) == many:
         return list(values)
-    few = plural(many - 1, "part")
-    raise UsageError(
-        f"{option} is there {plural(len(values), 'time')} for {few} behind the first; "
-        f'write it once for each, in their order, {option} "" for none'
-    )
+    return ["", *_of_each(option, values, many - 1, " behind the first")]
+
+
+def _of_each(option: str, values: Sequence[str], many: int, which: str = "") -> list[str]:
+    if not values or len(values) == many:
+        return list(values) or [""] * many
+    what = f"{option} is there {plural(len(values), 'time')} for {plural(many, 'part')}{which}"
+    raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
 
 
 def _numbers(pose: str) -> Sequence[float]:

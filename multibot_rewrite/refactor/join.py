@@ -3,28 +3,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, prefixing
 from multibot_rewrite.description.joining.proof import split_text
+from multibot_rewrite.description.joining.semantic import (
+    JoinedSemantics,
+    PartSemantics,
+    joined_srdf,
+    spelled_srdf,
+)
 from multibot_rewrite.description.readback.meeting import meetings, said
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.sources.read import Source, read_whole
+from multibot_rewrite.description.sources.read import (
+    Source,
+    args_for,
+    read_file,
+    read_whole,
+)
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 
 class Joined(NamedTuple):
-    """One robot of several descriptions. ``parts`` are their names; ``notes`` are what was left out
-    and what two parts have in the running system, ``findings`` are about names without the prefix."""
+    """One robot of several descriptions. ``srdf`` is the SRDF of all that have one, ``controllers``
+    the one file of their controllers' parameters; both are empty where no part has them. ``parts`` are
+    their names; ``notes`` are what was left out and what two parts have in the running system,
+    ``findings`` are about names without the prefix."""
 
     data: bytes
+    srdf: bytes
+    controllers: bytes
     parts: tuple[str, ...]
     notes: tuple[str, ...]
     findings: tuple[Finding, ...]
@@ -49,10 +67,12 @@ def join(
     wrong = next((it for it in parts if not isinstance(it, Part)), None)
     if wrong is not None:
         raise UsageError(f"join(): parts has a {type(wrong).__name__}; write Part('arm.urdf')")
-    tree = builtin_tree(tuple(vocabulary), release_here(distro))
-    made = join_texts([_given(it, trust) for it in parts], tree)
+    given, tree = tuple(parts), builtin_tree(tuple(vocabulary), release_here(distro))
+    made = join_texts([_given(it, trust) for it in given], tree)
+    semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
     names = tuple(it.part.name for it in made.parts)
-    return Joined(made.data, names, (*made.notes, *_met(made, tree)), made.findings)
+    notes = (*made.notes, *semantics.notes, *files.notes, *_met(made, tree))
+    return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
 
 
 @checked
@@ -69,10 +89,32 @@ def _given(part: Part, trust: bool) -> Given:
     return Given(part, read_in.data, read_in.file)
 
 
+def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:
+    if not any(it.srdf for it in given):
+        return JoinedSemantics(b"", ())
+    parts = []
+    for it, mounted in zip(given, made.parts, strict=True):
+        if it.srdf is None:
+            parts.append(PartSemantics(mounted.part, b"", ""))
+            continue
+        read_in = read_whole(it.srdf, args_for(it.srdf, it.description, it.xacro_args), trust)
+        parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
+    return joined_srdf(parts, made.data)
+
+
+def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:
+    files = []
+    for it, mounted in zip(given, made.parts, strict=True):
+        part = mounted.part
+        before = collect(read_document(part.data, part.file), tree)
+        files += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
+    return joined_files(files) if files else JoinedFiles(b"", ())
+
+
 def _met(made: JoinedText, tree: Tree) -> Iterator[str]:
     """Topics, nodes and frames that two parts have in the running system."""
     vocabulary = tree.vocabulary
     named = {it.part.name: read(it.text, it.part.file, vocabulary).names for it in made.parts}
     for it in meetings(named, prefixing()):
         what = said(f"{it.robot} and {it.other}", it.name, it.twin)
-        yield f"{what}; a prefix is for links and joints, not for a {it.name.kind}"
+        yield f"{what}; a prefix changes no topics, nodes and ports"

@@ -293,9 +293,16 @@ JOIN = Command(
             ),
         ),
         OptionGroup(
+            'files beside, once for each part, the first one too; each may be ""',
+            (
+                each("--srdf", "FILE", "the SRDF of the part"),
+                each("--controllers", "A,B", "parameter files of its controllers"),
+            ),
+        ),
+        OptionGroup(
             "output",
             (
-                output("write the result there"),
+                output("write the result there, and PATH.srdf and PATH_controllers.yaml beside"),
                 path_option("--split", "write the parts of a joined FILE into a folder", "FOLDER"),
             ),
         ),
