@@ -6,13 +6,14 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.description.joining.part import ZERO, Part
 from multibot_rewrite.refactor.join import Joined, join, split
 
@@ -39,21 +40,23 @@ def _deliver(options: argparse.Namespace, made: Joined) -> None:
     """The description, with the files that belong to it beside it."""
     beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
     more = [(ending, data) for ending, data in beside if data]
-    if not more:
+    if more and not goes_to_file(options):
+        raise UsageError("several files are made: name the description with -o robot.urdf")
+    if not goes_to_file(options):
         deliver(options, made.data)
         return
-    if not goes_to_file(options):
-        raise UsageError("several files are made: name the description with -o robot.urdf")
     stem = options.output.removesuffix(".urdf")
-    check_target(options.output, _read(options))
-    write_files(
-        options,
-        [(options.output, made.data), *((f"{stem}{ending}", data) for ending, data in more)],
-    )
+    _write(options, [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)])
 
 
-def _read(options: argparse.Namespace) -> Iterator[str]:
-    yield from (word for word in options.words if ":=" not in word)
+def _write(options: argparse.Namespace, items: Sequence[tuple[str, bytes]]) -> None:
+    """Write all or none, and nothing over a file that is read."""
+    read = [it for it in options.words if ":=" not in it]
+    read += [*options.srdf, *chain.from_iterable(it.split(",") for it in options.controllers)]
+    for path, _ in items:
+        check_target(path, filter(None, read), "--split" if options.split else "--output")
+        check_link(path)
+    write_files(options, items)
 
 
 def _split(options: argparse.Namespace) -> int:
@@ -61,7 +64,7 @@ def _split(options: argparse.Namespace) -> int:
         raise UsageError("--split takes one file, which multibot join made")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
-    write_files(options, items)
+    _write(options, items)
     note(options, f"{options.split}: {', '.join(os.path.basename(path) for path, _ in items)}")
     return DONE
 

@@ -300,6 +300,9 @@ def test_the_command_joins_and_splits(
     assert Path("out/r.urdf").read_text() == JOINED.replace(" hand ", " h ").replace(
         "hand_mount", "h_mount"
     )
+    Path("arm.urdf").write_bytes(Path("out/r.urdf").read_bytes())
+    assert main(["join", "arm.urdf", "--split", "."]) == 2
+    assert "arm.urdf is a file that is read" in capsys.readouterr().err
     assert main(["join", "out/r.urdf", "--split", "parts"]) == 0
     assert Path("parts/arm.urdf").read_text() == ARM
     assert Path("parts/h.urdf").read_text() == HAND
