@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterator, Sequence
-from itertools import chain
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import UsageError
@@ -14,7 +13,9 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_link, check_target
+from multibot_rewrite.description.joining.from_file import parts_of
 from multibot_rewrite.description.joining.part import ZERO, Part
+from multibot_rewrite.description.sources.read import JOIN
 from multibot_rewrite.refactor.join import Joined, join, split
 
 
@@ -29,14 +30,14 @@ def _join(options: argparse.Namespace) -> int:
     made = join(
         parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
     )
-    _deliver(options, made)
+    _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
         note(options, it)
     note(options, f"{', '.join(made.parts)}: joined; proved")
     return DONE
 
 
-def _deliver(options: argparse.Namespace, made: Joined) -> None:
+def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
     """The description, with the files that belong to it beside it."""
     beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
     more = [(ending, data) for ending, data in beside if data]
@@ -46,15 +47,21 @@ def _deliver(options: argparse.Namespace, made: Joined) -> None:
         deliver(options, made.data)
         return
     stem = options.output.removesuffix(".urdf")
-    _write(options, [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)])
+    items = [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)]
+    _write(options, items, [*options.words, *_files(parts)])
 
 
-def _write(options: argparse.Namespace, items: Sequence[tuple[str, bytes]]) -> None:
+def _files(parts: Sequence[Part]) -> Iterator[str]:
+    for it in parts:
+        yield from map(str, filter(None, (it.description, it.srdf, *it.controllers)))
+
+
+def _write(
+    options: argparse.Namespace, items: Sequence[tuple[str, bytes]], read: Sequence[str]
+) -> None:
     """Write all or none, and nothing over a file that is read."""
-    read = [it for it in options.words if ":=" not in it]
-    read += [*options.srdf, *chain.from_iterable(it.split(",") for it in options.controllers)]
     for path, _ in items:
-        check_target(path, filter(None, read), "--split" if options.split else "--output")
+        check_target(path, read, "--split" if options.split else "--output")
         check_link(path)
     write_files(options, items)
 
@@ -64,13 +71,16 @@ def _split(options: argparse.Namespace) -> int:
         raise UsageError("--split takes one file, which multibot join made")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
-    _write(options, items)
+    _write(options, items, options.words)
     note(options, f"{options.split}: {', '.join(os.path.basename(path) for path, _ in items)}")
     return DONE
 
 
 def _parts(options: argparse.Namespace) -> Iterator[Part]:
     """The parts as the words name them: each file with the xacro arguments behind it."""
+    if options.words[0].endswith(JOIN):
+        yield from _listed(options)
+        return
     files: list[tuple[str, dict[str, str]]] = []
     for word in options.words:
         name, is_argument, text = word.partition(":=")
@@ -90,6 +100,15 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     for (file, given), at, pose, prefix, srdf, yaml in every:
         where = at, _numbers(pose), prefix
         yield Part(file, *where, "", given, srdf or None, tuple(filter(None, yaml.split(","))))
+
+
+def _listed(options: argparse.Namespace) -> Sequence[Part]:
+    """The parts that a file lists, which says everything of them."""
+    beside = ("at", "pose", "prefix", "srdf", "controllers")
+    more = [*options.words[1:], *(f"--{it}" for it in beside if getattr(options, it))]
+    if more:
+        raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
+    return parts_of(options.words[0])
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:

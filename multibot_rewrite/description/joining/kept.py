@@ -35,6 +35,10 @@ _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
 _WAS = lazy_compile(rb"<!-- multibot was ([01]) (.*?) -->", re.DOTALL)
 _OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
+_MARKS = lazy_compile(
+    rb"  <!-- multibot (?:base .*?-->\n|part .*?-->)|<!-- multibot (?:was .*?-->|end .*?-->\n)",
+    re.DOTALL,
+)
 _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
@@ -56,6 +60,11 @@ def is_joined(text: bytes) -> bool:
 def is_joined_whole(text: bytes) -> bool:
     """Is it the result of a join?"""
     return _BASE.search(text) is not None
+
+
+def without_marks(text: bytes) -> bytes:
+    """The text without the comments of a join: its parts cannot be told any more."""
+    return _MARKS.sub(b"", text)
 
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
