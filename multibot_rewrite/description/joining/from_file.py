@@ -20,7 +20,7 @@ from multibot_rewrite.description.joining.join import Given, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.sources.read import SourceText, read_file, read_whole
+from multibot_rewrite.description.sources.read import JOIN, SourceText, read_file, read_whole
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
@@ -80,11 +80,13 @@ def _part(item: YamlItem, folder: str) -> Part:
     for key, value in at.items():
         if key not in _AT:
             wrong(value, f"at has {key!r}; it takes parent and pose")
-    if not word_of(keys, "description"):
-        wrong(item, "a part has no description; name its URDF or xacro")
+    described = word_of(keys, "description")
+    if not described or described.endswith(JOIN):
+        what = f"{described} is a list of parts" if described else "a part has no description"
+        wrong(item, f"{what}; name a URDF or xacro")
     beside = tuple(_path(it, folder) for it in words_of(keys, "controllers"))
     return Part(
-        _path(word_of(keys, "description"), folder),
+        _path(described, folder),
         word_of(at, "parent"),
         _pose(table_of(at, "pose")),
         word_of(keys, "prefix"),
@@ -96,7 +98,7 @@ def _part(item: YamlItem, folder: str) -> Part:
 
 
 def _path(path: str, folder: str) -> str:
-    return os.path.join(folder, path) if path else ""
+    return os.path.normpath(os.path.join(folder, path)) if path else ""
 
 
 def _arguments(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str]]:
