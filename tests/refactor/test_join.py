@@ -276,7 +276,7 @@ def test_a_wrong_call_is_told_in_one_line(case: str) -> None:
 
 EDITED = {
     "the comment at the end": ("multibot end hand", "multibot endhand", "was edited by hand"),
-    "what it is": ("multibot base arm", "multi base arm", "no part can be told"),
+    "what it is": ("multibot base arm", "multi base arm", "its parts are not known"),
     "a name without its prefix": ("h_finger", "finger", "h_"),
 }
 

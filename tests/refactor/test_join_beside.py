@@ -98,7 +98,7 @@ def test_one_srdf_has_what_the_parts_have_and_the_pair_that_meets() -> None:
     assert made.srdf.decode() == JOINED_SRDF
     assert made.notes == (
         "SRDF: 3 pairs of links of two parts are checked for collisions; "
-        "MoveIt's Setup Assistant finds those that never meet",
+        "MoveIt's Setup Assistant finds those that never touch",
     )
 
 

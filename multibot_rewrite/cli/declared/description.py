@@ -318,9 +318,9 @@ JOIN = Command(
     "0 done; 2 wrong use, a file that cannot be read, or parts that cannot be joined",
     more="Proved on each run: every part taken out of the result again is what went in, and no joint"
     " inside a part has changed. Names that two parts have are refused: give one a --prefix."
-    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part, the first"
-    " one too, join these as well, into PATH.srdf and PATH_controllers.yaml. A .join file says all of it"
-    " as YAML, and every command that takes a description takes one:"
+    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part, the"
+    " first one too, join these as well, into PATH.srdf and PATH_controllers.yaml. A .join file says"
+    " all of it as YAML, and every command that takes a description takes one:"
     "\n\n  join:\n    - {description: arm.urdf}\n"
     "    - {description: hand.urdf, prefix: hand_, at: {parent: tool0, pose: {z: 0.1}}}",
 )

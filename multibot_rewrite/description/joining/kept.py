@@ -105,7 +105,7 @@ def sections(text: bytes, file: str) -> list[Section]:
     before = _undone(text, file)
     mark = _BASE.search(before)
     if mark is None:
-        raise InputError(f"{file}: it was not made by multibot join: no part can be told from it")
+        raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
     found = list(_behind(before, mark.end(), file))
     last = found[-1][1] if found else mark.end()
     base = before[: mark.start()] + before[last:]

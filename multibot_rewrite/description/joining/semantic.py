@@ -149,4 +149,4 @@ def _unknown(
     many = (sum(sizes) ** 2 - sum(it * it for it in sizes)) // 2 - len(pairs)
     if many:
         what = f"{plural(many, 'pair')} of links of two parts are checked for collisions"
-        yield f"SRDF: {what}; MoveIt's Setup Assistant finds those that never meet"
+        yield f"SRDF: {what}; MoveIt's Setup Assistant finds those that never touch"
