@@ -52,6 +52,13 @@ def test_every_link_is_where_its_part_has_it(name: str) -> None:
     assert [found[it] for it in WRONG] == [before[it] for it in WRONG]
 
 
+@pytest.mark.sample(19)
+@pytest.mark.parametrize("name", joined_pairs.twins())
+def test_no_name_of_a_part_leads_into_its_twin(name: str) -> None:
+    pair = joined_pairs.twins()[name]
+    assert joined_pairs.crossed(pair, joined_pairs.by_join(pair)) == 0
+
+
 def test_there_are_enough_pairs() -> None:
     """Else the table says little."""
     found = joined_pairs.pairs()

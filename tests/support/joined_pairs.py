@@ -217,6 +217,32 @@ def names_twice(root: etree._Element) -> Iterator[tuple[str, str]]:
         yield from ((tag, name) for name, many in names.items() if many > 1)
 
 
+def twins() -> Mapping[str, Pair]:
+    """Each file as a part of itself: every name is there twice but for the prefix."""
+    found = {it.host: it.at for it in pairs().values()}
+    ends = {it.tool: root_of(plain(it.tool.read_bytes())) for it in pairs().values()}
+    return {path.name: Pair(path, at, path) for path, at in {**ends, **found}.items()}
+
+
+def crossed(pair: Pair, data: bytes) -> int:
+    """How many uses in the second of two twins name a link or joint of the first one."""
+    root = plain(pair.host.read_bytes())
+    names = {it.get("name", "") for tag in ("link", "joint") for it in root.iterchildren(tag)}
+    return _uses(plain(data), names - {"world"}) - _uses(root, names - {"world"})
+
+
+def _uses(root: etree._Element, names: set[str]) -> int:
+    parts = [it for tag in USING for it in root.iterfind(tag)]
+    # Of a <collision> in a block sdformat takes the children alone (parser_urdf.cc).
+    inside = [it for part in parts for it in part.iter("*") if it.tag != "collision"]
+    texts = [(it.text or "").strip() for it in inside]
+    values = [value for it in inside for value in it.attrib.values()]
+    return sum(it in names for it in (*texts, *values))
+
+
+USING = ("gazebo", "transmission", "ros2_control", "joint/mimic")
+
+
 def by_mujoco(pair: Pair) -> bytes:
     """MjSpec.attach."""
     import mujoco  # type: ignore[import-not-found]
@@ -285,6 +311,18 @@ OTHERS: Mapping[str, tuple[str, Callable[[Pair], bytes]]] = {
 }
 
 
+def row_of_twins(make: Callable[[Pair], bytes]) -> str:
+    """How many twins a program makes, and how many uses in them are crossed."""
+    found = []
+    for pair in twins().values():
+        try:
+            with redirect_stderr(io.StringIO()), redirect_stdout(io.StringIO()):
+                found.append(crossed(pair, make(pair)))
+        except Exception as error:
+            print(f"{pair.host.name} twice: {error}"[:160], file=sys.stderr)
+    return f"{len(found)} | {max(0, sum(found))}"
+
+
 class Row(NamedTuple):
     """What a program makes of all pairs."""
 
@@ -324,6 +362,7 @@ def _gap(pair: Pair, data: bytes) -> Iterator[float]:
 def table() -> Iterator[str]:
     """The rows for the page."""
     heads = (f"pairs of {len(pairs())}", *COUNTED, *WRONG, "largest gap")
+    heads += (f"twins of {len(twins())}", "crossed names")
     yield f"| program | {' | '.join(heads)} |"
     yield f"|---|{'--:|' * len(heads)}"
     for name, (module, make) in OTHERS.items():
@@ -334,7 +373,8 @@ def table() -> Iterator[str]:
         cells = [f"{it.found[what]} of {it.wanted[what]}" for what in COUNTED]
         cells += [str(max(0, it.found[what] - it.wanted[what])) for what in WRONG]
         gap = "" if it.gap is None else f"{it.gap:.0e}" if it.gap else "0"
-        yield f"| {name} | {it.made} | {' | '.join(cells)} | {gap} |"
+        cells += [gap, row_of_twins(make)]
+        yield f"| {name} | {it.made} | {' | '.join(cells)} |"
 
 
 def _is_there(module: str) -> bool:
