@@ -155,6 +155,17 @@ def test_a_controller_manager_is_there_once_with_the_files_of_both() -> None:
     assert tree_of(empty).xpath("//plugin/parameters/text()") == ["b.yaml", "a.yaml"]
 
 
+def test_controller_managers_of_two_simulators_both_stay_and_a_line_says_so() -> None:
+    classic = BLOCK.format("").replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    first = Part(robot(link("base") + BLOCK.format("")))
+    made = join([first, Part(robot(link("a") + classic), "base", prefix="p_", name="n")])
+    assert tree_of(made.data).xpath("//plugin/@filename") == [
+        "gz_ros2_control-system",
+        "libgazebo_ros2_control.so",
+    ]
+    assert "makes a controller manager, and another plugin before it does, too" in made.notes[0]
+
+
 def test_what_is_said_of_the_whole_robot_is_said_once_and_other_settings_are_told() -> None:
     state = '<gazebo><plugin filename="gz-sim-joint-state-publisher-system" name="j"/></gazebo>'
     data = joined(state + link("a"), f"{link('a')}<gazebo><!-- x -->{state[8:]}")

@@ -34,19 +34,24 @@ class Once(NamedTuple):
 
 def said_once(joined: Inventory, part: Inventory) -> Once:
     """What of a part's blocks for the whole robot is left out, as an earlier part says it."""
-    managers = _managers(joined)
+    managers, others = _managers(joined), _managers(part)
     said = {plain(it) for block in _blocks(joined) for it in _inside(block)}
     spans, before = Spans(part.document), Spans(joined.document)
     edits: list[Edit] = []
     more: list[Edit] = []
     notes: list[str] = []
-    others = _managers(part) if managers else []
     for block in _blocks(part):
         doubles = [it for it in _inside(block) if plain(it) in said]
-        for plugin in (it for it in others if it.getparent() is block and it not in doubles):
+        for plugin, names in others.items():
+            if plugin.getparent() is not block or plugin in doubles or not managers:
+                continue
+            first = next((it for it, its in managers.items() if its == names), None)
+            if first is None:
+                notes.append(_another(plugin, part))
+                continue
             doubles.append(plugin)
-            more += _more_files(before, managers[0], plugin, spans)
-            notes += _other_settings(managers[0], plugin, part)
+            more += _more_files(before, first, plugin, spans)
+            notes += _other_settings(first, plugin, part)
         notes += _of_the_whole(block, doubles, part)
         gone = [block] if doubles and len(doubles) == len(_inside(block)) else doubles
         edits += [_left_out(spans, it) for it in gone]
@@ -67,9 +72,15 @@ def _inside(element: _Element) -> list[_Element]:
     return list(element.iterchildren("*"))
 
 
-def _managers(inventory: Inventory) -> list[_Element]:
-    """The plugins that make a controller manager, of blocks of the whole robot."""
-    return [element for element, section in inventory.served if section.process_wide]
+def _managers(inventory: Inventory) -> dict[_Element, tuple[str, ...]]:
+    """The plugins that make a controller manager, with the names of what is known of them."""
+    return {element: section.names for element, section in inventory.served if section.process_wide}
+
+
+def _another(plugin: _Element, part: Inventory) -> str:
+    name = plugin.get("filename", "")
+    where = f"{part.document.file}:{plugin.sourceline}"
+    return f"{where}: {name!r} makes a controller manager, and another plugin before it does, too"
 
 
 def _files(plugin: _Element) -> list[_Element]:
