@@ -21,13 +21,15 @@ from multibot_rewrite.description.joining.blocks import said_once
 from multibot_rewrite.description.joining.fixing import fixed
 from multibot_rewrite.description.joining.kept import Section, placed, section
 from multibot_rewrite.description.joining.part import (
+    ZERO,
     Part,
     ReadPart,
     check_meeting,
     read_part,
     with_names,
 )
-from multibot_rewrite.description.joining.proof import Mounted, prove
+from multibot_rewrite.description.joining.proof import prove
+from multibot_rewrite.description.joining.second_reading import Mounted
 from multibot_rewrite.description.joining.spaces import own_spaces
 from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -67,7 +69,7 @@ def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
     _check_given(given, parts)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
-    mounted = [Mounted(parts[0], "", "", parts[0].text)]
+    mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
     data = parts[0].text
     notes: list[str] = []
     for it, part in zip(given[1:], parts[1:], strict=True):
@@ -118,7 +120,7 @@ def _added(
     made = _edited(text, edits)
     more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
     base = _edited(data, once.joined)
-    mounted = Mounted(part, spec.at, mount.joint, made)
+    mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     return placed(base, first.name, first.prefix, more), mounted, (*mount.notes, *once.notes)
 
 
