@@ -26,6 +26,7 @@ from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.read import (
     Source,
+    SourceText,
     args_for,
     read_file,
     read_whole,
@@ -61,32 +62,36 @@ def join(
 
     Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
-    name that two of them have, a part with two roots. Raises RewriteRefused and ProofError as
-    ``rewrite``.
+    name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
     """
     wrong = next((it for it in parts if not isinstance(it, Part)), None)
     if wrong is not None:
         raise UsageError(f"join(): parts has a {type(wrong).__name__}; write Part('arm.urdf')")
     given, tree = tuple(parts), builtin_tree(tuple(vocabulary), release_here(distro))
-    made = join_texts([_given(it, trust) for it in given], tree)
+    texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
+    pairs = zip(given, texts, strict=True)
+    made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
     semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
     names = tuple(it.part.name for it in made.parts)
-    notes = (*made.notes, *semantics.notes, *files.notes, *_met(made, tree))
+    unread = _unread(given, texts)
+    notes = (*unread, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
     return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
 
 
 @checked
 def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
     """The parts of what ``join`` made, by name, as they were. Raises InputError for a text that no
-    join made or that was edited where a part cannot be told any more, RewriteRefused as ``strip``."""
+    join made or that was edited where a part cannot be known any more."""
     read_in = read_whole(source, {})
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     return split_text(read_in.data, read_in.file, tree)
 
 
-def _given(part: Part, trust: bool) -> Given:
-    read_in = read_whole(part.description, part.xacro_args, trust)
-    return Given(part, read_in.data, read_in.file)
+def _unread(given: Sequence[Part], texts: Sequence[SourceText]) -> Iterator[str]:
+    """Arguments that no file of a part's xacro has."""
+    for it, text in zip(given, texts, strict=True):
+        for name in text.known.lacks(sorted(it.xacro_args)) if text.known else ():
+            yield f"{text.file}: no file of the xacro has the argument {name}"
 
 
 def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
@@ -93,6 +94,16 @@ def prefixing(kinds: Iterable[str] = PREFIXED) -> Naming:
     return make_naming("frames-per-robot", PREFIX)._replace(separators=dict.fromkeys(kinds, ""))
 
 
+@contextmanager
+def in_one_line() -> Iterator[None]:
+    """What refuses a rewrite, as an InputError with its first error."""
+    try:
+        yield
+    except RewriteRefused as refused:
+        first = next(it for it in refused.findings if it.level == ERROR)
+        raise InputError(str(first)) from None
+
+
 def name_of(part: Part, file: str, robot: str) -> str:
     """What a part is called; one that is no file has the name of its ``robot``."""
     last = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
@@ -115,13 +126,14 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
     inventory = collect(read_document(data, file), tree)
     for what in _faults(inventory):
         raise InputError(f"{file}: {what}")
-    prepared = pipeline.prepare(data, file, prefixing(PREFIXED if part.prefix else ()), tree)
     text = data
     findings: tuple[Finding, ...] = ()
-    if part.prefix:
-        findings = tuple(it for it in prepared.findings if it.code in TOLD)
-        text = next(pipeline.render(prepared, [part.prefix], again=True))
-        inventory = collect(read_document(text, file), tree)
+    with in_one_line():
+        prepared = pipeline.prepare(data, file, prefixing(PREFIXED if part.prefix else ()), tree)
+        if part.prefix:
+            findings = tuple(it for it in prepared.findings if it.code in TOLD)
+            text = next(pipeline.render(prepared, [part.prefix], again=True))
+            inventory = collect(read_document(text, file), tree)
     robot = read_robot(inventory.document.root)
     name = name_of(part, file, inventory.document.root.get("name", ""))
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)

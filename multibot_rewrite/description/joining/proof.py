@@ -12,17 +12,20 @@ from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.kept import Section, is_joined_whole, sections
 from multibot_rewrite.description.joining.materials import bare
-from multibot_rewrite.description.joining.part import prefixing
+from multibot_rewrite.description.joining.part import in_one_line, prefixing
 from multibot_rewrite.description.joining.second_reading import Mounted, check_read
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 
 
 def taken_out(it: Section, file: str, tree: Tree) -> bytes:
-    """A part of a joined text as it was before; raises InputError and RewriteRefused where the text
+    """A part of a joined text as it was before; raises InputError where the text
     was edited by hand."""
     text = bare(it.text, file, it.prefix, it.materials) if it.materials else it.text
-    return pipeline.strip(text, file, it.prefix, prefixing(), tree) if it.prefix else text
+    if not it.prefix:
+        return text
+    with in_one_line():
+        return pipeline.strip(text, file, it.prefix, prefixing(), tree)
 
 
 def split_text(data: bytes, file: str, tree: Tree) -> dict[str, bytes]:

@@ -22,7 +22,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, prefixing
+from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import SRDF, collect, declarations
@@ -48,15 +48,16 @@ class JoinedSemantics(NamedTuple):
 
 
 def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
-    """The SRDF of a part with its prefix; raises InputError and RewriteRefused."""
+    """The SRDF of a part with its prefix; raises InputError."""
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)
     if found.format != SRDF:
         raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF, not an SRDF")
     if part.prefix:
         kinds = (*PREFIXED, "group")
-        prepared = pipeline.prepare(data, file, prefixing(kinds), tree, declared)
-        data = next(pipeline.render(prepared, [part.prefix], again=True))
+        with in_one_line():
+            prepared = pipeline.prepare(data, file, prefixing(kinds), tree, declared)
+            data = next(pipeline.render(prepared, [part.prefix], again=True))
     return PartSemantics(part, data, file)
 
 
