@@ -371,7 +371,7 @@ def test_what_a_rewrite_refuses_is_one_line_too(
         words = ["join", str(first), str(second), "--at", "base", "--prefix", "x_"]
         assert main(words) == 2
         said = capsys.readouterr().err
-        assert f"{made}:2:4: error: MB105" in said
+        assert f"{made}:2:1: error: MB105" in said
         assert said.count("\n") == 1
 
 

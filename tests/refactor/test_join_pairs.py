@@ -10,8 +10,10 @@ from contextlib import contextmanager
 import joined_pairs
 import pytest
 from joined_pairs import PREFIX, WRONG, counted, largest_gap, seen
+from lxml import etree
+from real_robots import corpus_files
 
-from multibot_rewrite import split
+from multibot_rewrite import Part, join, split
 
 # A product of two matrices in doubles.
 ROUNDED = 1e-14
@@ -65,3 +67,37 @@ def test_there_are_enough_pairs() -> None:
     if len(found) < len(joined_pairs.HOSTS) * len(joined_pairs.TOOLS) / 2:
         pytest.skip("the corpus is not here")
     assert len(found) >= 40
+
+
+XARM = "xArm-Developer+xarm_ros2/xarm_description__urdf__"
+
+
+def elements(data: bytes) -> dict[tuple[str, str], bytes]:
+    """The elements of a description by tag and name; materials without the prefix of an arm."""
+    root = joined_pairs.plain(data)
+    for it in root.iter("material"):
+        it.set("name", it.get("name", "").removeprefix("L_").removeprefix("R_"))
+    etree.indent(root)
+    found = root.iterchildren("link", "joint", "transmission", "gazebo")
+    named = (it for it in found if it.get("name") or it.get("reference"))
+    return {
+        (str(it.tag), it.get("name") or it.get("reference") or ""): etree.tostring(
+            it, method="c14n", with_tail=False
+        )
+        for it in named
+    }
+
+
+def test_two_xarms_on_the_ground_are_what_their_vendor_writes() -> None:
+    """But for the name of the component, which the vendor gives to both arms, and for the materials of
+    each arm."""
+    files = corpus_files()
+    if f"{XARM}dual_xarm_device.urdf" not in files:
+        pytest.skip("the corpus is not here")
+    arm = files[f"{XARM}xarm_device.urdf"]
+    ground = '<robot name="dual_xarm"><link name="ground"/></robot>'
+    right = Part(arm, "ground", (0, 1, 0, 0, 0, 0), "R_")
+    made = elements(join([Part(ground), Part(arm, "ground", prefix="L_"), right]).data)
+    theirs = elements(files[f"{XARM}dual_xarm_device.urdf"].read_bytes())
+    assert len(theirs) > 50
+    assert made == theirs
