@@ -34,6 +34,7 @@ def pytest_report_header() -> str:
 
 settings.register_profile(
     "repeatable",
+    max_examples=40,
     derandomize=True,
     deadline=None,
     phases=(Phase.explicit, Phase.generate, Phase.shrink),
@@ -58,13 +59,19 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
 
-    Of the rows of a test with ``sample(n)`` the first of every n is quick, the others are slow.
+    Of the rows of a test with ``sample(n, m)`` the first of every n is fast and the first of every m is
+    in the usual run, which has all of them without an m; planted_bugs.py asks every ``row``.
     """
     rows: Counter[str] = Counter()
     for item in items:
         sample = item.get_closest_marker("sample")
         name = item.nodeid.partition("[")[0]
-        if item.get_closest_marker("deep") or (sample and rows[name] % sample.args[0]):
+        fast = not any(map(item.get_closest_marker, ("slow", "live", "deep")))
+        if fast and sample and rows[name] % sample.args[0]:
+            item.add_marker("row")
+        if sample and sample.args[1:] and all(rows[name] % of for of in sample.args):
+            item.add_marker("deep")
+        if any(map(item.get_closest_marker, ("deep", "row"))):
             item.add_marker("slow")
         rows[name] += 1
 

@@ -622,7 +622,7 @@ def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
     assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_corpus_is_known_and_its_rest_explained(
     corpus: dict[str, Path], multibot: Multibot
 ) -> None:

@@ -60,6 +60,7 @@ def test_a_table_is_made_with_what_is_open(
     assert main([*words, "--fail-on", "warning"]) == 1
 
 
+@pytest.mark.sample(6, 3)
 @pytest.mark.slow
 @pytest.mark.parametrize("of", ["plan", "json", "fleet"])
 def test_a_graph_as_planned_of_a_plan_that_does_not_close(
@@ -127,6 +128,7 @@ def test_a_plan_without_open_ends_says_nothing_of_them(
 ROW = 'code: MG303, level: warning, at: "ekf.yaml:4", message: x, hint: ""'
 
 
+@pytest.mark.sample(9, 4)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "told"),

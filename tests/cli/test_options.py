@@ -332,7 +332,7 @@ def test_the_package_is_a_program() -> None:
     assert done.stdout.startswith("multibot ")
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(15, 5)
 @pytest.mark.parametrize("name", ALL)
 def test_help_imports_nothing_heavy(name: str) -> None:
     """A help text needs the options alone: not the modules that do the work."""

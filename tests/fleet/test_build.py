@@ -170,6 +170,7 @@ def test_a_file_keeps_its_mode(out: Path) -> None:
     assert (out / "commands.md").stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.sample(4, 2)
 @pytest.mark.slow
 @pytest.mark.parametrize("more", ["", "x"])
 def test_what_was_edited_is_not_overwritten(
@@ -381,6 +382,7 @@ def test_what_is_no_manifest_is_refused(text: str) -> None:
 # ---------------------------------------------------------------- all or nothing
 
 
+@pytest.mark.sample(6, 3)
 @pytest.mark.slow
 @pytest.mark.parametrize("room", [0, 1000, 20_000])
 def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
@@ -457,6 +459,7 @@ def test_a_build_inside_of_the_folder_does_not_take_it_away(
     assert (out / "robot3").is_dir()
 
 
+@pytest.mark.sample(8, 3)
 @pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
@@ -485,6 +488,7 @@ def test_a_failure_without_a_swap_leaves_no_note(
     assert leftovers(out.parent) == []
 
 
+@pytest.mark.sample(6, 3)
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize("link", [os.symlink, os.link, shutil.move])
@@ -593,6 +597,7 @@ def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
+@pytest.mark.sample(16, 4)
 @pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])
@@ -669,7 +674,7 @@ def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
         assert main(["build", str(fleets[-1]), "-o", str(alone), "--quiet"]) == 0
         wanted.append(held(alone))
     out = tmp_path / "out"
-    for _ in range(3):
+    for _ in range(2):
         running = [
             subprocess.Popen([*COMMAND, str(it), "-o", str(out), "--quiet"]) for it in fleets
         ]

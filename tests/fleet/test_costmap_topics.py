@@ -61,7 +61,7 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     return [it[2] for it in ends if it[0] == "subscribes"]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(7, 5)
 @pytest.mark.parametrize("topic", ["scan", "/scan"])
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ def test_nothing_is_wrong_with_a_whole_fleet(built: tuple[FleetPlan, Outputs]) -
     assert read_back(*built, OUT) == []
 
 
-@pytest.mark.sample(17)
+@pytest.mark.sample(17, 4)
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: it.parent.name)
 def test_nothing_is_wrong_with_the_examples_in_any_release(example: Path, release: str) -> None:
@@ -137,7 +137,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
 }
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(15, 3)
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
     edit, code = PLANTED[name]

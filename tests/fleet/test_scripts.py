@@ -285,6 +285,7 @@ def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None
         loaded.robots[0].params("params.yaml", "amcl")
 
 
+@pytest.mark.sample(4, 2)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_files_are_those_of_a_build(

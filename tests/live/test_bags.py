@@ -151,7 +151,7 @@ def test_a_healthy_bag_has_no_finding(tmp_path: Path, mcap: bool) -> None:
     assert last["robot2/laser"] == (0, 2, 3, 0, 0, 0, 1)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(14, 3)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_seeded_fault_is_found(fault: str, tmp_path: Path) -> None:
     change, codes, words = FAULTS[fault]

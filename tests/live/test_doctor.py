@@ -188,7 +188,7 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
 # ---------------------------------------------------------------- the plan of what is seen
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(13, 4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
     graph = SYSTEMS[name]()
@@ -258,7 +258,7 @@ def test_the_page(tmp_path: Path) -> None:
     assert "MG402" in page.read_text()
 
 
-@pytest.mark.sample(31)
+@pytest.mark.sample(31, 4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

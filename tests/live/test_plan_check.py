@@ -127,7 +127,7 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
     assert held(plan, graph, capsys)[0] == 0
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(14, 4)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

@@ -145,7 +145,7 @@ def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
     assert robots_of(by_plan, found) == {"fleet_a/robot2"}
 
 
-@pytest.mark.sample(31)
+@pytest.mark.sample(31, 5)
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
 def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
     scene = report_pages.doctors(fault.change(fault.system()))

@@ -130,7 +130,7 @@ def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture
     assert found_in(healthy, capsys) == (0, [])
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(27, 5)
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_at_its_place(
     name: str, healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

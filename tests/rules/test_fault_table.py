@@ -28,7 +28,7 @@ from multibot_rewrite.system.json import to_json
 NAMED = {it.name: it for it in FAULTS}
 
 
-@pytest.mark.sample(11)
+@pytest.mark.sample(11, 3)
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
@@ -63,7 +63,7 @@ def test_every_finding_says_what_it_is_about() -> None:
             assert it.message and not it.message.startswith(" "), it
 
 
-@pytest.mark.sample(47)
+@pytest.mark.sample(47, 4)
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("name", NAMED)
 def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) -> None:
@@ -89,6 +89,7 @@ def test_with_its_plan_it_is_the_same_or_what_the_plan_has_and_is_not_there(faul
     assert fault.code in found.codes or lost, found
 
 
+@pytest.mark.sample(25, 4)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BUILT)
 def test_a_build_reads_it_back(name: str) -> None:
@@ -112,6 +113,7 @@ def test_there_are_faults_enough_and_no_need_without_a_fault() -> None:
     assert NAMED.keys() >= {*MORE_NEEDS, *BUILT}
 
 
+@pytest.mark.sample(4, 4)
 @pytest.mark.slow
 @pytest.mark.parametrize("at", range(0, len(FAULTS), 40))
 def test_a_bag_that_is_written_is_the_recording(at: int, tmp_path: Path) -> None:

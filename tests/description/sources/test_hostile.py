@@ -246,6 +246,7 @@ def have(fence: str) -> bool:
     )
 
 
+@pytest.mark.sample(25, 5)
 @pytest.mark.slow
 @pytest.mark.parametrize("fence", ALONE)
 @pytest.mark.parametrize("name", sorted(SAID))
@@ -265,6 +266,7 @@ def test_all_fences_are_there(scene: Scene) -> None:
     assert held == tuple(it for it in FENCES if have(it))
 
 
+@pytest.mark.sample(19, 5)
 @pytest.mark.slow
 @pytest.mark.parametrize("fence", ALONE)
 @pytest.mark.parametrize("name", sorted(set(SAID) - LARGE - (ENDLESS - {"sleep"})))

@@ -61,7 +61,7 @@ def refusing(monkeypatch: pytest.MonkeyPatch, fault: Fault | Step) -> Iterator[s
             yield check.__name__
 
 
-@pytest.mark.sample(63)
+@pytest.mark.sample(24, 3)
 @pytest.mark.parametrize("fault", [*TEXTS, *STEPS], ids=lambda fault: fault.about)
 def test_a_fault_is_refused_by_the_check_that_is_for_it(
     monkeypatch: pytest.MonkeyPatch, fault: Fault | Step
