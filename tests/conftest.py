@@ -55,25 +55,29 @@ if sys.dont_write_bytecode:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+# So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
+FEW = 6
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
 
-    Of the rows of a test with ``sample(n, m)`` the first of every n is fast and the first of every m is
-    in the usual run, which has all of them without an m; planted_bugs.py asks every ``row``.
+    Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. Of
+    those with ``sample(m)`` the first of every m are in the usual run.
     """
-    rows: Counter[str] = Counter()
-    for item in items:
-        sample = item.get_closest_marker("sample")
-        name = item.nodeid.partition("[")[0]
-        fast = not any(map(item.get_closest_marker, ("slow", "live", "deep")))
-        if fast and sample and rows[name] % sample.args[0]:
-            item.add_marker("row")
-        if sample and sample.args[1:] and all(rows[name] % of for of in sample.args):
+    names = [item.nodeid.partition("[")[0] for item in items]
+    rows, seen = Counter(names), Counter[str]()
+    for item, name in zip(items, names, strict=True):
+        sample, at = item.get_closest_marker("sample"), seen[name]
+        left_out = at % -(-rows[name] // (1 if sample else FEW))
+        if left_out and not any(map(item.get_closest_marker, ("slow", "live", "deep"))):
+            item.add_marker("more")
+        if left_out and sample and at % sample.args[0]:
             item.add_marker("deep")
-        if any(map(item.get_closest_marker, ("deep", "row"))):
+        if any(map(item.get_closest_marker, ("deep", "more"))):
             item.add_marker("slow")
-        rows[name] += 1
+        seen[name] += 1
 
 
 def pytest_collection_finish() -> None:

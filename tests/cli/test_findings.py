@@ -111,7 +111,7 @@ def test_nothing_is_written_at_the_level_of_fail_on(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
 def test_every_format_tells_the_finding(

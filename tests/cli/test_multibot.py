@@ -544,7 +544,7 @@ def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
     assert {"robot.sensor", "link.sensor"} <= set(names)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "near"),
     [
@@ -568,6 +568,7 @@ def test_a_name_like_nothing_is_told_where_to_look(multibot: Multibot) -> None:
 # ---------------------------------------------------------------- vocabulary --suggest
 
 
+@pytest.mark.more
 def test_a_suggestion_can_be_used_as_it_is(multibot: Multibot, two: Path) -> None:
     result = multibot("inspect", "--suggest", "a.urdf")
     assert (result.code, result.err) == (0, "")
@@ -604,6 +605,7 @@ def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
 # ---------------------------------------------------------------- real files
 
 
+@pytest.mark.more
 def test_the_corpus(multibot: Multibot, corpus: dict[str, Path]) -> None:
     homes = sorted({str(path.parent) for path in corpus.values()})[:12]
     table = multibot.json("inspect", *homes)

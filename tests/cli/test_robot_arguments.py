@@ -82,7 +82,8 @@ def test_findings_of_every_robot_are_reported(
     assert urdf_postfix.main([*words, "--layout", "both", "--fail-on", "warning"]) == 1
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("options", [[], ["--affix", "prefix", "--separator", "_"]])
 def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     made, back, plain = (str(tmp_path / name) for name in ("left.urdf", "back.urdf", "plain.urdf"))
@@ -133,6 +134,7 @@ def test_wrong_use_is_one_line(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.more
 def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "r.urdf.xacro"
     path.write_text(MISSED.replace(">base_link<", ">nowhere<").replace('_link"/>', '__link"/>'))

@@ -159,8 +159,9 @@ def raw(document: YamlText, node: yaml.ScalarNode) -> str:
     return document.text[node.start_mark.index : node.end_mark.index]
 
 
+@pytest.mark.more
 @needs_corpus
-@pytest.mark.sample(4, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_intended_scalars_change_and_nothing_else(layout: str) -> None:
     counted: Counter[str] = Counter()

@@ -179,7 +179,7 @@ def is_same(key: str, old: Any, new: Any) -> Any:
     )
 
 
-@pytest.mark.sample(4, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("policy", POLICIES)
 def test_every_node_gets_its_parameters(policy: tuple[str, str], tmp_path: Path) -> None:
     found = list(cases({"own.yaml": OWN.encode()}, [policy]))

@@ -266,7 +266,7 @@ def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> N
     assert parameters(files)["robot_description_planning"]["default_velocity_scaling_factor"] == 0.5
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

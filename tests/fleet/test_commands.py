@@ -27,7 +27,7 @@ def outputs(folder: Path, release: str) -> dict[str, str]:
     return {path: it.data.decode() for path, it in load_fleet(file).files.items()}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("release", "rules"),
     [

@@ -134,6 +134,7 @@ def test_a_path_is_escaped_and_the_rest_is_as_it_was(package: Path) -> None:
     assert f"<parameters>{path.replace('../config/arm.yaml', new)}</parameters>" in text
 
 
+@pytest.mark.more
 def test_a_second_build_finds_nothing_to_do(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     built(package, "../config/arm.yaml")
     monkeypatch.chdir(package)

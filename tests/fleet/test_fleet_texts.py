@@ -258,7 +258,8 @@ def bridges() -> list[Path]:
     return files
 
 
-@pytest.mark.sample(4, 4)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
     refused: Counter[str] = Counter()

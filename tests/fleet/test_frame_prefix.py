@@ -116,6 +116,7 @@ def test_rviz_puts_the_name_before_links_itself(tmp_path: Path) -> None:
     assert [it["Reference Frame"] for it in axes] == ["robot1/lidar_link", "frames2/lidar_link"]
 
 
+@pytest.mark.more
 def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
     plan = yaml.safe_load(text(made(tmp_path), "plan.yaml"))
     own = plan["robots"]["graph2"]

@@ -66,6 +66,7 @@ def test_a_joint_that_is_preserved_is_no_part_of_its_parent(
     assert "error: MB603 link 'caster'" in capsys.readouterr().err
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("simulator", "level"), [("", "warning"), ("none", ""), ("gazebo", "error")]
 )

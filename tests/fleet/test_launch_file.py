@@ -350,6 +350,7 @@ def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             chosen(out, monkeypatch, text)
 
 
+@pytest.mark.more
 def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
     """No file is edited: the third one stands as far from the second as that from the first."""
     built(tmp_path, "classic", "both")

@@ -77,7 +77,7 @@ ROWS = """\
 """
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("more", "told"),
     [

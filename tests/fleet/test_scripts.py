@@ -76,7 +76,7 @@ TF = [("/tf", "tf"), ("/tf_static", "tf_static")]
 TF_4 = [("/tf", "/tf/robot1"), ("/tf_static", "/tf_static/robot1")]
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "node", "frame", "joint", "topic", "tf"),
     [
@@ -156,6 +156,7 @@ def test_a_controller_is_no_node_to_start(tmp_path: Path) -> None:
         its.spawner("dif_drive_controller")
 
 
+@pytest.mark.more
 def test_parameters_of_a_node(robot: LoadedRobot) -> None:
     found = robot.params("params.yaml", "amcl")
     assert found["base_frame_id"] == "robot1/base_footprint"
@@ -218,7 +219,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     assert first.table.full_name("start_pose") == "/robot1/start_pose"
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("ask", "parts"),
     [
@@ -241,7 +242,8 @@ def test_an_unknown_name_is_reported_with_the_nearest(
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("params", "part"),
     [
@@ -278,6 +280,7 @@ def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
     assert "MG320" in {it.code for it in caught.value.findings}
 
 
+@pytest.mark.more
 def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None:
     params = "robot1:\n  amcl:\n    ros__parameters: {a: 1}\n"
     loaded = fleet(tmp_path, params=params)
@@ -285,7 +288,7 @@ def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None
         loaded.robots[0].params("params.yaml", "amcl")
 
 
-@pytest.mark.sample(4, 2)
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_files_are_those_of_a_build(

@@ -69,6 +69,7 @@ def test_the_shapes_are_the_same_everywhere() -> None:
         assert {row.robots for row in it.launch} <= {"", "real", "simulated"}
 
 
+@pytest.mark.more
 def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     (tmp_path / "sensors/config").mkdir(parents=True)
     lidar = tmp_path / "sensors/config/lidar2d_0.yaml"
@@ -97,7 +98,7 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "text",
     [

@@ -91,6 +91,7 @@ def test_a_description_with_its_stacks_is_a_plan() -> None:
         system_of_description(ROVER, ["robot1"], stacks=["nav3"])
 
 
+@pytest.mark.more
 def test_a_fleet_file_is_a_plan() -> None:
     plan = system_of_fleet(ROOT / "examples" / "two_robots_nav2" / "fleet.yaml")
     assert len(plan.robots) == 2

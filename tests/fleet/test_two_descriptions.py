@@ -104,7 +104,7 @@ def test_tf_is_that_of_the_description(tmp_path: Path) -> None:
     assert ("robot2/base_link", "robot2/lidar_link") in {(it.parent, it.child) for it in sent}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -142,7 +142,7 @@ structure:
 """
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("release", "started", "topic"),
     [
@@ -196,7 +196,7 @@ structure:
 """
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "prefix", "told"),
     [

@@ -76,7 +76,7 @@ def test_a_layout_with_bare_names_keeps_them(tmp_path: Path) -> None:
     assert "jointNames neck  other" in text
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "path",
     ["model://bot/conf/none.ini", "model://bot/../../etc/passwd", "model://other/conf/head.ini"],

@@ -247,6 +247,7 @@ def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     assert set(context.launch_configurations) == {"where"}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("robots", "wanted"),
     [
@@ -265,6 +266,7 @@ def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: A
     assert [it.options["name"] for it in run(context, made)] == wanted
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
 def test_several_files(files: Any, fleet: str, context: Any) -> None:
     (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
@@ -298,6 +300,7 @@ def test_a_condition(fleet: str, context: Any) -> None:
             assert len(run(context, one)) == bool(count)
 
 
+@pytest.mark.more
 def test_a_node(fleet: str, context: Any) -> None:
     mine, later = ("scan", "front"), {"use_sim_time": True}
     action = launch.node(
@@ -394,6 +397,7 @@ def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
     assert run(context, launch.place("robot2", fleet)) == []
 
 
+@pytest.mark.more
 def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     own = launch.perform(context, launch.params_file("params.yaml", "robot1", fleet))
     shared = launch.perform(context, launch.rviz_config("one.rviz", fleet=fleet))
@@ -406,6 +410,7 @@ def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     assert not folder.exists()
 
 
+@pytest.mark.more
 def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any) -> None:
     own = importlib.import_module("launch").LaunchContext()
     path = Path(launch.perform(own, launch.params_file("params.yaml", "robot1", fleet)))
@@ -416,6 +421,7 @@ def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any
     assert not path.parents[1].exists()
 
 
+@pytest.mark.more
 def test_a_launch_loads_a_fleet_once(
     fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -457,6 +463,7 @@ def test_a_launch_trusts_xacro_files_where_it_is_told(
     assert asked == [trusted]
 
 
+@pytest.mark.more
 def test_warnings_are_logged_once(
     fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -475,7 +482,7 @@ def test_warnings_are_logged_once(
     assert told
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("make", "part"),
     [
@@ -504,6 +511,7 @@ def test_a_fleet_that_is_not_there(context: Any) -> None:
         run(context, launch.spawn("gzz", "robot1", "nowhere.yaml"))
 
 
+@pytest.mark.more
 def test_xml_for_every_robot(fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet, "which": ""})
     (action,) = read(
@@ -536,7 +544,7 @@ def test_xml_for_one_robot(fleet: str, context: Any) -> None:
     assert run(context, off) == []
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
 def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet, "which": "robot2"})
@@ -890,6 +898,7 @@ def test_a_step_of_the_tutorial_in_launch(file: str, tmp_path: Path) -> None:
         assert f"/{robot.name}/bridge.yaml" in texts
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
 def test_the_python_of_the_page(
     code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch

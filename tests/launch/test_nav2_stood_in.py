@@ -89,6 +89,7 @@ def clocks(node: LaunchedNode) -> set[object]:
     return {yaml.safe_load(it) for it in found}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("robot", ["robot1", "robot2"])
 def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     robot: str, nodes: dict[str, LaunchedNode]
@@ -126,6 +127,7 @@ def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
     assert len(nodes) == 2 * (len(NAV2) + len(MANAGERS) + 1)
 
 
+@pytest.mark.more
 def test_every_node_has_the_clock_that_is_said(each: LaunchGraph, composed: LaunchGraph) -> None:
     assert [clocks(it) for it in each.nodes] == [{True}] * len(each.nodes)
     # Nobody says it: neither the launch, nor the fleet file, nor a file of parameters.
@@ -176,6 +178,7 @@ def test_tf_of_each_robot_is_relayed(composed: LaunchGraph, nodes: dict[str, Any
     assert not [it for it in nodes if "relay" in it]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("words", "fleet", "said"),
     [
@@ -191,6 +194,7 @@ def test_what_cannot_be_started_is_said(
     assert any(said in it.message for it in notes), notes
 
 
+@pytest.mark.more
 def test_a_window_needs_a_config(tmp_path: Path) -> None:
     file = written(tmp_path) / "fleet.yaml"
     file.write_text(file.read_text().replace(", rviz: one.rviz", ""))

@@ -134,6 +134,7 @@ def test_nothing_is_linted_twice(here: Path) -> None:
     assert {it.code for it in first}, "there is something to keep"
 
 
+@pytest.mark.more
 def test_a_name_beside_is_asked_for_but_not_what_nobody_looks_at(here: Path) -> None:
     again()
     write(here / "arm_description/urdf/notes.txt", "nothing")
@@ -158,7 +159,7 @@ CHANGES: dict[str, Callable[[Path], object]] = {
 }
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_changed_is_noticed(here: Path, change: str) -> None:
     before, _ = again()
@@ -238,6 +239,7 @@ def test_a_vocabulary_is_part_of_it(here: Path) -> None:
     assert identity(with_one) != before
 
 
+@pytest.mark.more
 def test_a_file_among_others_is_not_that_file_alone(here: Path) -> None:
     """parts.xacro is included by another one, unless it is linted alone."""
     again()
@@ -323,7 +325,7 @@ FOLDERS: dict[str, Callable[[Path], object]] = {
 }
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("fault", FOLDERS)
 def test_a_folder_that_cannot_be_written_is_no_error(
     here: Path, capsys: pytest.CaptureFixture[str], fault: str

@@ -137,7 +137,7 @@ def test_the_nasty_findings_are_what_the_tests_need(nasty: Linted) -> None:
     assert any("|" in it.message and "\\" in it.message for it in found)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", FORMATS)
 def test_a_report_is_utf8_and_the_same_each_time(name: str, linted: Linted) -> None:
     once = rendered(name, *linted)
@@ -364,7 +364,7 @@ def unknown(model: object) -> set[str]:
     return {*(model.model_extra or ()), *(key for value in inside for key in unknown(value))}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 def test_sarif_holds_by_its_models(linted: Linted) -> None:
     log = Sarif.model_validate_json(rendered("sarif", *with_fixes(linted)))
     # They lack this one, which the schema has.
@@ -457,7 +457,7 @@ def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
 # paths
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("spelled", ["a/b.urdf", "./a/b.urdf", "a/../a/b.urdf", "{here}/a/b.urdf"])
 def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: Path) -> None:
     path = spelled.format(here=here)
@@ -490,7 +490,7 @@ def prints(linted: Linted) -> list[tuple[str, str]]:
     return list(zip(there, [it["fingerprint"] for it in report("gitlab", linted)], strict=True))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 def test_no_two_fingerprints_are_equal(linted: Linted) -> None:
     twice = linted._replace(findings=[*linted.findings, *linted.findings])
     assert len(set(prints(twice))) == 2 * len(linted.findings)
@@ -657,6 +657,7 @@ def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:
     assert shown == [text.one_line(file) for file in nasty.files if file != "clean.urdf"]
 
 
+@pytest.mark.more
 def test_markdown_of_many_findings_fits_into_a_comment(thousand: Linted) -> None:
     markdown = rendered("markdown", *thousand)
     assert ROOM - 1000 < len(markdown) < ROOM + 100

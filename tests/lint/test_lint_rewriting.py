@@ -68,7 +68,7 @@ def test_only_what_ros_2_does_not_read_is_named(tmp_path: Path) -> None:
     assert "does not read <topicName> in ROS 2" in found.message
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("row", "text", "line"),
     [

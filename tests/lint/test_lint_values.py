@@ -25,18 +25,21 @@ def test_the_lists_are_whole() -> None:
     assert all(it.source.startswith("https://") for it in QUESTIONS)
 
 
+@pytest.mark.more
 def test_the_robot_without_a_fault_has_no_warning() -> None:
     assert [it for it in healthy_findings() if it.level != NOTE] == []
 
 
-@pytest.mark.sample(25, 4)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("fault", [*CLASSES, *QUESTIONS], ids=lambda it: it.name)
 def test_a_fault_is_told(fault: Fault) -> None:
     told = (NOTE,) if fault.name in QUIET else (ERROR, WARNING)
     assert level_of(fault) in told
 
 
-@pytest.mark.sample(20, 3)
+@pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("fault", ODD, ids=lambda it: it.name)
 def test_what_is_odd_and_healthy_is_left_alone(fault: Fault) -> None:
     assert [it for it in found_for(fault) if it.level != NOTE] == []

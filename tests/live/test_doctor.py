@@ -111,6 +111,7 @@ def test_a_name_within_a_word_is_no_robots() -> None:
 # ---------------------------------------------------------------- close to a fault, and none
 
 
+@pytest.mark.more
 def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
     """The first robot kept its description: nothing meets."""
     graph = nav2_with_tools("L2")
@@ -188,7 +189,7 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
 # ---------------------------------------------------------------- the plan of what is seen
 
 
-@pytest.mark.sample(13, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
     graph = SYSTEMS[name]()
@@ -251,6 +252,7 @@ def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
     assert multibot.main(["check", "--snapshot", saved(tmp_path, EMPTY)]) == 3
 
 
+@pytest.mark.more
 def test_the_page(tmp_path: Path) -> None:
     graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
     given = ["--report", str(page), "-q"]
@@ -258,7 +260,8 @@ def test_the_page(tmp_path: Path) -> None:
     assert "MG402" in page.read_text()
 
 
-@pytest.mark.sample(31, 4)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -297,6 +300,7 @@ def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFix
     assert (tmp_path / "fleet.yaml").read_text() == "mine"
 
 
+@pytest.mark.more
 def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
     """What the doctor calls healthy is so by its plan, too: only tools are not planned."""
     found = check(plan(("nav2",), "L1"), nav())

@@ -201,7 +201,7 @@ def stacks() -> dict[str, list[NodeFacts]]:
     return {name: [bare(node) for node in stack_of(library, name)] for name in names}
 
 
-@pytest.mark.sample(16, 8)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -218,7 +218,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
 
 
-@pytest.mark.sample(8, 8)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])

@@ -113,7 +113,8 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
         assert drawn == set(nodes_of(plan, robot.name))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
     plan = nav2_graphs.nav2(layout)
@@ -130,7 +131,8 @@ def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> Non
     ]
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "topics"),
     [
@@ -146,6 +148,7 @@ def test_a_tree_is_told_with_its_two_topics(layout: str, topics: list[str]) -> N
     assert [it.text_content() for it in section.xpath("h3")] == topics
 
 
+@pytest.mark.more
 def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *LEAKY))
@@ -460,6 +463,7 @@ def test_all_links_and_hooks_lead_somewhere() -> None:
         assert hits <= hooks and ends <= hooks
 
 
+@pytest.mark.more
 def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
@@ -478,6 +482,7 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     assert by_code["MG401"] == "lidar_link/robot1"
 
 
+@pytest.mark.more
 def test_a_code_leads_to_what_it_means() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
@@ -580,6 +585,7 @@ def test_the_environment_is_shown() -> None:
 # ---------------------------------------------------------------- the same bytes
 
 
+@pytest.mark.more
 def test_the_order_of_a_snapshot_does_not_show() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.spoiled(plan)
@@ -622,6 +628,7 @@ def assert_harmless(scene: Scene) -> None:
     assert not any(name.startswith("on") for name in names)
 
 
+@pytest.mark.more
 def test_names_from_the_graph_do_not_break_out() -> None:
     scene = nav2_graphs.scene(*nav2_graphs.nasty(nav2_graphs.nav2()))
     assert_harmless(scene)
@@ -693,7 +700,7 @@ def test_the_command_writes_what_is_asked_for(
     assert (files / "r.html").read_bytes() == to_html(scene)
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
@@ -715,6 +722,7 @@ def test_a_page_that_cannot_be_written_stops_the_check(
     assert {path.name: path.read_bytes() for path in files.iterdir()} == before
 
 
+@pytest.mark.more
 def test_a_snapshot_with_unsafe_names_works_with_the_command(
     files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -77,7 +77,7 @@ UNREADABLE = {
 }
 
 
-@pytest.mark.sample(24, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("data", "words"), [pytest.param(*case, id=name) for name, case in UNREADABLE.items()]
 )
@@ -149,7 +149,7 @@ XACRO_FAILS = {
 }
 
 
-@pytest.mark.sample(12, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("body", "words"), [pytest.param(*case, id=name) for name, case in XACRO_FAILS.items()]
 )
@@ -327,7 +327,7 @@ WRONG_USE = {
 }
 
 
-@pytest.mark.sample(44, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("words", "said"), [pytest.param(*case, id=name) for name, case in WRONG_USE.items()]
 )
@@ -375,7 +375,7 @@ def _read_only(folder: Path) -> str:
     return "/sys/kernel/{robot}.urdf"
 
 
-@pytest.mark.sample(12, 4)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("target", "said"),
     [

@@ -196,6 +196,7 @@ def test_the_package_ships_its_types_and_its_data() -> None:
     )
 
 
+@pytest.mark.more
 def test_every_module_says_what_it_is_for() -> None:
     assert [file for file, tree in sources().items() if not ast.get_docstring(tree)] == []
 

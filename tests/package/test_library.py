@@ -172,7 +172,7 @@ def test_findings_are_warnings_in_order() -> None:
 # ---------------------------------------------------------------- fleets
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", [layout.name for layout in LAYOUTS])
 @pytest.mark.parametrize("source", [SMALL, DRIVE, IMU.format("imu")], ids=["small", "drive", "imu"])
 def test_a_fleet_is_as_many_single_calls(source: str, layout: str) -> None:

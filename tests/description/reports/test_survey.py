@@ -167,6 +167,7 @@ def test_the_walk_is_that_of_the_warnings() -> None:
 # ---------------------------------------------------------------- real files
 
 
+@pytest.mark.more
 def test_every_plugin_of_the_corpus_is_counted(corpus: dict[str, Path]) -> None:
     """Counted a second way: elements <plugin> with a library, wherever a <gazebo> block has them."""
     files = list(corpus.values())[::10]

@@ -85,7 +85,7 @@ def test_a_namespace() -> None:
     assert namespace.value == "{robot}"
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("default", "name", "use", "value"),
     [

@@ -118,6 +118,7 @@ def test_libsdformat_reads_what_is_read_here(name: str, tmp_path: Path) -> None:
     assert ign_reads(rewrite(data, "r1").data, tmp_path)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("part", [b"<a ", b"<!--", b"<![CDATA[", b"<?xml ", b"<?xml ?>", b"<a b='"])
 def test_a_text_made_to_hurt_is_looked_at_once(part: bytes) -> None:
     """Each would take hours if every part were looked for up to the end of the text."""

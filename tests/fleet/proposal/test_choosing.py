@@ -182,6 +182,7 @@ MIR = """\
 """
 
 
+@pytest.mark.more
 def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     tmp_path: Path, capsys: Any
 ) -> None:
@@ -262,6 +263,7 @@ def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
     assert taken(tmp_path)["description"] == "zebra.urdf"
 
 
+@pytest.mark.more
 def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) -> None:
     """As xarm_moveit_config: an SRDF of macros has no name in its text, one makes two robots, one
     has the macros alone; each arm has a folder of MoveIt's files with the same names."""

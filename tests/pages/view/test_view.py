@@ -183,6 +183,7 @@ def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.Monkey
 OBJ = "mtllib part.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n"
 
 
+@pytest.mark.more
 def test_a_mesh_has_the_colours_of_its_file(file: Path) -> None:
     """As in RViz: the material of the description is for a mesh that has none."""
     assert not page(file.parent, file)["meshes"][0]["c"]
