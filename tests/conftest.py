@@ -56,7 +56,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
-FEW = 6
+FEW = 4
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -62,6 +62,7 @@ def there(robot: Path) -> dict[str, str]:
     return {it.relative_to(robot).as_posix(): it.read_text() for it in files}
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("target", READ)
 @pytest.mark.parametrize("name", WRITERS)
@@ -91,6 +92,7 @@ def test_what_another_name_leads_to_is_not_written_over(
     assert (robot / "sizes.yaml").read_text() == FILES["sizes.yaml"]
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("force", [[], ["--force"]])
 def test_a_build_writes_over_nothing_that_a_xacro_reads(

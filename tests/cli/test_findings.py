@@ -101,6 +101,7 @@ def test_a_description_s_findings(name: str, tmp_path: Path, fleet: Path, said: 
     assert said(*words, "--fail-on", "note", "--ignore", all_of_it)[0] == 0
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", ["urdf-postfix", "build"])
 def test_nothing_is_written_at_the_level_of_fail_on(
     name: str, tmp_path: Path, fleet: Path, said: Said

@@ -591,6 +591,7 @@ def test_nothing_unknown_is_only_a_comment(multibot: Multibot, two: Path) -> Non
     assert result.out.startswith("# ") and result.out.count("\n") == 1
 
 
+@pytest.mark.more
 def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two: Path) -> None:
     write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
     result = multibot("inspect", "--suggest", "a.urdf", "--vocabulary", "acme.vocab")

@@ -185,6 +185,7 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         make_naming("frames")
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "words",
@@ -221,6 +222,7 @@ def test_a_folder_is_not_left_behind_where_nothing_is_written(
     assert [it.name for it in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.more
 def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -333,6 +335,7 @@ def test_the_package_is_a_program() -> None:
     assert done.stdout.startswith("multibot ")
 
 
+@pytest.mark.more
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", ALL)
 def test_help_imports_nothing_heavy(name: str) -> None:

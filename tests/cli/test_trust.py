@@ -81,6 +81,7 @@ def test_trust_lifts_the_bounds(name: str, target: Path) -> None:
     assert target.read_text() == "taken\n"
 
 
+@pytest.mark.more
 def test_the_library_is_bounded(target: Path) -> None:
     calls: list[Callable[[], object]] = [
         lambda: rewrite(PATH, "robot1"),

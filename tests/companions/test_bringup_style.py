@@ -119,6 +119,7 @@ def test_comments_and_placeholders_stay() -> None:
     assert findings == ()
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
 def test_a_layout_that_nav2_bringup_cannot_start_is_refused(

@@ -49,6 +49,7 @@ def test_all_real_files(corpus_params: dict[str, Path]) -> None:
     assert refused == json.loads(REFUSALS.read_text())
 
 
+@pytest.mark.more
 def test_the_reasons_are_true(corpus_params: dict[str, Path]) -> None:
     for why, names in json.loads(REFUSALS.read_text()).items():
         for name in names:

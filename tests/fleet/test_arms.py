@@ -194,6 +194,7 @@ def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Pa
     assert errors(findings) == []
 
 
+@pytest.mark.more
 def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     _, findings = built(tmp_path, own="other_")
     assert errors(findings) == [
@@ -220,6 +221,7 @@ def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
 IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: B}}]\n"
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("plugin", "addresses", "said"),
@@ -285,6 +287,7 @@ def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
         assert "world" in [it.get("name") for it in root.iter("link")]
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("finger", ["left_finger", "{robot}_left_finger"])
 def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path: Path) -> None:
@@ -370,6 +373,7 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     assert "elbow" not in str([it.message for it in findings])
 
 
+@pytest.mark.more
 def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
     """As moveit_configs.py (to_dict) of moveit_configs_utils."""
     files, _ = built(tmp_path, f"groups: rename\n{TWO}")

@@ -109,6 +109,7 @@ def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     assert set(data["inputs"]) == {f"../{it}" for it in inputs}
 
 
+@pytest.mark.more
 def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
     (tmp_path / "site.yaml").write_text("layout: L2\naffix: prefix\n")
     text = "include: site.yaml\nrobots:\n  - {name: a, description: rover.urdf}\n"

@@ -77,6 +77,7 @@ def nobodys(outputs: Outputs, robot: str) -> str:
     return root(outputs, robot).findtext("note") or ""
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("separators", "given"), [({"link": "_"}, "robot2_"), ({"link": "/", "joint": "/"}, "robot2/")]

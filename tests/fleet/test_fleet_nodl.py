@@ -66,6 +66,7 @@ def test_a_parameter_file_does_not_take_a_document_away(tmp_path: Path) -> None:
     assert "/robot1/laser" in found
 
 
+@pytest.mark.more
 def test_a_node_that_a_parameter_file_alone_names_has_its_document(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -521,6 +521,7 @@ def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
     assert (first.stamped, first.frame) == (True, "r1/base")
 
 
+@pytest.mark.more
 def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
     Path("own.yaml").write_text(
         "nodes:\n"

@@ -72,6 +72,7 @@ def test_one_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFix
     assert "'package://nowhere/config/c.yaml', which is not there" in said
 
 
+@pytest.mark.more
 def test_a_real_robot_loads_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
     (folder / "fleet.yaml").write_text(f"simulator: none\n{FLEET}{ROBOTS_TWO}")

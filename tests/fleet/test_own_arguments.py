@@ -159,6 +159,7 @@ robots:
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
 
 
+@pytest.mark.more
 def test_a_further_robot_is_one_more_expansion(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -257,6 +258,7 @@ jtc:
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("joint", ["lbr_A1", "$(var robot_name)_A1"])
 def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Path) -> None:
     """LBR's: the argument stands in YAML, too, or its default does."""

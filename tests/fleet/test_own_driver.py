@@ -74,6 +74,7 @@ def test_the_pose_is_that_of_the_odometry_frame_that_it_sends(tmp_path: Path) ->
     assert children(tmp_path, "{odom_frame: wheel}", DESCRIBED, sends) == ["robot1/wheel"]
 
 
+@pytest.mark.more
 def test_a_driver_that_is_described_and_sends_nothing(tmp_path: Path) -> None:
     assert children(tmp_path, "{odom_frame: odom}", DESCRIBED) == ["robot1/base_link"]
 

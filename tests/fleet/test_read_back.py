@@ -37,6 +37,7 @@ def test_nothing_is_wrong_with_a_whole_fleet(built: tuple[FleetPlan, Outputs]) -
     assert read_back(*built, OUT) == []
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: it.parent.name)
@@ -210,6 +211,7 @@ def test_a_controller_runs_as_it_is_declared(name: str) -> None:
     assert (code, lost) in {(it.code, it.node) for it in found if it.level == ERROR}
 
 
+@pytest.mark.more
 def test_a_launch_file_that_cannot_be_read(built: tuple[FleetPlan, Outputs]) -> None:
     spoiled = edited(built[1], in_launch(lambda it: "import nothing_of_that_name\n"))
     (found,) = read_back(built[0], spoiled, OUT)

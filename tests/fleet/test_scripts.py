@@ -76,6 +76,7 @@ TF = [("/tf", "tf"), ("/tf_static", "tf_static")]
 TF_4 = [("/tf", "/tf/robot1"), ("/tf_static", "/tf_static/robot1")]
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "node", "frame", "joint", "topic", "tf"),
@@ -197,6 +198,7 @@ def test_a_node_as_launch_ros_takes_it(robot: LoadedRobot) -> None:
     assert robot.node("bt_navigator")["parameters"] == []
 
 
+@pytest.mark.more
 def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
     loaded = fleet(tmp_path)
     assert loaded.robot("robot2").node("amcl")["parameters"] == []
@@ -219,6 +221,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     assert first.table.full_name("start_pose") == "/robot1/start_pose"
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("ask", "parts"),
@@ -265,6 +268,7 @@ def test_what_rcl_refuses_is_refused_with_its_line(params: str, part: str, tmp_p
     assert part in str(caught.value)
 
 
+@pytest.mark.more
 def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(
         "nodes:\n  talker:\n    package: mine\n"
@@ -326,6 +330,7 @@ def test_no_part_of_ros_is_needed() -> None:
     assert not loaded & {"launch", "launch_ros", "rclpy", "ament_index_python", "xacro"}
 
 
+@pytest.mark.more
 def test_a_representation_is_short(robot: LoadedRobot) -> None:
     assert repr(robot) == "LoadedRobot('robot1')"
     assert len(repr(robot._fleet)) < 300
@@ -486,6 +491,7 @@ def test_a_costmap_gets_its_parameters_by_the_process_that_it_is_in(
     assert (server["odom_topic"], server["use_sim_time"]) == ("odom", True)
 
 
+@pytest.mark.more
 def test_which_nodes_are_in_a_process(tmp_path: Path) -> None:
     table = fleet(tmp_path, "L3", COMPOSED, HOSTED).robot("robot1").table
     assert table.inside("controller_server") == ["local_costmap/local_costmap"]

@@ -53,6 +53,7 @@ def test_a_plan_and_a_snapshot_are_told_apart_by_what_is_in_them() -> None:
     assert compare(plan, healthy()) == []
 
 
+@pytest.mark.more
 def test_a_plan_as_json_too(tmp_path: Path) -> None:
     file = tmp_path / "plan.json"
     words = ["plan", str(ROVER), *ROBOTS, "--stack", "nav2", "--layout", "both", "-o", str(file)]

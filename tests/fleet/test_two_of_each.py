@@ -47,6 +47,7 @@ def test_two_are_read_of_robots_that_differ_in_names_and_poses() -> None:
     assert read_back(*five(*NAMES), OUT) == []
 
 
+@pytest.mark.more
 def test_what_is_read_has_no_word_of_the_others() -> None:
     plan, made = five(*NAMES)
     few, _ = two_of_each(made, [it.spec for it in plan.robots])

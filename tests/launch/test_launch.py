@@ -221,11 +221,13 @@ def test_every_word_is_tried() -> None:
     assert {word for word, _, _ in WORDS} == set(launch.WORDS) - {"description"}
 
 
+@pytest.mark.more
 def test_a_description(fleet: str, context: Any) -> None:
     value = launch.description("robot1", fleet)
     assert launch.perform(context, value) == load_fleet(fleet).robot("robot1").description
 
 
+@pytest.mark.more
 def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet})
     told = []
@@ -275,6 +277,7 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
+@pytest.mark.more
 def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     found = []
     robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
@@ -289,6 +292,7 @@ def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -
         launch.fleet_of(context, fleet)
 
 
+@pytest.mark.more
 def test_a_condition(fleet: str, context: Any) -> None:
     never = importlib.import_module("launch.conditions").IfCondition("false")
     always = importlib.import_module("launch.conditions").IfCondition("true")
@@ -355,6 +359,7 @@ def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> N
     assert "composable_node_descriptions" not in box.options
 
 
+@pytest.mark.more
 def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     where = {"robot": "robot2", "fleet": fleet}
     (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))
@@ -366,6 +371,7 @@ def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     assert bare.options["parameters"] == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("odd", ["\x7f", "\x85", "\u2028", "\ufeff", "\U0001f916", 'a "b" \\n'])
 def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, context: Any) -> None:
     path = Path(fleet).with_name("rover.urdf")
@@ -529,6 +535,7 @@ def test_xml_for_every_robot(fleet: str, context: Any) -> None:
     assert executables == ["robot1", "create", "robot2", "create"]
 
 
+@pytest.mark.more
 def test_xml_for_one_robot(fleet: str, context: Any) -> None:
     where = f'robot="robot2" fleet="{fleet}"'
     node, spawn, off = read(
@@ -727,6 +734,7 @@ def test_an_action_is_one_before_its_robot_is_known(frontend: Any) -> None:
     assert launch.place(executable="x").options == {"executable": "x"}
 
 
+@pytest.mark.more
 def test_the_options_of_a_program(fleet: str, context: Any) -> None:
     of_robot = {"robot": "robot1", "fleet": fleet}
     (made,) = run(

@@ -102,6 +102,7 @@ def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     assert {"controller_server", f"bt_navigator_{robot}"} <= {*moving}  # type: ignore[misc]
 
 
+@pytest.mark.more
 def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
     nodes: dict[str, LaunchedNode],
 ) -> None:
@@ -134,6 +135,7 @@ def test_every_node_has_the_clock_that_is_said(each: LaunchGraph, composed: Laun
     assert [clocks(it) - {False} for it in composed.nodes] == [set()] * len(composed.nodes)
 
 
+@pytest.mark.more
 def test_a_window_of_each_robot_and_one_of_all(each: LaunchGraph, composed: LaunchGraph) -> None:
     for at, window in enumerate(windows(each), 1):
         tf = [(f"/{it}", f"/{it}/robot{at}") for it in ("tf", "tf_static")]

@@ -128,6 +128,7 @@ def test_the_longest_beginning_of_a_code_gives_the_level(
     assert levels_in(json.loads(capsys.readouterr().out)) == [("MB501", level)]
 
 
+@pytest.mark.more
 def test_what_fails_a_lint_is_asked_of_the_configurations_level(tmp_path: Path) -> None:
     for level, at, above in (("note", "note", "warning"), ("warning", "warning", "error")):
         given = (tmp_path, f'MB501 = "{level}"', TWO_ROOTS, "--select", "MB501", "--fail-on")

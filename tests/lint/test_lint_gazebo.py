@@ -490,6 +490,7 @@ def test_every_row_of_sdf_has_a_source() -> None:
             assert int(line) > 0
 
 
+@pytest.mark.more
 def test_every_value_of_a_plugin_has_a_source() -> None:
     vocabulary = load_vocabulary((), "", packages=False)
     places = [

@@ -308,6 +308,7 @@ def test_a_rotation_that_was_ignored_is_the_one_that_is_written(seed: int) -> No
         assert all(np.abs(frames[it] - frames_after[it]).max() <= EXACT for it in frames)
 
 
+@pytest.mark.more
 @needs_pin
 def test_a_capsule_that_was_not_read_is_drawn_on_every_release() -> None:
     body = visual('<capsule length="0.4" radius="0.1"/>', '<origin xyz="1 0 0" rpy="0 0.5 0"/>')

@@ -210,6 +210,7 @@ def test_a_set_that_fails_leaves_the_others(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.more
 def test_arguments_on_the_command_line_and_in_the_configuration(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

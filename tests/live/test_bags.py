@@ -284,6 +284,7 @@ def test_a_damaged_bag_is_one_line_or_is_read(
         assert "Traceback" not in err
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("text", [BOMB, "[" * 100_000, "a: b\n", "\xff", ""])
 def test_hostile_metadata_is_one_line(
     text: str, made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

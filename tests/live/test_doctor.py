@@ -73,6 +73,7 @@ def test_the_robots_and_their_layout(
     assert (seen.layout.name if seen.layout else "") == layout
 
 
+@pytest.mark.more
 def test_parts_of_a_robot_are_no_robots() -> None:
     """Cameras and costmaps have namespaces with topics like a robot's."""
     graph = single()
@@ -152,6 +153,7 @@ def test_tools_on_another_clock_are_none_of_a_robot() -> None:
     assert diagnose(graph).findings == ()
 
 
+@pytest.mark.more
 def test_a_dock_that_no_robot_owns_may_be_on_a_shared_tf() -> None:
     graph = nav2_with_tools("L2")
     dock = Edge("dock", "map", "/tf_static", True, ())
@@ -189,6 +191,7 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
 # ---------------------------------------------------------------- the plan of what is seen
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:

@@ -127,6 +127,7 @@ def test_the_case_that_hurts() -> None:
     assert not allowed("rt/anything/at/all", topics["/robot1"][1])
 
 
+@pytest.mark.more
 def test_what_every_node_needs_is_allowed() -> None:
     _, topics, _ = fleet("frames-per-robot")
     for enclave, node in (("/robot1", "/robot1/amcl"), ("/tools", "/rviz2")):

@@ -218,6 +218,7 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
 # ---------------------------------------------------------------- the file
 
 
+@pytest.mark.more
 def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
     own = (("arm", "active", ("joint1/position",)), ("spare", "inactive", ()))
     states = (

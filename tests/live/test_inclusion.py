@@ -43,6 +43,7 @@ def _names_of_missing(plan: System, graph: System) -> Iterator[str]:
             yield it.name
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda fault: fault.name

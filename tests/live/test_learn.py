@@ -702,6 +702,7 @@ def shot(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.more
 def test_what_is_learned_gives_the_whole_table(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

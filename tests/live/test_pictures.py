@@ -156,6 +156,7 @@ def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
     assert node_states(scene)["/robot1/collision_monitor"] == LEAK
 
 
+@pytest.mark.more
 def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *CROSSED))
@@ -351,6 +352,7 @@ def crossings(edges: list[tuple[float, float]]) -> int:
 # ---------------------------------------------------------------- tf
 
 
+@pytest.mark.more
 def test_each_robot_has_its_own_tree_below_a_shared_root() -> None:
     plan = nav2_graphs.nav2("L2")
     trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).trees
@@ -361,6 +363,7 @@ def test_each_robot_has_its_own_tree_below_a_shared_root() -> None:
     assert {row.robot for row in trees[1].rows[1:]} == {"robot2"}
 
 
+@pytest.mark.more
 def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
     plan = nav2_graphs.nav2("L1")
     trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).trees
@@ -422,6 +425,7 @@ def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
 # ---------------------------------------------------------------- the page
 
 
+@pytest.mark.more
 def test_the_page_is_one_file_that_asks_for_nothing() -> None:
     plan = nav2_graphs.nav2()
     text = to_html(nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))).decode()
@@ -522,6 +526,7 @@ def test_a_fault_of_twenty_robots_is_one_row() -> None:
     assert (missing, leak) == (40, 21)
 
 
+@pytest.mark.more
 def test_a_small_fleet_is_open_and_the_healthy_of_a_large_one_are_folded() -> None:
     small = page(
         nav2_graphs.scene(nav2_graphs.fleet(2, 4), nav2_graphs.healthy(nav2_graphs.fleet(2, 4)))

@@ -189,6 +189,7 @@ def test_a_wrong_plan_is_one_line(
     assert err.count("\n") == 1
 
 
+@pytest.mark.more
 def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
@@ -279,6 +280,7 @@ def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
     assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("when", ["", "planning"])
 def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: Path) -> None:
     nodes, plan = tmp_path / "nodes.yaml", tmp_path / "plan.yaml"

@@ -94,6 +94,7 @@ def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
     assert page(report_pages.healthy()).xpath("//section/@id") == order
 
 
+@pytest.mark.more
 def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> None:
     tree = page(report_pages.twenty())
     (card,) = tree.find_class("card")
@@ -104,6 +105,7 @@ def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> No
     assert opened == ["g0", "shared"]
 
 
+@pytest.mark.more
 def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
     plan = nav2_graphs.fleet(40, 2)
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot39/topic1", "/topic1")
@@ -210,6 +212,7 @@ def test_what_a_shared_node_lacks_is_dashed() -> None:
     assert cards(scene) == {"shared, or of no robot": "bad", "fleet_a/robot1": "good"}
 
 
+@pytest.mark.more
 def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)

@@ -185,6 +185,7 @@ def test_a_bare_odom_of_a_plugin(layout: str) -> None:
     assert "other findings" not in finding.hint
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", NAMED)
 def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:

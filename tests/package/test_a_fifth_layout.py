@@ -49,6 +49,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
     assert (tmp_path / "out" / "r1" / "r.urdf").read_text() == SMALL
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "command",

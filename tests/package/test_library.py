@@ -86,6 +86,7 @@ def test_text_may_have_something_before_its_root(head: str) -> None:
     assert rewrite(head + SMALL, "r1").text == head + SMALL_R1
 
 
+@pytest.mark.more
 def test_a_xacro_file_is_expanded(tmp_path: Path) -> None:
     file = tmp_path / "rover.urdf.xacro"
     head = '<robot name="rover" xmlns:xacro="http://ros.org/wiki/xacro">'

@@ -137,6 +137,7 @@ def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
     assert by_both(kind, text, tmp_path, CODES) == ([expected], [expected])
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:

@@ -74,6 +74,7 @@ def graph(release: str, name: str) -> tuple[System, System]:
     return plan, System(tuple(Node(it, it) for it in owners), tuple(ends), (), around)
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("name", SYSTEMS)

@@ -184,6 +184,7 @@ def test_words_of_robots(robot: str) -> None:
     assert not is_part(robot)
 
 
+@pytest.mark.more
 def test_a_part_of_that_name_is_by_chance() -> None:
     made = rewrite(ROVER, "left", affix="prefix", separators={"link": "_"}).text
     assert '"left_left_wheel"' in made

@@ -182,6 +182,7 @@ def test_every_plugin_of_the_corpus_is_counted(corpus: dict[str, Path]) -> None:
     assert total.files == len(files)
 
 
+@pytest.mark.more
 def test_no_mention_of_the_corpus_is_lost(corpus: dict[str, Path]) -> None:
     for path in list(corpus.values())[::40]:
         found = inventory(path.read_text(), path.name)

@@ -225,6 +225,7 @@ def test_a_builtin_name_has_one_section_for_each_ros(type_: str) -> None:
     assert [name for name, ros in count if ros and name in plain] == []
 
 
+@pytest.mark.more
 def test_every_builtin_section_says_what_it_is() -> None:
     silent = [f"{r.file}:{r.line} {r.name}" for r in builtin() if not (r.about or r.source)]
     assert silent == []

@@ -156,6 +156,7 @@ MORE = (
 )
 
 
+@pytest.mark.more
 def test_a_text_without_slips_is_told_at_a_glance(monkeypatch: pytest.MonkeyPatch) -> None:
     chance = random.Random(5)
     texts = [b"".join(chance.choices(PIECES + MORE, k=chance.randint(1, 9))) for _ in range(3000)]

@@ -80,6 +80,7 @@ def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     assert all(b - a >= 0.5 for a, b in pairwise(places))
 
 
+@pytest.mark.more
 def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
     (tmp_path / "wide.urdf").write_text(WIDE)
     fleet = made(tmp_path, tmp_path / "wide.urdf", "-n", 3)
@@ -190,6 +191,7 @@ def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
     assert robots == {"rover1": "rover.urdf", "two_finger_arm1": "two_finger_arm.urdf"}
 
 
+@pytest.mark.more
 def test_a_layout_that_does_not_work_is_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -204,6 +206,7 @@ def test_a_layout_that_does_not_work_is_replaced(
     assert why in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None:
     world = '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="fixed">'
     world += '<parent link="world"/><child link="a"/></joint></robot>'
@@ -235,6 +238,7 @@ def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> N
     assert "#   old.rviz: this is a ROS 1 config" in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: Path) -> None:
     """``a.urdf`` would come first: its path is shorter."""
     text = '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
@@ -466,6 +470,7 @@ def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
     assert (fleet["srdf"], fleet.get("companions", {})) == ("urdf/rover.srdf", {})
 
 
+@pytest.mark.more
 def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     walls = "".join(f'<link name="wall_{at}"/>' for at in range(3))
     (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
@@ -473,6 +478,7 @@ def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"
 
 
+@pytest.mark.more
 def test_a_robot_that_its_description_has_in_the_map_gets_no_pose(tmp_path: Path) -> None:
     """go2_ros2_sdk go2.urdf: robot_state_publisher sends map -> odom, so a pose has no place in tf."""
     joint = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'

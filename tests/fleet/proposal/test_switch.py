@@ -113,6 +113,7 @@ def test_hardware_of_the_other_world_stops_the_build(
     assert not (folder / "out").exists()
 
 
+@pytest.mark.more
 def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
     """Where the simulator has no plugin of ros2_control, nothing reads the real robot's block."""
     write(folder, "use_sim", "false")

@@ -123,6 +123,7 @@ def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> N
     assert heard["lidar_link/robot2"][:3] == [0.1, 0, 0.09]
 
 
+@pytest.mark.more
 def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(healthy("postfix")))

@@ -98,6 +98,7 @@ def test_what_names_were_and_where(file: Path) -> None:
     ]
 
 
+@pytest.mark.more
 def test_topics_have_the_namespace_where_it_is_another_word(tmp_path: Path) -> None:
     fleet = tmp_path / "fleet.yaml"
     (tmp_path / "rover.urdf").write_bytes((ROBOTS / "rover.urdf").read_bytes())
@@ -125,6 +126,7 @@ def test_frames_of_a_snapshot(tmp_path: Path) -> None:
     assert robot["heard"] == {**others, "imu_link/robot1": "elsewhere"}
 
 
+@pytest.mark.more
 def test_the_page_fetches_nothing_and_is_small(file: Path) -> None:
     page(file.parent, file)
     text = (file.parent / "view.html").read_text()

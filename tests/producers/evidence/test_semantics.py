@@ -105,6 +105,7 @@ def test_a_virtual_joint_that_moves_needs_a_sender(tmp_path: Path) -> None:
     assert "odom -> base" in made[0].message
 
 
+@pytest.mark.more
 def test_an_srdf_is_read_by_a_move_group_that_may_run(tmp_path: Path) -> None:
     plan, _ = planned(tmp_path, "shoulder, elbow")
     (found,) = (it for it in plan.fleet.facts if it.name == "move_group")
