@@ -105,3 +105,12 @@ def test_a_wrong_list_is_told_in_one_line(write: Write, old: str, new: str, want
         rewrite(write(LIST.replace(old, new)), "robot1")
     assert wanted in str(found.value)
     assert "\n" not in str(found.value)
+
+
+def test_a_name_that_gets_no_prefix_is_refused(write: Write) -> None:
+    plugin = '<gazebo><plugin filename="libmine.so" name="m"><x>$(arg n)</x></plugin></gazebo>'
+    hand = Path("parts/hand.urdf.xacro")
+    hand.write_text(HAND.replace("</robot>", f"{plugin}</robot>"))
+    with pytest.raises(InputError, match=r"a name has no prefix: .*'paw'.*; make the description"):
+        rewrite(write(LIST), "robot1")
+    assert main(["join", "robot.urdf.join", "-q", "-o", "robot.urdf"]) == 0

@@ -18,7 +18,7 @@ from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.joining.join import Given, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
-from multibot_rewrite.description.joining.part import Part
+from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.read import JOIN, SourceText, read_file, read_whole
 from multibot_rewrite.knowledge.yaml_with_lines import (
@@ -63,6 +63,10 @@ def read_joined(path: str, trust: bool) -> SourceText:
         made = join_texts(given, builtin_tree((), release_here()))
     except UsageError as error:
         raise InputError(f"{path}: {error}") from None
+    missed = next((it for it in made.findings if it.code in MISSED), None)
+    if missed:
+        what = f"{path}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
+        raise InputError(f"{what}; make the description with multibot join, and correct it")
     read = tuple(file for text in texts for file in text.read)
     return SourceText(without_marks(made.data), f"{path} (expanded)", (path, *read))
 

@@ -38,8 +38,10 @@ PREFIXED = (
 # Two of one name are not read, or are taken for one.
 ONCE = ("link", "joint", "transmission", "hardware", "gpio", "sensor")
 ZERO = (0.0,) * 6
-# A name, plugin or hardware class that is not known, and a name in a plugin's code: it has no prefix.
-TOLD = ("MB901", "MB902", "MB903", "MB428")
+# Names that have no prefix: in a value that is not known, or in a plugin's code.
+MISSED = ("MB901", "MB428")
+# The same, and plugins and hardware classes that are not known.
+TOLD = (*MISSED, "MB902", "MB903")
 _PREFIX = lazy_compile(r"(?:[A-Za-z]\w*)?", re.ASCII)
 _ENDINGS = (".xacro", ".urdf", ".xml")
 
