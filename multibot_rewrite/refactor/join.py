@@ -73,8 +73,8 @@ def join(
     made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
     semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
     names = tuple(it.part.name for it in made.parts)
-    unread = _unread(given, texts)
-    notes = (*unread, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
+    told = (*_unread(given, texts), *_relative(made))
+    notes = (*told, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
     return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
 
 
@@ -92,6 +92,18 @@ def _unread(given: Sequence[Part], texts: Sequence[SourceText]) -> Iterator[str]
     for it, text in zip(given, texts, strict=True):
         for name in text.known.lacks(sorted(it.xacro_args)) if text.known else ():
             yield f"{text.file}: no file of the xacro has the argument {name}"
+
+
+def _relative(made: JoinedText) -> Iterator[str]:
+    """Meshes and pictures that are looked up from the folder of a part's file."""
+    for it in made.parts:
+        root, file = it.part.inventory.document.root, it.part.file
+        names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
+        found = [name for name in names if name and "://" not in name and name[0] != "/"]
+        if found:
+            what = f"{file}: {found[0]!r} is looked up from the folder of the file"
+            more = f", and {len(found) - 1} more" if len(found) > 1 else ""
+            yield f"{what}{more}; write package://NAME/..."
 
 
 def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:

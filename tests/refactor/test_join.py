@@ -381,3 +381,12 @@ def test_an_argument_that_no_xacro_has_is_told(tmp_path: Path) -> None:
     part = Part(made, "base", xacro_args={"typo": "1"})
     notes = join([Part(robot(link("base"))), part]).notes
     assert notes == (f"{made} (expanded): no file of the xacro has the argument typo",)
+
+
+def test_paths_that_lead_elsewhere_now_are_told() -> None:
+    shape = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+    inside = link("a", shape.format("meshes/a.stl") + shape.format("package://x/b.stl"))
+    made = join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")])
+    assert made.notes == (
+        "<text>: 'meshes/a.stl' is looked up from the folder of the file; write package://NAME/...",
+    )
