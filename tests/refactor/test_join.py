@@ -142,6 +142,11 @@ def test_a_material_of_two_parts_is_there_once_and_renamed_where_it_differs() ->
     other = joined(GREY.format("0.5") + LOOKS, GREY.format("0.6") + LOOKS)
     assert names(other, "material") == ["grey", "p_1_grey"]
     assert tree_of(other).xpath("//visual/material/@name") == ["grey", "p_1_grey"]
+    odd = GREY.replace('"grey"', '"a &amp; b--c, %"') + LOOKS.replace('"grey"', '"a &amp; b--c, %"')
+    odd = joined(odd.format("0.5"), odd.format("0.6"))
+    assert names(odd, "material") == ["a & b--c, %", "p_1_a & b--c, %"]
+    bare = joined('<material name="grey"/>' + link("a"), GREY.format("0.5") + LOOKS)
+    assert names(bare, "material") == ["grey", "p_1_grey"]
     with pytest.raises(InputError, match="material 'grey' looks otherwise"):
         joined(GREY.format("0.5") + link("a"), GREY.format("0.6") + link("b"), prefix="")
 

@@ -7,7 +7,7 @@ Source: urdfdom model.cpp (``parseURDF``: a material below ``<robot>`` that is t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from lxml.etree import _Element
 
@@ -47,21 +47,30 @@ def _look(material: _Element) -> _Look | None:
 def other_looks(joined: _Element, part: ReadPart, file: str) -> tuple[str, ...]:
     """The materials of a part that look otherwise before it; raises InputError without a prefix."""
     known, own = looks(joined), looks(part.inventory.document.root)
-    names = tuple(name for name in own if known.get(name, own[name]) != own[name])
+    # One without a look below the root is another one, too.
+    bare_names = {it.get("name", "") for it in joined.iterchildren(_TAG)} - known.keys()
+    met = known.keys() | bare_names
+    names = tuple(name for name, look in own.items() if name in met and known.get(name) != look)
     if names and not part.prefix:
         what = f"material {names[0]!r} looks otherwise in {file}"
         raise InputError(f"{part.file}: {what}; give the part a prefix, or rename the material")
     return names
 
 
-def renamed(document: Document, old: tuple[str, ...], new: tuple[str, ...]) -> bytes:
-    """The text with materials renamed, each name at its place in both."""
-    names = dict(zip(old, new, strict=True))
-    edits = list(_renames(document, names)) if names else []
-    return b"".join(cut(document.source, edits))
+def prefixed(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
+    """The text with a prefix before these materials."""
+    starts = _starts(read_document(text, file), names)
+    return b"".join(cut(text, (Edit(it, it, prefix.encode(), None) for it in starts)))
 
 
-def _renames(document: Document, names: dict[str, str]) -> Iterator[Edit]:
+def bare(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
+    """The text with the prefix taken off these materials."""
+    starts = _starts(read_document(text, file), [prefix + it for it in names])
+    return b"".join(cut(text, (Edit(it, it + len(prefix), b"", None) for it in starts)))
+
+
+def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
+    """Where these names begin; in a block a material is one of Gazebo's."""
     for element, start in zip(document.elements, document.starts, strict=True):
         above = element.getparent()
         if element.tag != _TAG or above is None or above.tag == "gazebo":
@@ -69,21 +78,7 @@ def _renames(document: Document, names: dict[str, str]) -> Iterator[Edit]:
         name = element.get("name", "")
         slot = value_slot(document.source, start, "name", name) if name in names else None
         if slot is not None:
-            yield Edit(*slot, document.source[slot[0] : slot[1]].replace(*_pair(name, names)), None)
-
-
-def _pair(name: str, names: dict[str, str]) -> tuple[bytes, bytes]:
-    return name.encode(), names[name].encode()
-
-
-def prefixed(text: bytes, file: str, prefix: str, names: tuple[str, ...]) -> bytes:
-    """The text with a prefix before these materials."""
-    return renamed(read_document(text, file), names, tuple(prefix + it for it in names))
-
-
-def bare(text: bytes, file: str, prefix: str, names: tuple[str, ...]) -> bytes:
-    """The text with the prefix taken off these materials."""
-    return renamed(read_document(text, file), tuple(prefix + it for it in names), names)
+            yield slot[0]
 
 
 def repeated(joined: _Element, spans: Spans) -> Iterator[Edit]:

@@ -85,11 +85,6 @@ class ReadPart(NamedTuple):
         """The name of its root link."""
         return roots(self.robot)[0].name
 
-    @property
-    def on_world(self) -> tuple[Joint, ...]:
-        """The joints that fix it to a link ``world``, which is its root."""
-        return self.robot.below.get(WORLD, ()) if self.root == WORLD else ()
-
 
 def prefixing(kinds: Iterable[str] = PREFIXED) -> Naming:
     """The naming that puts a prefix, as it is written, before names of these kinds."""
