@@ -18,6 +18,9 @@ from multibot_rewrite.description.joining.part import ZERO, Part
 from multibot_rewrite.description.sources.read import JOIN
 from multibot_rewrite.refactor.join import Joined, join, split
 
+# Options that are written for each part.
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers")
+
 
 def run(options: argparse.Namespace) -> int:
     """Write the joined description, or its parts; returns the exit code."""
@@ -69,6 +72,9 @@ def _write(
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
         raise UsageError("--split takes one file, which multibot join made")
+    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
+    if given:
+        raise UsageError(f"--{given} is for joining, it cannot go with --split")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
@@ -104,8 +110,7 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:
     """The parts that a file lists, which says everything of them."""
-    beside = ("at", "pose", "prefix", "srdf", "controllers")
-    more = [*options.words[1:], *(f"--{it}" for it in beside if getattr(options, it))]
+    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
     if more:
         raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
     return parts_of(options.words[0])

@@ -35,8 +35,8 @@ JOINED = """<?xml version="1.0"?>
     <parent link="base"/><child link="tool"/>
     <limit lower="0" upper="1" effort="1" velocity="1"/>
   </joint>
-  <!-- multibot base arm prefix= -->
-  <!-- multibot part hand prefix=h_ materials= <!%2D- a hand:%20two - dashes %2D->
+  <!-- multibot base arm -->
+  <!-- multibot part hand prefix=h_ <!%2D- a hand:%20two - dashes %2D->
 <robot name="hand"> --><!-- multibot was 1  -->
   <joint name="hand_mount" type="fixed">
     <origin xyz="0 0 0.5" rpy="0 0 1.5"/>
@@ -348,6 +348,8 @@ def test_arguments_go_to_the_xacro_before_them(
         (["a.urdf", "b.urdf", "--at", "x", "--at", "y"], "--at is there 2 times for 1 part"),
         (["a.urdf", "b.urdf", "--at", "x", "--pose", "1 2 x"], "write six numbers"),
         (["a.urdf", "b.urdf", "--split", "out"], "--split takes one file"),
+        (["a.urdf", "--split", "out", "-o", "x"], "--output is for joining"),
+        (["a.urdf", "--split", "out", "--at", "x"], "--at is for joining"),
         (["a.urdf", "b.urdf", "--at", "x"], "a.urdf: cannot be read"),
     ],
 )

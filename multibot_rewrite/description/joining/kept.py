@@ -27,9 +27,9 @@ from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document, silenced
 
-_BASE = lazy_compile(rb"  <!-- multibot base (\w+) prefix=(\w*) -->\n")
+_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 _PART = lazy_compile(
-    rb"  <!-- multibot part (\w+) prefix=(\w*) materials=(\S*) (.*?) -->", re.DOTALL
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (.*?) -->", re.DOTALL
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
@@ -75,18 +75,15 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
 
 def section(it: Section, start: int, end: int) -> bytes:
     """A part for a joined text; ``start`` and ``end`` are those of what is in its root."""
-    names = ",".join(quote(name, safe="") for name in it.materials)
-    head = (it.name, it.prefix, names.replace("--", "-%2D"))
-    first = b"  <!-- multibot part %s prefix=%s materials=%s %s -->"
-    last = _END + b"%s -->\n"
-    name, prefix, materials = (word.encode() for word in head)
-    return b"".join(
-        (
-            first % (name, prefix, materials, _hidden(it.text[:start])),
-            it.text[start:end],
-            last % (name, _hidden(it.text[end:])),
-        )
-    )
+    names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
+    words = _words(it.name, prefix=it.prefix, materials=names)
+    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
+    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
+    return first + it.text[start:end] + last
+
+
+def _words(name: str, **more: str) -> bytes:
+    return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
 def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
@@ -96,7 +93,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s prefix=%s -->\n" % (name.encode(), prefix.encode())
+    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
     return text[:at] + mark + more + text[at:]
 
 
@@ -109,14 +106,14 @@ def sections(text: bytes, file: str) -> list[Section]:
     found = list(_behind(before, mark.end(), file))
     last = found[-1][1] if found else mark.end()
     base = before[: mark.start()] + before[last:]
-    name, prefix = (word.decode() for word in mark.groups())
+    name, prefix = ((word or b"").decode() for word in mark.groups())
     return [Section(name, prefix, (), base), *(it for it, _ in found)]
 
 
 def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[Section, int]]:
     """Each part that follows, and where it ends."""
     while part := _PART.match(text, at):
-        name, prefix, materials, head = part.groups()
+        name, prefix, materials, head = (word or b"" for word in part.groups())
         end = _END % name
         close = text.find(end, part.end())
         stop = text.find(b" -->\n", close + len(end))
