@@ -36,7 +36,9 @@ def _join(options: argparse.Namespace) -> int:
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
         note(options, it)
-    note(options, f"{', '.join(made.parts)}: joined; proved")
+    why = ", ".join(made.not_proved)
+    end = f"joined, not proved: {why}" if why else "joined; proved"
+    note(options, f"{', '.join(made.parts)}: {end}")
     return DONE
 
 

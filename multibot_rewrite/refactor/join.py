@@ -11,6 +11,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
+from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, prefixing
 from multibot_rewrite.description.joining.proof import split_text
@@ -52,6 +53,12 @@ class Joined(NamedTuple):
     def text(self) -> str:
         """The description as str, for ``robot_description``; raises nothing."""
         return self.data.decode()
+
+    @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why a name may lack its prefix, with counts, as ``1 plugin not known``; empty where the join
+        is proved. Raises nothing."""
+        return not_proved(self.findings)
 
 
 @checked

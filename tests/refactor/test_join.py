@@ -98,6 +98,8 @@ def test_a_joined_description_is_the_first_part_of_another() -> None:
     both = join([Part(ARM, name="arm"), *(Part(HAND, at, prefix=p) for at, p in _HANDS)])
     assert twice.data == both.data
     assert list(split(twice.data)) == ["arm", "h", "k"]
+    with pytest.raises(UsageError, match="two parts are called 'h'"):
+        join([Part(once.data), Part(HAND, "h_finger", prefix="k_", name="h")])
     with pytest.raises(InputError, match="it is joined itself; give its parts"):
         join([Part(ARM), Part(once.data, "tool")])
 
@@ -396,4 +398,22 @@ def test_paths_that_lead_elsewhere_now_are_told() -> None:
     made = join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")])
     assert made.notes == (
         "<text>: 'meshes/a.stl' is looked up from the folder of the file; write package://NAME/...",
+    )
+
+
+def test_a_plugin_that_is_not_known_takes_the_word_proved(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    inside = link("a") + '<gazebo><plugin filename="libmine.so" name="m"><x>a</x></plugin></gazebo>'
+    made = join([Part(robot(link("base"))), Part(robot(inside), "base", prefix="p_")])
+    assert made.not_proved == ("1 name not understood", "1 plugin not known")
+    assert join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")]).not_proved == ()
+    for name, text in (("base", link("base")), ("part", inside)):
+        (tmp_path / f"{name}.urdf").write_text(robot(text))
+    words = [str(tmp_path / "base.urdf"), str(tmp_path / "part.urdf"), "--at", "base"]
+    assert main(["join", *words, "--prefix", "p_"]) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert (
+        said[-1]
+        == "multibot: base, p: joined, not proved: 1 name not understood, 1 plugin not known"
     )

@@ -19,7 +19,13 @@ from multibot_rewrite.description.checks.links_and_joints import Robot, read_rob
 from multibot_rewrite.description.joining import materials
 from multibot_rewrite.description.joining.blocks import said_once
 from multibot_rewrite.description.joining.fixing import fixed
-from multibot_rewrite.description.joining.kept import Section, placed, section
+from multibot_rewrite.description.joining.kept import (
+    Section,
+    is_joined_whole,
+    placed,
+    section,
+    sections,
+)
 from multibot_rewrite.description.joining.part import (
     ZERO,
     Part,
@@ -86,7 +92,9 @@ def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
 def _check_given(given: Sequence[Given], parts: Sequence[ReadPart]) -> None:
     if given[0].part.at:
         raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
-    names = [it.name for it in parts]
+    first = parts[0]
+    before = sections(first.data, first.file) if is_joined_whole(first.data) else [first]
+    names = [it.name for it in (*before, *parts[1:])]
     twice = next((it for at, it in enumerate(names) if it in names[:at]), None)
     if twice is not None:
         raise UsageError(f"two parts are called {twice!r}; give one a name or prefix of its own")
