@@ -11,6 +11,7 @@ import joined_pairs
 import pytest
 from joined_pairs import PREFIX, WRONG, counted, largest_gap, seen
 from lxml import etree
+from paths import CORPUS
 from real_robots import corpus_files
 
 from multibot_rewrite import Part, join, split
@@ -101,3 +102,28 @@ def test_two_xarms_on_the_ground_are_what_their_vendor_writes() -> None:
     theirs = elements(files[f"{XARM}dual_xarm_device.urdf"].read_bytes())
     assert len(theirs) > 50
     assert made == theirs
+
+
+def semantics(data: bytes) -> set[tuple[object, ...]]:
+    """The elements of an SRDF; which of two links is named first means nothing."""
+    pairs: set[tuple[object, ...]] = set()
+    for it in joined_pairs.plain(data).iterchildren():
+        links = sorted(it.get(key, "") for key in ("link1", "link2") if it.get(key))
+        inside = etree.tostring(it, method="c14n", with_tail=False).split()
+        pairs.add((it.tag, *links) if links else (it.tag, b" ".join(inside)))
+    return pairs
+
+
+def test_the_srdf_of_two_xarms_is_what_their_vendor_writes() -> None:
+    """And the two feet, between which is nothing that has a shape."""
+    folder = CORPUS / "srdf" / "xArm-Developer+xarm_ros2"
+    if not folder.is_dir():
+        pytest.skip("the corpus is not here")
+    arm = corpus_files()[f"{XARM}xarm_device.urdf"]
+    one = folder / "xarm_moveit_config__srdf__xarm.srdf"
+    ground = '<robot name="dual_xarm"><link name="ground"/></robot>'
+    parts = [Part(arm, "ground", prefix=it, srdf=one) for it in ("L_", "R_")]
+    made = semantics(join([Part(ground), *parts]).srdf)
+    theirs = semantics((folder / "xarm_moveit_config__srdf__dual_xarm.srdf").read_bytes())
+    assert made == theirs | {("disable_collisions", "L_link_base", "R_link_base")}
+    assert len(theirs) > 30
