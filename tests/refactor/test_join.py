@@ -417,3 +417,12 @@ def test_a_plugin_that_is_not_known_takes_the_word_proved(
         said[-1]
         == "multibot: base, p: joined, not proved: 1 name not understood, 1 plugin not known"
     )
+
+
+def test_a_frame_that_its_own_author_lost_is_no_fault_of_the_join() -> None:
+    inside = link("base") + (
+        '<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">'
+        "<frame_id>{model}/odom</frame_id></plugin></gazebo>"
+    )
+    made = join([Part(robot(inside)), Part(robot(link("a")), "base", name="n")])
+    assert b"<frame_id>{model}/odom</frame_id>" in made.data

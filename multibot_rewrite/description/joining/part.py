@@ -16,6 +16,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.audit import audit
 from multibot_rewrite.description.checks.links_and_joints import (
     WORLD,
     Joint,
@@ -29,6 +30,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.renames import make_renames
 
 # What carries the prefix; topics and nodes are the robot's, and the name of a model is its spawner's.
 PREFIXED = (
@@ -126,14 +128,23 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
     text = data
     findings: tuple[Finding, ...] = ()
     with in_one_line():
-        prepared = pipeline.prepare(data, file, prefixing(PREFIXED if part.prefix else ()), tree)
         if part.prefix:
+            prepared = pipeline.prepare(data, file, prefixing(), tree)
             findings = tuple(it for it in prepared.findings if it.code in TOLD)
             text = next(pipeline.render(prepared, [part.prefix], again=True))
             inventory = collect(read_document(text, file), tree)
+        else:
+            _check_whole(inventory, tree)
     robot = read_robot(inventory.document.root)
     name = name_of(part, file, inventory.document.root.get("name", ""))
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
+
+
+def _check_whole(inventory: Inventory, tree: Tree) -> None:
+    """Raise RewriteRefused for what no rewrite takes, such as a xacro that is not expanded."""
+    found = tuple(audit(inventory, make_renames(inventory, prefixing(())), tree))
+    if any(it.level == ERROR for it in found):
+        raise RewriteRefused(found)
 
 
 def _faults(inventory: Inventory) -> Iterator[str]:
