@@ -10,7 +10,7 @@ from math import isfinite
 from multibot_rewrite.base.lazy import lazy_compile
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
-_UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
+_UNIT = r"(?:0+(?:\.\d*)?|\.\d+|1(?:\.0*)?)"
 # What most values look like. urdfdom accepts spaces before a single number and none after it.
 _ONE = lazy_compile(rf" *{_SCALAR}", re.ASCII)
 _THREE = lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII)
