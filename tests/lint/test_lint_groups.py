@@ -55,6 +55,8 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
             "cli.declared.fleet",
             "lint.registry",
             "rules.description.srdf",
+            "rules.description.multirobot.meeting",
+            "lint.cache.cache",
             "lint.config.directives",
         ),
         *(
