@@ -29,8 +29,8 @@ from multibot_rewrite.rules.facts.drives import (
     separation,
     wheel_of,
 )
-from multibot_rewrite.rules.files.declared import Given, Section, sections
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
