@@ -29,7 +29,7 @@ from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 _EVERYWHERE = re.compile(
     r"use_sim_time|start_type_description_service|qos_overrides\..*|diagnostic_updater\..*|bond_\w+|type"
     r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|.*\.plugin|enable_parameter_\w+"
-    r"|.*plugin_?\w*|robot_description.*|fallback_controllers|node_options_args|autostart_node|service_\w+"
+    r"|.*plugin_?\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
 )
 _ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
@@ -50,6 +50,7 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
         paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
+        there += {name for it in unknown for name in _beside(it, paths)}
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
         for it in unknown if there else ():
@@ -57,6 +58,15 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
+
+
+def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
+    """What may be beside a parameter by a pattern: ``joint_limits.<joint>.max_velocity``."""
+    above = it.name.rpartition(".")[0]
+    for path in paths:
+        pattern, _, last = path.rpartition(".")
+        if "<" in pattern and "<" not in last and stands_for(pattern, above):
+            yield f"{above}.{last}"
 
 
 def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:

@@ -8,11 +8,16 @@ from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.description.checks.links_and_joints import Robot
-from multibot_rewrite.description.checks.planning_groups import text_of
+from multibot_rewrite.description.checks.planning_groups import FREE_FLYER, text_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.rules.description.references.lookup import undeclared
-from multibot_rewrite.rules.description.srdf.shared import ARM, VIRTUAL, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import (
+    ARM,
+    VIRTUAL,
+    srdf_rule,
+    undeclared_for_moveit,
+)
 from multibot_rewrite.rules.subject import Subject
 
 
@@ -46,7 +51,7 @@ other_robot = srdf_rule(
     options={"urdf": "r.urdf"},
     bad=f'<robot name="other">{ARM}</robot>',
     good=ARM,
-)(partial(undeclared, "MB802"))
+)(undeclared_for_moveit("MB802"))
 
 srdf_link = srdf_rule(
     "MB803",
@@ -60,7 +65,8 @@ srdf_link = srdf_rule(
     good='<group name="arm"><joint name="j"/><link name="b"/></group>',
 )(partial(undeclared, "MB803"))
 
-srdf_joint = srdf_rule(
+
+@srdf_rule(
     "MB804",
     "srdf-joint",
     ERROR,
@@ -71,7 +77,15 @@ srdf_joint = srdf_rule(
     bad=ARM + '<passive_joint name="jj"/>',
     good=ARM + '<passive_joint name="j"/>',
     line=2,
-)(partial(undeclared, "MB804"))
+)
+def srdf_joint(subject: Subject) -> Iterator[Problem]:
+    """All but the free flyer in a state for Pinocchio."""
+    yield from (
+        it
+        for it in undeclared("MB804", subject)
+        if it.element.tag != "joint" or text_of(it.element) != FREE_FLYER
+    )
+
 
 srdf_group = srdf_rule(
     "MB805",
@@ -84,7 +98,7 @@ srdf_group = srdf_rule(
     bad=ARM + '<group name="all"><group name="amr"/></group>',
     good=ARM + '<group name="all"><group name="arm"/></group>',
     line=2,
-)(partial(undeclared, "MB805"))
+)(undeclared_for_moveit("MB805"))
 
 
 @srdf_rule(
