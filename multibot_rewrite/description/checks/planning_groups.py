@@ -26,7 +26,7 @@ def is_pinocchios(root: _Element) -> bool:
     states = list(root.iterchildren("group_state"))
     return (
         any(True for _ in root.iterchildren(*_OF_PINOCCHIO))
-        or (bool(states) and not any("group" in it.attrib for it in states))
+        or (any(map(len, states)) and not any("group" in it.attrib for it in states))
         or any(text_of(it) == FREE_FLYER for state in states for it in state.iterchildren("joint"))
     )
 

@@ -43,7 +43,11 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     guesses = Guesses()
     for section in sections(file):
-        unknown = [it for it, found in section.known if not found and not _is_known(section, it)]
+        unknown = [
+            it
+            for it, found in section.known
+            if all(map(_is_any_name, found)) and not _is_known(section, it)
+        ]
         if not unknown:
             continue
         facts = [it for it in section.facts if it.how != READ]
@@ -58,6 +62,11 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
+
+
+def _is_any_name(fact: Declared) -> bool:
+    """Is it asked for by whatever name there is?"""
+    return fact.how == READ and fact.path.endswith(">")
 
 
 def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
