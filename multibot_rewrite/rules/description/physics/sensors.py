@@ -302,7 +302,7 @@ def _in_gazebo(type_: str) -> str:
     fix="Write gpu_lidar, and load the system Sensors in the world.",
     bad=_in_gazebo("ray"),
     good=_in_gazebo("gpu_lidar"),
-    line=7,
+    line=3,
 )
 def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
     """Lidars beside what only Gazebo loads, where nothing is for Gazebo Classic."""
