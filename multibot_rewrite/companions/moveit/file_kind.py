@@ -22,6 +22,8 @@ ABOVE = {
     OF_SERVO: "moveit_servo",
 }
 _PIPELINE = "_planning"
+# What a file of one pipeline has at its top, whatever it is called.
+_OF_PIPELINE = frozenset(("planning_plugin", "planning_plugins", "request_adapters"))
 _DEPTH = 4
 
 
@@ -63,7 +65,10 @@ def pipeline_of(path: str) -> str:
 def parameter_above(kind: FileKind, document: YamlText) -> str:
     """What stands before the names of a file's parameters: ``ompl.``, or nothing."""
     keys = {str(key.value) for key, _ in entries(document.root)}
-    above = pipeline_of(document.file) if kind.name == PLANNING else ABOVE.get(kind.name, "")
+    above = ABOVE.get(kind.name, "")
+    if kind.name == PLANNING:
+        above = pipeline_of(document.file)
+        above = above if above or keys.isdisjoint(_OF_PIPELINE) else "pipeline"
     if "controller_names" in keys:
         above = SIMPLE
     return f"{above}." if above and above not in keys else ""

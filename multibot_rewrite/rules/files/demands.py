@@ -28,13 +28,15 @@ _OWN = re.compile(r"nav2_\w+_bt_node")
 
 
 class Demand(NamedTuple):
-    """One check of a given parameter with the words of its arguments; ``source`` says where it is."""
+    """One check of a given parameter with the words of its arguments; ``source`` says where it is, and
+    ``releases`` where not all have it."""
 
     section: Section
     given: Given
     check: str
     words: tuple[str, ...]
     source: str
+    releases: str = ""
 
 
 def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
@@ -47,7 +49,7 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
                 for check, text in fact.checks:
                     if check in checks:
                         words = filled(text, fact.path, it.name)
-                        yield Demand(section, it, check, words, fact.source)
+                        yield Demand(section, it, check, words, fact.source, fact.releases)
 
 
 def above_others(file: NamedFile) -> Iterator[Remark]:
@@ -143,7 +145,7 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            level = ERROR if it.check == "instead" else level
+            level = ERROR if it.check == "instead" and not it.releases else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
 
 

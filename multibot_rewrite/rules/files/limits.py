@@ -18,7 +18,7 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import value_of
-from multibot_rewrite.description.sources.packages import entries
+from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.description.structure.shared import BOUNDED
 from multibot_rewrite.rules.files.records import Remark, remark, remark_at
@@ -130,7 +130,8 @@ def _solver(group: str) -> str:
 def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
     """Nothing where an SRDF makes names of its groups when it is expanded."""
     sites = [it for it in file.names if it.kind == "group" and it.is_sure]
-    groups = _groups(file.file) if sites and not file.is_certain else frozenset()
+    asked = bool(sites) and not file.is_certain and not is_for_ros_1(file.file)
+    groups = _groups(file.file) if asked else frozenset()
     for it in sites if groups else ():
         if it.text and it.text not in groups and it.text.isidentifier():
             message = f"no SRDF beside it has a group {it.text!r}"
