@@ -27,7 +27,7 @@ LISTED = {
 # Older names that no supported release reads: obstacle_layer.cpp of Foxy and of Galactic.
 RENAMED = {"obstacle_range": "obstacle_max_range", "raytrace_range": "raytrace_max_range"}
 # A part of a filter of filter_chain.hpp (ros/filters), by its number.
-FILTER = re.compile(r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d*))\.(?P<word>\w+).*")
+FILTER = re.compile(r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d{0,9}))\.(?P<word>\w+).*")
 _PLUGIN, _PRIMARY = ".plugin", ".primary_controller"
 _CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
 

@@ -70,15 +70,16 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             return
         given = tuple(_given(file.document, it.body, ""))
         if name in ANY or PLACEHOLDER.search(it.path):
-            yield _section(it.path, None, given, declared_by(EVERY_NODE), given)
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
             continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
         if node is not None and not _is_surely(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
-        below, rest = _of_plugins(it.path, given)
-        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), given)
+        whole = _by_name(given)
+        below, rest = _of_plugins(it.path, given, whole)
+        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
         yield from below
 
 
@@ -91,7 +92,11 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     root = file.document.root
     given = tuple(_given(file.document, root, above)) if root is not None else ()
     facts = facts_of_node(node, "", file.file, file.roots)
-    yield _section(node.name, node, given, facts, given)
+    yield _section(node.name, node, given, facts, _by_name(given))
+
+
+def _by_name(given: Sequence[Given]) -> Mapping[str, Given]:
+    return {it.name: it for it in given}
 
 
 def _section(
@@ -99,7 +104,7 @@ def _section(
     node: KnownNode | None,
     given: tuple[Given, ...],
     facts: tuple[Declared, ...],
-    whole: Sequence[Given],
+    whole: Mapping[str, Given],
     at: str = "",
 ) -> Section:
     exact: dict[str, list[Declared]] = {}
@@ -109,9 +114,8 @@ def _section(
             wild.append((fact.path.rpartition(".")[2], fact))
         else:
             exact.setdefault(fact.path, []).append(fact)
-    by_name = {it.name: it for it in whole}
     known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
-    return Section(title, node, given, facts, tuple(_asked(known, by_name, at)), by_name, at)
+    return Section(title, node, given, facts, tuple(_asked(known, whole, at)), whole, at)
 
 
 def _asked(
@@ -146,7 +150,9 @@ def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Decla
     return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
 
 
-def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
+def _of_plugins(
+    title: str, given: Sequence[Given], whole: Mapping[str, Given]
+) -> tuple[list[Section], tuple[Given, ...]]:
     """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
     what an unknown plugin declares."""
     plugins = plugins_in({it.name: it.value for it in given})
@@ -159,7 +165,7 @@ def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tupl
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, given, f"{name}."))
+        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, whole, f"{name}."))
     return found, tuple(rest)
 
 
