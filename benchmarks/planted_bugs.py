@@ -43,7 +43,7 @@ AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
 TEMPORARY = "planted_bugs_"
 # Exit codes of pytest.
 WRONG_USE, NO_TESTS, TOO_LONG = 4, 5, -1
-FAST = ("-q", "-x", "-m", "not live and not slow", "-p", "no:cacheprovider", "--tb=no")
+FAST = ("-q", "-x", "-m", "not live and (not slow or more)", "-p", "no:cacheprovider", "--tb=no")
 
 
 class Outcome(NamedTuple):

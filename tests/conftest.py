@@ -34,6 +34,7 @@ def pytest_report_header() -> str:
 
 settings.register_profile(
     "repeatable",
+    max_examples=40,
     derandomize=True,
     deadline=None,
     phases=(Phase.explicit, Phase.generate, Phase.shrink),
@@ -54,19 +55,29 @@ if sys.dont_write_bytecode:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+# So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
+FEW = 4
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
 
-    Of the rows of a test with ``sample(n)`` the first of every n is quick, the others are slow.
+    Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. Of
+    those with ``sample(m)`` the first of every m are in the usual run.
     """
-    rows: Counter[str] = Counter()
-    for item in items:
-        sample = item.get_closest_marker("sample")
-        name = item.nodeid.partition("[")[0]
-        if item.get_closest_marker("deep") or (sample and rows[name] % sample.args[0]):
+    names = [item.nodeid.partition("[")[0] for item in items]
+    rows, seen = Counter(names), Counter[str]()
+    for item, name in zip(items, names, strict=True):
+        sample, at = item.get_closest_marker("sample"), seen[name]
+        left_out = at % -(-rows[name] // (1 if sample else FEW))
+        if left_out and not any(map(item.get_closest_marker, ("slow", "live", "deep"))):
+            item.add_marker("more")
+        if left_out and sample and at % sample.args[0]:
+            item.add_marker("deep")
+        if any(map(item.get_closest_marker, ("deep", "more"))):
             item.add_marker("slow")
-        rows[name] += 1
+        seen[name] += 1
 
 
 def pytest_collection_finish() -> None:

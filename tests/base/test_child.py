@@ -26,6 +26,7 @@ def _planted(folder: Path, *names: str) -> Path:
     return folder / "ran"
 
 
+@pytest.mark.more
 def test_nobody_else_says_how_a_child_of_python_begins() -> None:
     others = [path for path in PACKAGE.rglob("*.py") if path != ONLY]
     said = re.compile(r"\[\s*sys\.executable|\(\s*sys\.executable|\"git\"")

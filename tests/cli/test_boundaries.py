@@ -24,6 +24,7 @@ def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
         check_link(str(folder / name))
 
 
+@pytest.mark.more
 def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("password: x\n")
     fleet = tmp_path / "fleet"

@@ -123,6 +123,7 @@ def test_bare_frames_layout(folder: Path, rover: bytes) -> None:
     assert result.out != rover
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("file", ["rover.urdf", "rover_gz.urdf"])
 @pytest.mark.parametrize("options", OPTIONS, ids=lambda words: " ".join(words) or "defaults")
 def test_strip_gives_the_original_back(folder: Path, file: str, options: tuple[str, ...]) -> None:

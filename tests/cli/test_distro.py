@@ -60,7 +60,7 @@ def test_a_release_that_is_not_known(capsys: pytest.CaptureFixture[str]) -> None
     assert "did you mean 'jazzy'" in capsys.readouterr().err
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("config", "variable", "words", "found"),
     [

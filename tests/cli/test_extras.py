@@ -59,7 +59,8 @@ def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("words", "extra"), NEEDS)
 def test_a_missing_extra_is_one_line_with_what_installs_it(
     words: tuple[str, ...], extra: str, bare: Path, capsys: pytest.CaptureFixture[str]
@@ -106,6 +107,7 @@ def size(found: Distribution) -> int:
     return sum(it.stat().st_size for it in paths if it.is_file())
 
 
+@pytest.mark.more
 def test_what_pip_installs_is_small() -> None:
     """A rewrite in a container or a CI job pays for all of it: the package and what it needs."""
     seen: dict[str, Distribution] = {}

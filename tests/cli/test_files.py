@@ -85,6 +85,7 @@ def test_all_is_written(folder: Path) -> None:
     assert held(folder) == NEW
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 def test_a_call_that_fails_leaves_everything_as_it_was(
     error: BaseException, folder: Path, calls: range

@@ -62,7 +62,8 @@ def there(robot: Path) -> dict[str, str]:
     return {it.relative_to(robot).as_posix(): it.read_text() for it in files}
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("target", READ)
 @pytest.mark.parametrize("name", WRITERS)
 def test_nothing_is_written_over_what_the_xacro_reads(
@@ -91,7 +92,8 @@ def test_what_another_name_leads_to_is_not_written_over(
     assert (robot / "sizes.yaml").read_text() == FILES["sizes.yaml"]
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("force", [[], ["--force"]])
 def test_a_build_writes_over_nothing_that_a_xacro_reads(
     force: list[str], robot: Path, capsys: pytest.CaptureFixture[str]

@@ -101,6 +101,7 @@ def test_a_description_s_findings(name: str, tmp_path: Path, fleet: Path, said: 
     assert said(*words, "--fail-on", "note", "--ignore", all_of_it)[0] == 0
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", ["urdf-postfix", "build"])
 def test_nothing_is_written_at_the_level_of_fail_on(
     name: str, tmp_path: Path, fleet: Path, said: Said
@@ -111,7 +112,7 @@ def test_nothing_is_written_at_the_level_of_fail_on(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
 def test_every_format_tells_the_finding(

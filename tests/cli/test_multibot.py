@@ -544,7 +544,7 @@ def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
     assert {"robot.sensor", "link.sensor"} <= set(names)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "near"),
     [
@@ -568,6 +568,7 @@ def test_a_name_like_nothing_is_told_where_to_look(multibot: Multibot) -> None:
 # ---------------------------------------------------------------- vocabulary --suggest
 
 
+@pytest.mark.more
 def test_a_suggestion_can_be_used_as_it_is(multibot: Multibot, two: Path) -> None:
     result = multibot("inspect", "--suggest", "a.urdf")
     assert (result.code, result.err) == (0, "")
@@ -590,6 +591,7 @@ def test_nothing_unknown_is_only_a_comment(multibot: Multibot, two: Path) -> Non
     assert result.out.startswith("# ") and result.out.count("\n") == 1
 
 
+@pytest.mark.more
 def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two: Path) -> None:
     write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
     result = multibot("inspect", "--suggest", "a.urdf", "--vocabulary", "acme.vocab")
@@ -604,6 +606,7 @@ def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
 # ---------------------------------------------------------------- real files
 
 
+@pytest.mark.more
 def test_the_corpus(multibot: Multibot, corpus: dict[str, Path]) -> None:
     homes = sorted({str(path.parent) for path in corpus.values()})[:12]
     table = multibot.json("inspect", *homes)
@@ -622,7 +625,7 @@ def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
     assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_corpus_is_known_and_its_rest_explained(
     corpus: dict[str, Path], multibot: Multibot
 ) -> None:

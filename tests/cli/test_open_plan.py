@@ -60,6 +60,7 @@ def test_a_table_is_made_with_what_is_open(
     assert main([*words, "--fail-on", "warning"]) == 1
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("of", ["plan", "json", "fleet"])
 def test_a_graph_as_planned_of_a_plan_that_does_not_close(
@@ -75,6 +76,7 @@ def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     assert "0 findings: as planned (" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_graph_that_is_not_as_planned_either(
     open_: Folder, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -127,6 +129,7 @@ def test_a_plan_without_open_ends_says_nothing_of_them(
 ROW = 'code: MG303, level: warning, at: "ekf.yaml:4", message: x, hint: ""'
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "told"),
@@ -177,6 +180,7 @@ robots: [{name: robot1}, {name: robot2}]
 """
 
 
+@pytest.mark.more
 def test_each_command_says_the_same_of_a_parameter_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -203,6 +207,7 @@ def test_each_command_says_the_same_of_a_parameter_file(
     assert codes == [("3", "MB110"), ("4", "MB312"), ("5", "MB853")]
 
 
+@pytest.mark.more
 def test_a_robot_in_gazebo_without_a_sensor_has_its_clock(tmp_path: Path) -> None:
     """All nodes of the launch file wait for /clock, which gz-sim has on a gz topic alone."""
     for name, text in (("rover.urdf", ROVER), ("fleet.yaml", FLEET)):

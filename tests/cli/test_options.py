@@ -185,7 +185,8 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         make_naming("frames")
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "words",
     [
@@ -221,6 +222,7 @@ def test_a_folder_is_not_left_behind_where_nothing_is_written(
     assert [it.name for it in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.more
 def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -250,7 +252,7 @@ def test_a_vocabulary_reaches_every_command_that_reads_a_description(
 # ---------------------------------------------------------------- help, explain, start
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ALL)
 def test_help_begins_with_an_example_that_the_parser_takes(name: str) -> None:
     command = ALL[name]
@@ -306,6 +308,7 @@ def test_help_of_a_command_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert said(capsys, "multibot", "help") == said(capsys, "multibot", "--help")
 
 
+@pytest.mark.more
 def test_every_code_is_explained_by_code_name_and_beginning(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -332,7 +335,8 @@ def test_the_package_is_a_program() -> None:
     assert done.stdout.startswith("multibot ")
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", ALL)
 def test_help_imports_nothing_heavy(name: str) -> None:
     """A help text needs the options alone: not the modules that do the work."""
@@ -355,6 +359,7 @@ def test_help_imports_nothing_heavy(name: str) -> None:
 # ---------------------------------------------------------------- counts and colour
 
 
+@pytest.mark.more
 def test_one_is_not_many(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert (plural(1, "robot"), plural(2, "robot"), plural(0, "file")) == (
         "1 robot",
@@ -367,7 +372,7 @@ def test_one_is_not_many(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert (code, err.startswith("multibot: 1 robot, ")) == (0, True), err
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("environment", "option", "coloured"),
     [

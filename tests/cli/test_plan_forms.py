@@ -46,7 +46,7 @@ def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[s
         assert f"navigate_to_pose{part}:=navigate_to_pose/robot1{part}" in out, part
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("form", sorted(FORMS))
 def test_every_form_is_written_to_a_file(
     form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -144,7 +144,7 @@ def test_every_command_is_tried() -> None:
     assert {*COMMANDS, *PROGRAMS} <= tried
 
 
-@pytest.mark.sample(24)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "words", LINES, ids=[f"{number}-{words[0][:12]}" for number, words in enumerate(LINES)]
 )

@@ -33,6 +33,7 @@ def links(path: Path) -> list[str]:
     return [str(it.get("name")) for it in etree.parse(path).getroot().findall("link")]
 
 
+@pytest.mark.more
 def test_a_file_for_each_robot_and_a_summary(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -47,6 +48,7 @@ def test_a_file_for_each_robot_and_a_summary(
     assert ", 6 names by tf_prefix, 1 inserted; proved" in said
 
 
+@pytest.mark.more
 def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
     changes = tmp_path / "changes.json"
     words = [ARM, "left", "right", PREFIX, "-o", str(tmp_path / "{robot}.urdf")]
@@ -82,7 +84,8 @@ def test_findings_of_every_robot_are_reported(
     assert urdf_postfix.main([*words, "--layout", "both", "--fail-on", "warning"]) == 1
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("options", [[], ["--affix", "prefix", "--separator", "_"]])
 def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     made, back, plain = (str(tmp_path / name) for name in ("left.urdf", "back.urdf", "plain.urdf"))
@@ -133,6 +136,7 @@ def test_wrong_use_is_one_line(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.more
 def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "r.urdf.xacro"
     path.write_text(MISSED.replace(">base_link<", ">nowhere<").replace('_link"/>', '__link"/>'))
@@ -143,6 +147,7 @@ def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixt
     assert urdf_lint.main([ARM, PREFIX, "--robots", "left,right", "--select", "MB43,MB106"]) == 0
 
 
+@pytest.mark.more
 def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
     plan = tmp_path / "plan.yaml"
     words = ["plan", ARM, "left", "right", PREFIX, "--stack", "robot_state_publisher"]
@@ -153,6 +158,7 @@ def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
         assert robots[name]["frames"] == own
 
 
+@pytest.mark.more
 def test_a_table_has_the_namespace_once(capfd: pytest.CaptureFixture[str]) -> None:
     words = [
         "plan",

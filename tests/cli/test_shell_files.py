@@ -13,6 +13,7 @@ SHARE = ROOT / "share"
 FOLDERS = ("bash-completion", "fish", "zsh", "man")
 
 
+@pytest.mark.more
 def test_the_files_are_what_the_options_make() -> None:
     pytest.importorskip("shtab", reason="no shtab: pip install '.[test]'")
     pytest.importorskip("argparse_manpage", reason="no argparse-manpage: pip install '.[test]'")

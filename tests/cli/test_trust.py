@@ -59,7 +59,7 @@ def test_every_command_is_here() -> None:
     assert tried | OTHERS == {*COMMANDS, *(it.name for it in PROGRAMS)}
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", COMMAND_LINES)
 def test_a_command_is_bounded(name: str, target: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main, words, code = COMMAND_LINES[name]
@@ -81,6 +81,7 @@ def test_trust_lifts_the_bounds(name: str, target: Path) -> None:
     assert target.read_text() == "taken\n"
 
 
+@pytest.mark.more
 def test_the_library_is_bounded(target: Path) -> None:
     calls: list[Callable[[], object]] = [
         lambda: rewrite(PATH, "robot1"),
@@ -95,7 +96,7 @@ def test_the_library_is_bounded(target: Path) -> None:
     assert not target.exists()
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("call", ["rewrite", "load_fleet"])
 def test_trust_of_the_library(target: Path, call: str) -> None:
     if call == "rewrite":

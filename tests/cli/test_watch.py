@@ -68,6 +68,7 @@ def finding(level: str, at: int, robot: str = "") -> Finding:
     return Finding("MG306", level, f"message {at}", "hint", robot=robot)
 
 
+@pytest.mark.more
 def test_a_screen_has_robots_with_findings_and_errors_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -119,7 +119,8 @@ def test_comments_and_placeholders_stay() -> None:
     assert findings == ()
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
 def test_a_layout_that_nav2_bringup_cannot_start_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], layout: str
@@ -136,6 +137,7 @@ def test_a_node_that_bringup_starts_cannot_be_shared(tmp_path: Path) -> None:
         built(tmp_path, more="shared_nodes: [map_server]")
 
 
+@pytest.mark.more
 def test_an_unknown_style_is_refused_with_its_line(tmp_path: Path) -> None:
     text = built(tmp_path)
     assert text

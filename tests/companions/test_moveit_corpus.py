@@ -159,6 +159,7 @@ def raw(document: YamlText, node: yaml.ScalarNode) -> str:
     return document.text[node.start_mark.index : node.end_mark.index]
 
 
+@pytest.mark.more
 @needs_corpus
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", LAYOUTS)

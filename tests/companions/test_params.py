@@ -763,6 +763,7 @@ def test_the_data_is_what_it_seems() -> None:
     assert "world_frame" not in known.anywhere.exact
 
 
+@pytest.mark.more
 def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     path = f"{tmp_path}/more.yaml"
     text = "nodes:\n  rover:\n    params: {wheels: {kind: joint, list: true}, mast.*: frame}\n"

@@ -34,7 +34,7 @@ def prefix_of(written: list[str], release: str, namespace: str = "/robot1") -> s
     return prefix.removeprefix("/")
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("node", DRIVES)
 @pytest.mark.parametrize("release", ["jazzy", "kilted", "lyrical", "rolling"])
 @pytest.mark.parametrize(

@@ -32,7 +32,8 @@ def text(folder: Path, told: str, robot: str = "robot1") -> str:
     return load_fleet(folder / "fleet.yaml").robot(robot).text("params.yaml")
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("told", "robot", "every", "own"),
     [

@@ -34,7 +34,7 @@ def corpus_params() -> dict[str, Path]:
 
 @pytest.mark.slow
 def test_a_sample_of_real_files(corpus_params: dict[str, Path]) -> None:
-    wrong, refused, _ = run(spread(corpus_params, 120))
+    wrong, refused, _ = run(spread(corpus_params, 40))
     on_record = json.loads(REFUSALS.read_text())
     assert wrong == []
     for why, names in refused.items():
@@ -49,6 +49,7 @@ def test_all_real_files(corpus_params: dict[str, Path]) -> None:
     assert refused == json.loads(REFUSALS.read_text())
 
 
+@pytest.mark.more
 def test_the_reasons_are_true(corpus_params: dict[str, Path]) -> None:
     for why, names in json.loads(REFUSALS.read_text()).items():
         for name in names:

@@ -179,6 +179,7 @@ def is_same(key: str, old: Any, new: Any) -> Any:
     )
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("policy", POLICIES)
 def test_every_node_gets_its_parameters(policy: tuple[str, str], tmp_path: Path) -> None:
     found = list(cases({"own.yaml": OWN.encode()}, [policy]))
@@ -188,12 +189,12 @@ def test_every_node_gets_its_parameters(policy: tuple[str, str], tmp_path: Path)
 
 
 def test_real_files(tmp_path: Path) -> None:
-    sources = {name: path.read_bytes() for name, path in spread(files(), 60).items()}
+    sources = {name: path.read_bytes() for name, path in spread(files(), 25).items()}
     if not sources:
         pytest.skip("no corpus of parameter files beside the repository")
     told, count = wrong(list(cases(sources, POLICIES[1::2])), tmp_path)
     assert told == []
-    assert count > 100
+    assert count > 40
 
 
 @pytest.mark.deep

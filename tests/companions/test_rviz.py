@@ -281,6 +281,7 @@ def test_what_serves_one_process_is_in_a_window_of_each_robot() -> None:
         assert "SlamToolboxPlugin" not in shown
 
 
+@pytest.mark.more
 def test_fixed_frame_of_one_robot_gives_way_to_the_shared_one() -> None:
     assert manager()["Global Options"]["Fixed Frame"] == "map"
     assert manager(world="world")["Global Options"]["Fixed Frame"] == "world"

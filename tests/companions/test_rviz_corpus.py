@@ -49,6 +49,7 @@ def reason(error: InputError) -> str:
     return re.sub(r" \(.*?\)", "", text).partition(";")[0].strip()
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_some_of_the_corpus(configs: list[Path], layout: str) -> None:

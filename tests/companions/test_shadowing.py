@@ -38,6 +38,7 @@ def shadowed(folder: Path, capsys: pytest.CaptureFixture[str], *sections: str) -
     return [int(line) for line in re.findall(r"params\.yaml:(\d+):\d+: \w+: MB867\b", err)]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("sections", "lines"),
@@ -70,6 +71,7 @@ def tools(folder: Path, name: str = "one_robot.rviz") -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "written",

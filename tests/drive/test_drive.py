@@ -58,6 +58,7 @@ def test_a_built_fleet_starts_and_drives(name: str, built: dict[str, Path]) -> N
     assert found.unknown == ()
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("it", FAULTS, ids=[f"{at} {it.why}" for at, it in enumerate(FAULTS)])
 def test_a_spoiled_fleet_does_not(it: Spoiled, built: dict[str, Path], tmp_path: Path) -> None:
     folder = tmp_path / "fleet"

@@ -53,6 +53,7 @@ def test_a_base_with_a_lidar_drives_and_the_other_stands(tmp_path: Path) -> None
     drove(played(60, [one, other], (one["commands"], "Twist", [0.2, 0.1])), one, other)
 
 
+@pytest.mark.deep
 def test_a_base_with_an_arm_drives_and_the_arm_stands(tmp_path: Path) -> None:
     found = built("mixed_fleet", tmp_path)
     one, other = (
@@ -71,6 +72,7 @@ def test_a_base_with_an_arm_drives_and_the_arm_stands(tmp_path: Path) -> None:
         assert moved(seen, it) == pytest.approx([0, 0, 0], abs=0.02)
 
 
+@pytest.mark.deep
 def test_of_two_arms_one_moves(tmp_path: Path) -> None:
     found = built("two_arms_moveit", tmp_path)
     one, other = (

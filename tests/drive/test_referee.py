@@ -33,6 +33,7 @@ def test_no_room_of_the_package_is_imported(file: Path) -> None:
     assert [it for it in names if it.split(".")[0] == "multibot_rewrite"] == []
 
 
+@pytest.mark.more
 def test_nothing_that_is_imported_loads_it() -> None:
     code = LOADED.replace("DRIVE", repr(str(HERE)))
     done = subprocess.run(

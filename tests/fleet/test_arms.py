@@ -173,6 +173,7 @@ def test_a_list_of_sensors_names_the_keys_of_its_file(tmp_path: Path) -> None:
         assert made["sensors"] == [it for it in made if it != "sensors"]
 
 
+@pytest.mark.more
 def test_files_follow_groups_that_an_argument_names(tmp_path: Path) -> None:
     words = {"own": "$(arg prefix)", "group": "${p}manipulator"}
     files, findings = built(tmp_path, OWN + TWO, "frames-per-robot", **words)
@@ -193,6 +194,7 @@ def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Pa
     assert errors(findings) == []
 
 
+@pytest.mark.more
 def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     _, findings = built(tmp_path, own="other_")
     assert errors(findings) == [
@@ -202,6 +204,7 @@ def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     assert not [it for it in findings if it.code in ("MB803", "MB804", "MB807")]
 
 
+@pytest.mark.more
 def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
     solver = SOLVERS.replace("manipulator", "{}")[:-1] + "\n"
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "c", "manipulator"))
@@ -218,7 +221,8 @@ def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
 IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: B}}]\n"
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("plugin", "addresses", "said"),
     [
@@ -243,6 +247,7 @@ def test_one_device_of_two_robots(
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
 
 
+@pytest.mark.more
 def test_simulated_robots_have_no_devices(tmp_path: Path) -> None:
     more = IPS.replace("A}", "10.0.0.1}").replace("B}", "10.0.0.1}")
     more = more.replace("name: right", "name: right, simulator: gazebo")
@@ -269,6 +274,7 @@ def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     assert "cmd_vel" not in files["commands.md"]
 
 
+@pytest.mark.more
 def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
     """sdformat fixes a robot to a link called world (parser_urdf.cc), to no other."""
     robots = "[{name: left}, {name: right, simulator: gazebo, pose: {y: 1}}]"
@@ -281,7 +287,8 @@ def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
         assert "world" in [it.get("name") for it in root.iter("link")]
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("finger", ["left_finger", "{robot}_left_finger"])
 def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path: Path) -> None:
     """Kinova's gripper_joint_name is robotiq_85_left_knuckle_joint, also of the robot right."""
@@ -346,7 +353,8 @@ io_controller:
 """
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("own", ["", OWN])
 def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     own: str, tmp_path: Path
@@ -365,6 +373,7 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     assert "elbow" not in str([it.message for it in findings])
 
 
+@pytest.mark.more
 def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
     """As moveit_configs.py (to_dict) of moveit_configs_utils."""
     files, _ = built(tmp_path, f"groups: rename\n{TWO}")
@@ -385,7 +394,8 @@ def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
     assert files["fleet.launch.py"].count("file(f'{name}/moveit_parameters.yaml')") >= 2
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "text", "path"),
     [

@@ -86,6 +86,7 @@ def test_the_smallest_fleet_gives_everything(out: Path) -> None:
     }
 
 
+@pytest.mark.more
 def test_a_policy_of_sros2_is_written_where_it_is_asked_for(tmp_path: Path) -> None:
     """An enclave for each robot, in which the other robot's command topic is nowhere."""
     fleet_folder(tmp_path)
@@ -108,6 +109,7 @@ def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     assert set(data["inputs"]) == {f"../{it}" for it in inputs}
 
 
+@pytest.mark.more
 def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
     (tmp_path / "site.yaml").write_text("layout: L2\naffix: prefix\n")
     text = "include: site.yaml\nrobots:\n  - {name: a, description: rover.urdf}\n"
@@ -170,6 +172,7 @@ def test_a_file_keeps_its_mode(out: Path) -> None:
     assert (out / "commands.md").stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("more", ["", "x"])
 def test_what_was_edited_is_not_overwritten(
@@ -227,6 +230,7 @@ def test_check_says_what_is_stale_and_writes_nothing(
     assert held(out) == before
 
 
+@pytest.mark.more
 def test_check_of_nothing_writes_nothing(tmp_path: Path) -> None:
     fleet_folder(tmp_path)
     assert build(tmp_path, "--check") == 1
@@ -270,6 +274,7 @@ def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_
     assert not any(str(tmp_path).encode() in it for it in first.values())
 
 
+@pytest.mark.more
 def test_findings_are_sorted_and_said_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -324,7 +329,8 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
     assert (tmp_path / "real" / "plan.yaml").exists()
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("path", "folder", "words"),
     [
@@ -381,6 +387,7 @@ def test_what_is_no_manifest_is_refused(text: str) -> None:
 # ---------------------------------------------------------------- all or nothing
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("room", [0, 1000, 20_000])
 def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
@@ -457,6 +464,7 @@ def test_a_build_inside_of_the_folder_does_not_take_it_away(
     assert (out / "robot3").is_dir()
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
@@ -485,6 +493,7 @@ def test_a_failure_without_a_swap_leaves_no_note(
     assert leftovers(out.parent) == []
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize("link", [os.symlink, os.link, shutil.move])
@@ -593,6 +602,7 @@ def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])
@@ -669,7 +679,7 @@ def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
         assert main(["build", str(fleets[-1]), "-o", str(alone), "--quiet"]) == 0
         wanted.append(held(alone))
     out = tmp_path / "out"
-    for _ in range(3):
+    for _ in range(2):
         running = [
             subprocess.Popen([*COMMAND, str(it), "-o", str(out), "--quiet"]) for it in fleets
         ]
@@ -762,6 +772,7 @@ def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- undo
 
 
+@pytest.mark.more
 def test_undo_removes_what_a_build_wrote_and_nothing_else(out: Path) -> None:
     own = out / "robot1" / "notes.txt"
     own.write_text("mine")
@@ -773,6 +784,7 @@ def test_undo_removes_what_a_build_wrote_and_nothing_else(out: Path) -> None:
     assert not out.exists()
 
 
+@pytest.mark.more
 def test_undo_leaves_a_file_that_was_edited(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = (out / "plan.yaml").read_bytes()
     (out / "plan.yaml").write_bytes(before + b"# mine\n")
@@ -790,6 +802,7 @@ def test_there_is_nothing_to_undo(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "so there is nothing to undo" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_the_fleet_file_and_the_folder_have_defaults(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

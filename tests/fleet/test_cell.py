@@ -196,6 +196,7 @@ def test_move_group_gets_all_files_joined(tmp_path: Path) -> None:
     assert "moveit_servo" not in given
 
 
+@pytest.mark.more
 def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     files, _ = built(tmp_path)
     plan = yaml.safe_load(files["plan.yaml"])
@@ -227,6 +228,7 @@ def test_one_window_plans_for_all_arms(tmp_path: Path) -> None:
     assert line in files["commands.md"].decode()
 
 
+@pytest.mark.more
 def test_arms_that_their_descriptions_fix_to_the_world_share_its_link(tmp_path: Path) -> None:
     fixed = URDF.replace("PAINT", "1 0 0 1").replace(
         "</robot>",
@@ -266,7 +268,7 @@ def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> N
     assert parameters(files)["robot_description_planning"]["default_velocity_scaling_factor"] == 0.5
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -293,6 +295,7 @@ def test_what_cannot_be_joined_is_one_line(old: str, new: str, said: str, tmp_pa
     assert "\n" not in line
 
 
+@pytest.mark.more
 def test_an_arm_that_moves_or_has_no_single_root_is_refused(tmp_path: Path) -> None:
     floating = SRDF.replace('type="fixed"', 'type="floating"')
     assert "'left_place' of robot 'left' is floating" in refused(tmp_path, arm_srdf=floating)
@@ -306,6 +309,7 @@ def test_a_manager_for_one_controller_manager_is_refused(tmp_path: Path) -> None
     assert "Ros2ControlManager, which asks one controller manager" in line
 
 
+@pytest.mark.more
 def test_moveit_does_not_fit_layout_frame_prefix(tmp_path: Path) -> None:
     """It looks up its root link in tf by the name in the URDF (planning_scene_monitor.cpp)."""
     own = fleet("frames-per-robot", "frame-prefix").partition("\n")[2]

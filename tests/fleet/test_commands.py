@@ -27,7 +27,7 @@ def outputs(folder: Path, release: str) -> dict[str, str]:
     return {path: it.data.decode() for path, it in load_fleet(file).files.items()}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("release", "rules"),
     [
@@ -50,6 +50,7 @@ def test_each_controller_of_each_robot_has_its_line(
     assert any(it.endswith("  # only where you start it") for it in rows)
 
 
+@pytest.mark.more
 def test_the_table_of_a_build_says_the_same(tmp_path: Path) -> None:
     made = outputs(tmp_path, "lyrical")
     found = yaml.safe_load(made["remappings.yaml"])
@@ -139,6 +140,7 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     ]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("own", [False, True])
 def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
     own: bool, tmp_path: Path

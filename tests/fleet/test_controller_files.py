@@ -80,6 +80,7 @@ def test_each_robot_loads_its_own_file(
     assert "MF708" not in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_linked_install_is_the_same_file(package: Path, tmp_path: Path) -> None:
     (tmp_path / "install").symlink_to(package)
     assert built(package, f"{tmp_path}/install/config/arm.yaml")[0].endswith("out/robot1/arm.yaml")
@@ -102,6 +103,7 @@ def test_another_file_of_that_name_is_reported(
     assert f"still loads '{path}'" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_file_that_is_no_companion_stays(
     package: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -109,6 +111,7 @@ def test_a_file_that_is_no_companion_stays(
     assert "MF708" not in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_the_fleet_file_says_where_the_results_are_installed(package: Path) -> None:
     fleet = f"installed: /opt/ws/share/my_arm/fleet\n{FLEET}"
     found = built(package, "../config/arm.yaml", fleet=fleet)
@@ -124,6 +127,7 @@ def test_where_they_are_installed_is_an_absolute_path(
     assert "fleet.yaml:1: installed" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_path_is_escaped_and_the_rest_is_as_it_was(package: Path) -> None:
     path = "<!-- ours -->\n    ../config/arm.yaml <!-- theirs -->"
     (package / "urdf" / "arm.urdf").write_text(ARM.format(path))
@@ -134,6 +138,7 @@ def test_a_path_is_escaped_and_the_rest_is_as_it_was(package: Path) -> None:
     assert f"<parameters>{path.replace('../config/arm.yaml', new)}</parameters>" in text
 
 
+@pytest.mark.more
 def test_a_second_build_finds_nothing_to_do(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     built(package, "../config/arm.yaml")
     monkeypatch.chdir(package)

@@ -61,7 +61,8 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     return [it[2] for it in ends if it[0] == "subscribes"]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("topic", ["scan", "/scan"])
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
 @pytest.mark.parametrize(
@@ -73,7 +74,8 @@ def test_a_source_is_the_robots_scan_in_every_release(
     assert scan in built(tmp_path, layout, distro, topic)
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("distro", ["jazzy", "kilted"])
 def test_the_info_of_a_binary_filter_too(tmp_path: Path, distro: str) -> None:
     assert "/robot1/info" in built(tmp_path, "tf-per-robot", distro, "scan")

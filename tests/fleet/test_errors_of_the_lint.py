@@ -86,6 +86,7 @@ def test_a_plugin_without_its_file_of_controllers(
     assert [it.code for it in said(file, simulator) if it.code == "MB234"] == expected
 
 
+@pytest.mark.more
 def test_a_rule_that_is_not_asked_makes_no_error() -> None:
     """``described`` asks those that are errors, and two that may be; a text of xacro is no robot's."""
     others = [it for it in RULES.values() if it.check and URDF in it.formats and it.level != ERROR]

@@ -77,7 +77,8 @@ def nobodys(outputs: Outputs, robot: str) -> str:
     return root(outputs, robot).findtext("note") or ""
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("separators", "given"), [({"link": "_"}, "robot2_"), ({"link": "/", "joint": "/"}, "robot2/")]
 )
@@ -104,7 +105,7 @@ def test_names_that_would_get_different_separators_are_left_to_the_layout(tmp_pa
     assert "tf_prefix of its xacro is not filled: it makes {robot}base_link of a link" in message
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "keys",
     [
@@ -142,7 +143,7 @@ def test_a_namespace_is_left_in_a_layout_without(tmp_path: Path) -> None:
     assert said(outputs) == []
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "keys",
     [
@@ -167,7 +168,7 @@ def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
     assert said(outputs) == []
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("argument", "default"), [("tf_prefix", "ur_"), ("side", "")])
 def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: Path) -> None:
     path = xacro(tmp_path, argument, ARM.replace("tf_prefix", argument), default)

@@ -32,6 +32,7 @@ def planned(folder: Path) -> dict[str, str]:
     return {row[2]: row[3] for row in plan["robots"]["robot1"]["nodes"]["/robot1/amcl"]}
 
 
+@pytest.mark.more
 def test_a_build_plans_what_the_document_says(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -44,6 +45,7 @@ def test_a_build_plans_what_the_document_says(
     assert "[/brand_new, brand_new]" in table
 
 
+@pytest.mark.more
 def test_a_build_with_none_plans_what_is_built_in(tmp_path: Path) -> None:
     assert main(["build", fleet(tmp_path, "none"), "-o", str(tmp_path / "out")]) == 0
     found = planned(tmp_path)
@@ -51,6 +53,7 @@ def test_a_build_with_none_plans_what_is_built_in(tmp_path: Path) -> None:
     assert "/robot1/brand_new" not in found
 
 
+@pytest.mark.more
 def test_a_parameter_file_does_not_take_a_document_away(tmp_path: Path) -> None:
     params = tmp_path / "params.yaml"
     params.write_text(
@@ -63,6 +66,7 @@ def test_a_parameter_file_does_not_take_a_document_away(tmp_path: Path) -> None:
     assert "/robot1/laser" in found
 
 
+@pytest.mark.more
 def test_a_node_that_a_parameter_file_alone_names_has_its_document(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -91,6 +95,7 @@ def test_what_is_wrong_has_a_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.more
 def test_the_plan_is_the_same_from_every_working_directory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -253,6 +253,7 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
     assert (Path(told.file).name, told.line) == ("one.urdf", 1)
 
 
+@pytest.mark.more
 def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
@@ -264,6 +265,7 @@ def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> N
     assert "robot1/more/params.yaml" in files["fleet.launch.py"]
 
 
+@pytest.mark.more
 def test_folders_of_one_name_are_in_those_above_them(tmp_path: Path) -> None:
     for folder in ("a/more", "b/more"):
         (tmp_path / folder).mkdir(parents=True)

@@ -258,6 +258,7 @@ def bridges() -> list[Path]:
     return files
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
@@ -520,6 +521,7 @@ def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
     assert (first.stamped, first.frame) == (True, "r1/base")
 
 
+@pytest.mark.more
 def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
     Path("own.yaml").write_text(
         "nodes:\n"

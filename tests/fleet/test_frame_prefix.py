@@ -82,6 +82,7 @@ def test_only_frames_and_topics_of_the_description_change() -> None:
     assert strip(made.data, "robot1", layout="L5", file="rover.urdf") == ROVER.encode()
 
 
+@pytest.mark.more
 def test_nodes_with_a_prefix_of_their_own_keep_their_frames(tmp_path: Path) -> None:
     outputs = made(tmp_path)
     found = yaml.safe_load(text(outputs, "robot2/params.yaml"))
@@ -98,6 +99,7 @@ def test_nodes_with_a_prefix_of_their_own_keep_their_frames(tmp_path: Path) -> N
     assert [it for it in outputs.findings if it.code in ("MB882", "MB863")] == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("prefix", ["", '""'])
 def test_without_a_prefix_of_its_own_frames_are_written_out(prefix: str, tmp_path: Path) -> None:
     found = yaml.safe_load(text(made(tmp_path, prefix), "robot1/params.yaml"))
@@ -116,6 +118,7 @@ def test_rviz_puts_the_name_before_links_itself(tmp_path: Path) -> None:
     assert [it["Reference Frame"] for it in axes] == ["robot1/lidar_link", "frames2/lidar_link"]
 
 
+@pytest.mark.more
 def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
     plan = yaml.safe_load(text(made(tmp_path), "plan.yaml"))
     own = plan["robots"]["graph2"]
@@ -127,6 +130,7 @@ def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
     assert "frames2/odom -> frames2/base_link" in text(made(tmp_path), "plan.yaml")
 
 
+@pytest.mark.more
 def test_a_script_gets_the_prefix_with_the_description(tmp_path: Path) -> None:
     made(tmp_path)
     robot = load_fleet(str(tmp_path / "fleet.yaml")).robot("robot2")

@@ -65,6 +65,7 @@ def _texts(root: etree._Element, tag: str) -> list[str]:
     return [it.text or "" for it in root.iter(tag)]
 
 
+@pytest.mark.more
 def test_plugins_of_the_world_name_the_robots(fleet: Path) -> None:
     root = _built(fleet)
     named = [(it.findtext("name"), it.findtext("link_name")) for it in root.iter("wind_obj")]
@@ -75,6 +76,7 @@ def test_plugins_of_the_world_name_the_robots(fleet: Path) -> None:
     assert _texts(root, "gain") == ["1", "1"] and _texts(root, "rate") == ["10"]
 
 
+@pytest.mark.more
 def test_the_robot_of_the_world_is_left_out_and_all_else_stays(fleet: Path) -> None:
     root = _built(fleet)
     (buoy,) = root.iter("include")
@@ -85,12 +87,14 @@ def test_the_robot_of_the_world_is_left_out_and_all_else_stays(fleet: Path) -> N
     assert [it.getparent().get("name") for it in root.iter("link")] == ["hull"]
 
 
+@pytest.mark.more
 def test_the_sensors_of_the_robots_run_in_it(fleet: Path) -> None:
     """gz-sim: sensors of a world without their system send nothing; physics is there already."""
     files = [it.get("filename") for it in _built(fleet).iter("plugin")]
     assert files.count("gz-sim-imu-system") == 1 and files.count("gz-sim-physics-system") == 1
 
 
+@pytest.mark.more
 def test_what_is_said_of_it(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _built(fleet)
     said = capsys.readouterr().err

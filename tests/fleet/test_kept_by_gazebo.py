@@ -38,6 +38,7 @@ def ended(folder: Path, simulator: str, *command: str, **given: str) -> int:
     return main([first, str(folder / "fleet.yaml"), *words])
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("given", "code", "what"),
     [
@@ -58,6 +59,7 @@ def test_what_a_simulated_robot_relies_on_is_an_error(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.more
 def test_a_joint_that_is_preserved_is_no_part_of_its_parent(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -66,6 +68,7 @@ def test_a_joint_that_is_preserved_is_no_part_of_its_parent(
     assert "error: MB603 link 'caster'" in capsys.readouterr().err
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("simulator", "level"), [("", "warning"), ("none", ""), ("gazebo", "error")]
 )
@@ -78,6 +81,7 @@ def test_the_level_is_that_of_the_chosen_simulator(
     assert code == (1 if level == "error" else 0)
 
 
+@pytest.mark.more
 def test_what_nothing_relies_on_is_a_warning(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -102,6 +102,7 @@ def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...
     )
 
 
+@pytest.mark.more
 def test_what_two_robots_of_gazebo_classic_are_started_with(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -147,6 +148,7 @@ def test_a_plugin_of_the_simulator_is_not_started_again(
     assert "arguments=['wheels'" in text
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("release", "library"), [("humble", "ignition-gazebo"), ("jazzy", "gz-sim")]
 )
@@ -174,17 +176,20 @@ def test_the_world_runs_the_sensors_of_the_robots(
     assert "DeclareLaunchArgument( 'world', default_value=file('world.sdf')" in text
 
 
+@pytest.mark.more
 def test_no_sensor_needs_no_world(tmp_path: Path) -> None:
     out = built(tmp_path, "kinds", "both")
     assert not (out / "world.sdf").exists(), "Gazebo Classic, and an arm without sensors"
 
 
+@pytest.mark.more
 def test_an_sdf_is_spawned_from_its_file(tmp_path: Path) -> None:
     text = (built(tmp_path, "sdf", "both") / "fleet.launch.py").read_text()
     assert "'-file', file(f'{name}/rover.sdf')" in text
     assert "-topic" not in text
 
 
+@pytest.mark.more
 def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
     text = (built(tmp_path, "real", "both") / "fleet.launch.py").read_text()
     assert "ros_gz_sim" not in text
@@ -350,6 +355,7 @@ def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             chosen(out, monkeypatch, text)
 
 
+@pytest.mark.more
 def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
     """No file is edited: the third one stands as far from the second as that from the first."""
     built(tmp_path, "classic", "both")

@@ -48,6 +48,7 @@ def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None
     assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
 
 
+@pytest.mark.more
 def test_frames_have_the_robots_word_and_not_its_path(tmp_path: Path) -> None:
     plan = planned(tmp_path, "both")
     assert [robot.tf_topic for robot in plan.robots][:2] == [
@@ -74,6 +75,7 @@ def test_faults_name_the_robot(tmp_path: Path) -> None:
     assert "robot1/fleet_" not in hints
 
 
+@pytest.mark.more
 def test_a_robot_above_another_one_keeps_its_names(tmp_path: Path) -> None:
     """/site and /site/robot1 are both robots: the longer path wins."""
     file = tmp_path / "fleet.yaml"

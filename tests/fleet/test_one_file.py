@@ -173,7 +173,8 @@ FOLDERS = {
 }
 
 
-@pytest.mark.sample(3)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_real_files_are_rewritten_or_refused_with_a_reason(folder: str) -> None:
     paths = [it for it in sorted((CORPUS / folder).rglob("*")) if it.suffix in (".yaml", ".rviz")]

@@ -66,7 +66,8 @@ def _frames(node: NodeTable, given: GivenNode | None, robots: Sequence[Robot]) -
     yield from (f"{node.full_name} sends {it}, not planned" for it in sent - there)
 
 
-@pytest.mark.sample(17)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("seed", range(20))
 def test_the_written_files_say_what_the_plan_says(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)

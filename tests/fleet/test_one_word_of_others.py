@@ -124,7 +124,8 @@ def _controllers(draw: random.Random) -> Iterator[str]:
         yield f"    command_interfaces: [{both[0]}]\n    state_interfaces: [{both[1]}]\n"
 
 
-@pytest.mark.sample(4)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("seed", range(8))
 def test_the_lint_finds_what_a_plan_finds(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)

@@ -42,6 +42,7 @@ companions: {params: ekf.yaml}
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot"])
 def test_frames_of_a_filter_that_is_started_elsewhere(layout: str, tmp_path: Path) -> None:
     (tmp_path / "dog.urdf").write_text(DOG)

@@ -109,7 +109,8 @@ def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
     assert "right_elbow" in made.text("right/controllers.yaml")
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("key", ["prefix", "namespace"])
 def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, key: str) -> None:
     text = (FLEET + BY_PLACEHOLDER).replace("name: left", f"name: left, {key}: l1")
@@ -128,6 +129,7 @@ def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, ke
     assert worth_a_look((*made.findings, *made.made.findings)) == ["MB610"]
 
 
+@pytest.mark.more
 def test_a_namespace_argument(tmp_path: Path) -> None:
     text = f"""\
 layout: tf-per-robot
@@ -141,6 +143,7 @@ robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
     assert worth_a_look(made.made.findings) == []
 
 
+@pytest.mark.more
 def test_an_argument_with_the_namespace_of_a_robot(tmp_path: Path) -> None:
     text = f"""\
 layout: tf-per-robot
@@ -156,6 +159,7 @@ robots:
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
 
 
+@pytest.mark.more
 def test_a_further_robot_is_one_more_expansion(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -198,6 +202,7 @@ def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:
     assert copy.text("left/controllers.yaml") == made.text("left/controllers.yaml")
 
 
+@pytest.mark.more
 def test_two_arguments_of_which_one_has_no_default(tmp_path: Path) -> None:
     """As UR's macro, which needs ``name`` and ``tf_prefix``: the companions' names follow both."""
     text = (
@@ -253,6 +258,7 @@ jtc:
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("joint", ["lbr_A1", "$(var robot_name)_A1"])
 def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Path) -> None:
     """LBR's: the argument stands in YAML, too, or its default does."""

@@ -66,6 +66,7 @@ def test_other_parameters_say_nothing_of_odometry(parameters: str, tmp_path: Pat
     assert children(tmp_path, parameters) == ["robot1/base_link"]
 
 
+@pytest.mark.more
 def test_the_pose_is_that_of_the_odometry_frame_that_it_sends(tmp_path: Path) -> None:
     sends = "sends: {odom_frame: base_frame}"
     assert children(tmp_path, "{odom_frame: odom}", DESCRIBED, sends) == ["robot1/odom"]
@@ -73,6 +74,7 @@ def test_the_pose_is_that_of_the_odometry_frame_that_it_sends(tmp_path: Path) ->
     assert children(tmp_path, "{odom_frame: wheel}", DESCRIBED, sends) == ["robot1/wheel"]
 
 
+@pytest.mark.more
 def test_a_driver_that_is_described_and_sends_nothing(tmp_path: Path) -> None:
     assert children(tmp_path, "{odom_frame: odom}", DESCRIBED) == ["robot1/base_link"]
 

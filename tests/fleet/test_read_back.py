@@ -37,7 +37,8 @@ def test_nothing_is_wrong_with_a_whole_fleet(built: tuple[FleetPlan, Outputs]) -
     assert read_back(*built, OUT) == []
 
 
-@pytest.mark.sample(17)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: it.parent.name)
 def test_nothing_is_wrong_with_the_examples_in_any_release(example: Path, release: str) -> None:
@@ -45,6 +46,7 @@ def test_nothing_is_wrong_with_the_examples_in_any_release(example: Path, releas
     assert read_back(plan, make_outputs(plan, OUT), OUT) == []
 
 
+@pytest.mark.more
 def test_a_rule_that_a_rehearsal_would_miss_is_an_error() -> None:
     """Humble's controller manager asks for ~/robot_description (ros2_control 2,
     controller_manager.cpp), robot_state_publisher sends robot_description."""
@@ -55,7 +57,8 @@ def test_a_rule_that_a_rehearsal_would_miss_is_an_error() -> None:
     assert found.keys() == {"/left/controller_manager", "/right/controller_manager"}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "path", ["robot1/hexbase.urdf", "robot2/nav2_params.yaml", "robot1/bridge.yaml"]
 )
@@ -69,6 +72,7 @@ def test_a_file_that_the_launch_file_names_and_is_not_there(
     assert all((it.file, it.line > 1) == ("fleet.launch.py", True) for it in named)
 
 
+@pytest.mark.more
 def test_a_robot_with_the_description_of_another_one(built: tuple[FleetPlan, Outputs]) -> None:
     other = next(it.data for it in built[1].files if it.path == "robot1/hexbase.urdf").decode()
     spoiled = edited(built[1], lambda path, text: other if path == "robot2/hexbase.urdf" else text)
@@ -137,7 +141,8 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
 }
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
     edit, code = PLANTED[name]
@@ -148,7 +153,8 @@ def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
     assert all(it.file == "fleet.launch.py" and it.line for it in own)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["a rule is lost", "a node is lost", "a node has no description"])
 def test_the_command_ends_with_an_error_and_writes_nothing(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -194,7 +200,8 @@ CONTROLLERS: Mapping[str, tuple[Edit, str, str]] = {
 }
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_a_controller_runs_as_it_is_declared(name: str) -> None:
     edit, code, lost = CONTROLLERS[name]
@@ -204,6 +211,7 @@ def test_a_controller_runs_as_it_is_declared(name: str) -> None:
     assert (code, lost) in {(it.code, it.node) for it in found if it.level == ERROR}
 
 
+@pytest.mark.more
 def test_a_launch_file_that_cannot_be_read(built: tuple[FleetPlan, Outputs]) -> None:
     spoiled = edited(built[1], in_launch(lambda it: "import nothing_of_that_name\n"))
     (found,) = read_back(built[0], spoiled, OUT)

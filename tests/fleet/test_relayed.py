@@ -84,6 +84,7 @@ def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout
     assert {"MG405"} <= {it.code for it in check(plan, spoiled)}
 
 
+@pytest.mark.more
 def test_the_build_starts_them_and_opens_one_window(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -150,6 +151,7 @@ def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> Non
     assert (said.node, said.names[0]) == (state, "/tf")
 
 
+@pytest.mark.more
 def test_the_build_bridges_them_and_opens_one_window_for_all(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

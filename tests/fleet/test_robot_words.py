@@ -73,14 +73,16 @@ def found_in(folder: Path, name: str, text: str, **files: str) -> list[tuple[str
     )
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("case", [*WRONG, *IN_PARAMETERS])
 def test_a_value_of_a_parameter_file_is_told_at_its_line(case: str, tmp_path: Path) -> None:
     value, text, code = {**WRONG, **IN_PARAMETERS}[case]
     assert (code, 3) in found_in(tmp_path, "params.yaml", text, params__yaml=params(value))
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("case", [*WRONG, *IN_DESCRIPTION])
 def test_a_value_of_a_description_is_told_at_its_line(case: str, tmp_path: Path) -> None:
     value, text, code = {**WRONG, **IN_DESCRIPTION}[case]
@@ -107,7 +109,8 @@ RIGHT = {
 }
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("case", RIGHT)
 def test_what_is_no_fault(case: str, tmp_path: Path) -> None:
     assert found_in(tmp_path, "params.yaml", SMALL, params__yaml=params(RIGHT[case])) == []
@@ -133,7 +136,8 @@ def test_a_file_of_one_robot_may_name_it(robot: str, files: set[str], tmp_path: 
     assert {Path(it.file).name for it in found if it.code == "MB863"} == files
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 def test_nothing_is_said_of_a_right_fleet(layout: str, affix: str, tmp_path: Path) -> None:
@@ -207,6 +211,7 @@ def test_an_author_s_own_prefix_in_a_parameter_is_an_error(tmp_path: Path) -> No
 NAMED_ROBOT1 = '<robot name="x"><link name="robot1"/><link name="base_link"/></robot>'
 
 
+@pytest.mark.more
 def test_a_link_called_like_its_robot_hides_no_fault(tmp_path: Path) -> None:
     files = {"rover__urdf": NAMED_ROBOT1, "params__yaml": params("what: robot1/base_link")}
     assert ("MB863", 3) in found_in(tmp_path, "params.yaml", SMALL, **files)
@@ -220,6 +225,7 @@ def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> 
     assert lines == [1, 2, 3]
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", ["L2", "L1", "L3", "L4"])
 def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path) -> None:

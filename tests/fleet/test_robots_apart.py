@@ -58,6 +58,7 @@ def test_one_above_the_other_is_apart(tmp_path: Path) -> None:
     assert found(tmp_path, "  - {name: a, pose: {z: 2}}\n  - {name: b, pose: {x: 0}}\n") == []
 
 
+@pytest.mark.more
 def test_a_robot_without_a_pose_is_at_the_origin(tmp_path: Path) -> None:
     robots = "  - {name: a}\n  - {name: b, pose: {x: 0.1}}\n"
     assert len(found(tmp_path, robots)) == 1
@@ -77,7 +78,8 @@ ROWS = """\
 """
 
 
-@pytest.mark.sample(4)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("more", "told"),
     [

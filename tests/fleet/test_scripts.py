@@ -76,7 +76,8 @@ TF = [("/tf", "tf"), ("/tf_static", "tf_static")]
 TF_4 = [("/tf", "/tf/robot1"), ("/tf_static", "/tf_static/robot1")]
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "node", "frame", "joint", "topic", "tf"),
     [
@@ -156,6 +157,7 @@ def test_a_controller_is_no_node_to_start(tmp_path: Path) -> None:
         its.spawner("dif_drive_controller")
 
 
+@pytest.mark.more
 def test_parameters_of_a_node(robot: LoadedRobot) -> None:
     found = robot.params("params.yaml", "amcl")
     assert found["base_frame_id"] == "robot1/base_footprint"
@@ -196,6 +198,7 @@ def test_a_node_as_launch_ros_takes_it(robot: LoadedRobot) -> None:
     assert robot.node("bt_navigator")["parameters"] == []
 
 
+@pytest.mark.more
 def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
     loaded = fleet(tmp_path)
     assert loaded.robot("robot2").node("amcl")["parameters"] == []
@@ -218,7 +221,8 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     assert first.table.full_name("start_pose") == "/robot1/start_pose"
 
 
-@pytest.mark.sample(4)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("ask", "parts"),
     [
@@ -241,7 +245,8 @@ def test_an_unknown_name_is_reported_with_the_nearest(
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("params", "part"),
     [
@@ -263,6 +268,7 @@ def test_what_rcl_refuses_is_refused_with_its_line(params: str, part: str, tmp_p
     assert part in str(caught.value)
 
 
+@pytest.mark.more
 def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(
         "nodes:\n  talker:\n    package: mine\n"
@@ -278,6 +284,7 @@ def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
     assert "MG320" in {it.code for it in caught.value.findings}
 
 
+@pytest.mark.more
 def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None:
     params = "robot1:\n  amcl:\n    ros__parameters: {a: 1}\n"
     loaded = fleet(tmp_path, params=params)
@@ -285,6 +292,7 @@ def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None
         loaded.robots[0].params("params.yaml", "amcl")
 
 
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_files_are_those_of_a_build(
@@ -322,6 +330,7 @@ def test_no_part_of_ros_is_needed() -> None:
     assert not loaded & {"launch", "launch_ros", "rclpy", "ament_index_python", "xacro"}
 
 
+@pytest.mark.more
 def test_a_representation_is_short(robot: LoadedRobot) -> None:
     assert repr(robot) == "LoadedRobot('robot1')"
     assert len(repr(robot._fleet)) < 300
@@ -482,6 +491,7 @@ def test_a_costmap_gets_its_parameters_by_the_process_that_it_is_in(
     assert (server["odom_topic"], server["use_sim_time"]) == ("odom", True)
 
 
+@pytest.mark.more
 def test_which_nodes_are_in_a_process(tmp_path: Path) -> None:
     table = fleet(tmp_path, "L3", COMPOSED, HOSTED).robot("robot1").table
     assert table.inside("controller_server") == ["local_costmap/local_costmap"]

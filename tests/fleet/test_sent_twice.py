@@ -23,6 +23,7 @@ def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
     return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
 
 
+@pytest.mark.more
 def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
     params = (
         "amcl: {ros__parameters: {odom_frame_id: odom}}\n"
@@ -75,6 +76,7 @@ def test_the_drive_of_the_simulator_and_a_filter(
     assert [it.names[0] for it in found if "/r1/ros_gz_bridge" in it.hint] == frames
 
 
+@pytest.mark.more
 def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
     text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
     (found,) = [it for it in make_outputs(planned(tmp_path, text)).findings if it.code == "MG408"]

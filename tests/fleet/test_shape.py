@@ -69,6 +69,7 @@ def test_the_shapes_are_the_same_everywhere() -> None:
         assert {row.robots for row in it.launch} <= {"", "real", "simulated"}
 
 
+@pytest.mark.more
 def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     (tmp_path / "sensors/config").mkdir(parents=True)
     lidar = tmp_path / "sensors/config/lidar2d_0.yaml"
@@ -97,7 +98,8 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.sample(4)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "text",
     [
@@ -114,6 +116,7 @@ def test_a_vendors_file_without_a_namespace_is_refused(text: str, tmp_path: Path
         load_fleet(fleet(tmp_path, "clearpath")).text("commands.md")
 
 
+@pytest.mark.more
 def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
     """clearpath_generator_gz launch/sensors.py: each gets the file of its sensor."""
     folder = tmp_path / "sensors/config"
@@ -135,6 +138,7 @@ def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
     assert not [it for it in plain.files if "lidar2d" in it]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(("simulator", "robot"), [("none", "robot"), ("gazebo", "gz")])
 def test_clearpaths_generator_is_that_of_the_robot(
     simulator: str, robot: str, tmp_path: Path
@@ -144,6 +148,7 @@ def test_clearpaths_generator_is_that_of_the_robot(
     assert lines[1] == "ros2 launch $PWD/robot1/platform/launch/platform-service.launch.py"
 
 
+@pytest.mark.more
 def test_only_the_first_file_of_a_node_gets_its_place(tmp_path: Path) -> None:
     keys = fleet(tmp_path, "clearpath")
     (tmp_path / "more.yaml").write_text(PARAMS.format("controller_manager"))
@@ -152,6 +157,7 @@ def test_only_the_first_file_of_a_node_gets_its_place(tmp_path: Path) -> None:
     assert {"robot1/more.yaml", "robot1/platform/config/control.yaml"} <= set(files)
 
 
+@pytest.mark.more
 def test_a_file_in_a_folder_of_the_vendor_takes_no_other_place(tmp_path: Path) -> None:
     folder = tmp_path / "manipulators/config"
     folder.mkdir(parents=True)
@@ -165,6 +171,7 @@ def test_a_file_in_a_folder_of_the_vendor_takes_no_other_place(tmp_path: Path) -
     assert set(load_fleet(keys).files) & places == {"robot1/manipulators/config/control.yaml"}
 
 
+@pytest.mark.more
 def test_the_fleet_file_says_that_hardware_is_simulated(tmp_path: Path) -> None:
     keys = fleet(tmp_path, "clearpath", simulator="gazebo")
     hardware = '<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>'
@@ -203,6 +210,7 @@ def test_turtlebot4_as_it_is(tmp_path: Path) -> None:
         assert first == f"ros2 launch {spawn} param_file:=$PWD/'{node}'"
 
 
+@pytest.mark.more
 def test_husarion_gets_its_bridge_file(tmp_path: Path) -> None:
     row = "topic_name: imu, ros_type_name: sensor_msgs/msg/Imu, gz_type_name: gz.msgs.IMU"
     (tmp_path / "b.yaml").write_text(f"- {{{row}, direction: GZ_TO_ROS}}\n")

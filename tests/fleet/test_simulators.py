@@ -90,6 +90,7 @@ def test_launch_files_without_a_simulator_leave_it_open(tmp_path: Path) -> None:
     assert "simulator: none" in found.hint and "simulator: gazebo" in found.hint
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("launched", [AMCL + SPAWN, AMCL + BRIDGE])
 def test_launch_files_with_a_simulator_or_a_bridge_say_that_it_is_one(
     launched: str, tmp_path: Path

@@ -53,6 +53,7 @@ def test_a_plan_and_a_snapshot_are_told_apart_by_what_is_in_them() -> None:
     assert compare(plan, healthy()) == []
 
 
+@pytest.mark.more
 def test_a_plan_as_json_too(tmp_path: Path) -> None:
     file = tmp_path / "plan.json"
     words = ["plan", str(ROVER), *ROBOTS, "--stack", "nav2", "--layout", "both", "-o", str(file)]
@@ -91,6 +92,7 @@ def test_a_description_with_its_stacks_is_a_plan() -> None:
         system_of_description(ROVER, ["robot1"], stacks=["nav3"])
 
 
+@pytest.mark.more
 def test_a_fleet_file_is_a_plan() -> None:
     plan = system_of_fleet(ROOT / "examples" / "two_robots_nav2" / "fleet.yaml")
     assert len(plan.robots) == 2

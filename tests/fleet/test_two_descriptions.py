@@ -97,6 +97,7 @@ def test_both_are_rewritten_and_the_model_is_spawned(
     assert codes & {"MF711", "MB863", "MB882", "MB106"} == set()
 
 
+@pytest.mark.more
 def test_tf_is_that_of_the_description(tmp_path: Path) -> None:
     """The model has no mast: robot_state_publisher reads the URDF."""
     plan = plan_fleet(read_fleet(written(tmp_path, "frames-per-robot"), "", {}))
@@ -104,7 +105,8 @@ def test_tf_is_that_of_the_description(tmp_path: Path) -> None:
     assert ("robot2/base_link", "robot2/lidar_link") in {(it.parent, it.child) for it in sent}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
@@ -124,6 +126,7 @@ def test_a_real_robot_has_no_model(tmp_path: Path) -> None:
     assert "create" not in text["commands.md"]
 
 
+@pytest.mark.more
 def test_a_script_spawns_the_text(tmp_path: Path) -> None:
     robot = load_fleet(written(tmp_path, "L2")).robot("robot1")
     option, text = robot.spawn_arguments[2:4]
@@ -132,6 +135,7 @@ def test_a_script_spawns_the_text(tmp_path: Path) -> None:
     assert robot.description.startswith("<robot")
 
 
+@pytest.mark.more
 def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
     path = Path(written(tmp_path, "L2"))
     text = path.read_text().replace("simulated: rover.sdf.xacro\n", "")
@@ -143,6 +147,7 @@ def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
     assert "-name robot2 -topic /robot2/robot_description" in lines
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -66,6 +66,8 @@ def test_fleets_of_the_pages_are_judged_as_by_jsonschema(path: Path) -> None:
     assert is_valid(data, schema(), schema()["$defs"]) is expected
 
 
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("seed", range(4))
 def test_as_jsonschema_says(seed: int) -> None:
     chance, judge = random.Random(seed), jsonschema.Draft202012Validator(schema())

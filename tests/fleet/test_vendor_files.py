@@ -142,7 +142,7 @@ structure:
 """
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("release", "started", "topic"),
     [
@@ -166,6 +166,7 @@ def test_rules_of_a_plugin_reach_its_controllers(
     assert said - ({"~/odom"} if release == "lyrical" else set()) == {"broad:~/odom"}
 
 
+@pytest.mark.more
 def test_a_launch_file_is_named_alike_from_every_working_directory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -196,7 +197,7 @@ structure:
 """
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("layout", "prefix", "told"),
     [

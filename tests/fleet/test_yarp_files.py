@@ -50,6 +50,7 @@ def built(folder: Path, path: str, *, layout: str = "both", more: str = "") -> P
     return folder / "out"
 
 
+@pytest.mark.more
 def test_each_robot_loads_its_own(tmp_path: Path) -> None:
     out = built(tmp_path, "model://bot/conf/inner/head.ini")
     for robot in ("robot1", "robot2"):
@@ -70,13 +71,15 @@ def test_each_robot_loads_its_own(tmp_path: Path) -> None:
     assert (tmp_path / "bot" / "conf" / "inner" / "head.ini").read_text() == INI
 
 
+@pytest.mark.more
 def test_a_layout_with_bare_names_keeps_them(tmp_path: Path) -> None:
     out = built(tmp_path, "conf/inner/head.ini", layout="tf-per-robot")
     text = (out / "robot1" / "head.ini").read_text()
     assert "jointNames neck  other" in text
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "path",
     ["model://bot/conf/none.ini", "model://bot/../../etc/passwd", "model://other/conf/head.ini"],
@@ -91,6 +94,7 @@ def test_one_that_is_not_followed_is_told(
     assert path in (out / "robot1" / "robot.urdf").read_text()
 
 
+@pytest.mark.more
 def test_a_real_robot_loads_none(tmp_path: Path) -> None:
     out = built(tmp_path, "model://bot/conf/inner/head.ini", more="simulator: none\n")
     assert not (out / "robot1" / "conf").exists()

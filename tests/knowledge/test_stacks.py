@@ -352,6 +352,7 @@ def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
         user_stack(str(tmp_path / "latin.yaml"), NEWEST_LTS)
 
 
+@pytest.mark.more
 def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:
     code = "import sys, multibot_rewrite.knowledge.stacks; print('yaml' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

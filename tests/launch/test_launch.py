@@ -221,11 +221,13 @@ def test_every_word_is_tried() -> None:
     assert {word for word, _, _ in WORDS} == set(launch.WORDS) - {"description"}
 
 
+@pytest.mark.more
 def test_a_description(fleet: str, context: Any) -> None:
     value = launch.description("robot1", fleet)
     assert launch.perform(context, value) == load_fleet(fleet).robot("robot1").description
 
 
+@pytest.mark.more
 def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet})
     told = []
@@ -247,6 +249,7 @@ def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     assert set(context.launch_configurations) == {"where"}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("robots", "wanted"),
     [
@@ -265,6 +268,7 @@ def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: A
     assert [it.options["name"] for it in run(context, made)] == wanted
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
 def test_several_files(files: Any, fleet: str, context: Any) -> None:
     (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
@@ -273,6 +277,7 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
+@pytest.mark.more
 def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
     found = []
     robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
@@ -287,6 +292,7 @@ def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -
         launch.fleet_of(context, fleet)
 
 
+@pytest.mark.more
 def test_a_condition(fleet: str, context: Any) -> None:
     never = importlib.import_module("launch.conditions").IfCondition("false")
     always = importlib.import_module("launch.conditions").IfCondition("true")
@@ -298,6 +304,7 @@ def test_a_condition(fleet: str, context: Any) -> None:
             assert len(run(context, one)) == bool(count)
 
 
+@pytest.mark.more
 def test_a_node(fleet: str, context: Any) -> None:
     mine, later = ("scan", "front"), {"use_sim_time": True}
     action = launch.node(
@@ -352,6 +359,7 @@ def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> N
     assert "composable_node_descriptions" not in box.options
 
 
+@pytest.mark.more
 def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     where = {"robot": "robot2", "fleet": fleet}
     (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))
@@ -363,6 +371,7 @@ def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     assert bare.options["parameters"] == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("odd", ["\x7f", "\x85", "\u2028", "\ufeff", "\U0001f916", 'a "b" \\n'])
 def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, context: Any) -> None:
     path = Path(fleet).with_name("rover.urdf")
@@ -394,6 +403,7 @@ def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
     assert run(context, launch.place("robot2", fleet)) == []
 
 
+@pytest.mark.more
 def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     own = launch.perform(context, launch.params_file("params.yaml", "robot1", fleet))
     shared = launch.perform(context, launch.rviz_config("one.rviz", fleet=fleet))
@@ -406,6 +416,7 @@ def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     assert not folder.exists()
 
 
+@pytest.mark.more
 def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any) -> None:
     own = importlib.import_module("launch").LaunchContext()
     path = Path(launch.perform(own, launch.params_file("params.yaml", "robot1", fleet)))
@@ -416,6 +427,7 @@ def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any
     assert not path.parents[1].exists()
 
 
+@pytest.mark.more
 def test_a_launch_loads_a_fleet_once(
     fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -457,6 +469,7 @@ def test_a_launch_trusts_xacro_files_where_it_is_told(
     assert asked == [trusted]
 
 
+@pytest.mark.more
 def test_warnings_are_logged_once(
     fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -475,7 +488,7 @@ def test_warnings_are_logged_once(
     assert told
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("make", "part"),
     [
@@ -504,6 +517,7 @@ def test_a_fleet_that_is_not_there(context: Any) -> None:
         run(context, launch.spawn("gzz", "robot1", "nowhere.yaml"))
 
 
+@pytest.mark.more
 def test_xml_for_every_robot(fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet, "which": ""})
     (action,) = read(
@@ -521,6 +535,7 @@ def test_xml_for_every_robot(fleet: str, context: Any) -> None:
     assert executables == ["robot1", "create", "robot2", "create"]
 
 
+@pytest.mark.more
 def test_xml_for_one_robot(fleet: str, context: Any) -> None:
     where = f'robot="robot2" fleet="{fleet}"'
     node, spawn, off = read(
@@ -536,7 +551,7 @@ def test_xml_for_one_robot(fleet: str, context: Any) -> None:
     assert run(context, off) == []
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
 def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
     context.launch_configurations.update({"where": fleet, "which": "robot2"})
@@ -719,6 +734,7 @@ def test_an_action_is_one_before_its_robot_is_known(frontend: Any) -> None:
     assert launch.place(executable="x").options == {"executable": "x"}
 
 
+@pytest.mark.more
 def test_the_options_of_a_program(fleet: str, context: Any) -> None:
     of_robot = {"robot": "robot1", "fleet": fleet}
     (made,) = run(
@@ -890,6 +906,7 @@ def test_a_step_of_the_tutorial_in_launch(file: str, tmp_path: Path) -> None:
         assert f"/{robot.name}/bridge.yaml" in texts
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
 def test_the_python_of_the_page(
     code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch

@@ -16,7 +16,7 @@ WITHOUT = f"not tried in the real launch, which is not here: {launch.missing()}"
 EVERY = launch_idioms.idioms()
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.skipif(bool(launch.missing()), reason=WITHOUT)
 @pytest.mark.parametrize("idiom", EVERY, ids=[it.file.name for it in EVERY])
 def test_it_works(idiom: launch_idioms.Idiom, tmp_path: Path) -> None:

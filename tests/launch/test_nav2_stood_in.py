@@ -89,6 +89,7 @@ def clocks(node: LaunchedNode) -> set[object]:
     return {yaml.safe_load(it) for it in found}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("robot", ["robot1", "robot2"])
 def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     robot: str, nodes: dict[str, LaunchedNode]
@@ -101,6 +102,7 @@ def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     assert {"controller_server", f"bt_navigator_{robot}"} <= {*moving}  # type: ignore[misc]
 
 
+@pytest.mark.more
 def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
     nodes: dict[str, LaunchedNode],
 ) -> None:
@@ -126,12 +128,14 @@ def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
     assert len(nodes) == 2 * (len(NAV2) + len(MANAGERS) + 1)
 
 
+@pytest.mark.more
 def test_every_node_has_the_clock_that_is_said(each: LaunchGraph, composed: LaunchGraph) -> None:
     assert [clocks(it) for it in each.nodes] == [{True}] * len(each.nodes)
     # Nobody says it: neither the launch, nor the fleet file, nor a file of parameters.
     assert [clocks(it) - {False} for it in composed.nodes] == [set()] * len(composed.nodes)
 
 
+@pytest.mark.more
 def test_a_window_of_each_robot_and_one_of_all(each: LaunchGraph, composed: LaunchGraph) -> None:
     for at, window in enumerate(windows(each), 1):
         tf = [(f"/{it}", f"/{it}/robot{at}") for it in ("tf", "tf_static")]
@@ -176,6 +180,7 @@ def test_tf_of_each_robot_is_relayed(composed: LaunchGraph, nodes: dict[str, Any
     assert not [it for it in nodes if "relay" in it]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("words", "fleet", "said"),
     [
@@ -191,6 +196,7 @@ def test_what_cannot_be_started_is_said(
     assert any(said in it.message for it in notes), notes
 
 
+@pytest.mark.more
 def test_a_window_needs_a_config(tmp_path: Path) -> None:
     file = written(tmp_path) / "fleet.yaml"
     file.write_text(file.read_text().replace(", rviz: one.rviz", ""))

@@ -363,6 +363,7 @@ def defects() -> Iterator[tuple[tuple[str, str], tuple[str, str], str]]:
         )
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_defect_is_found(name: str, tmp_path: Path) -> None:
     text, old, new, expected = PLANTED[name]
@@ -526,6 +527,7 @@ def test_the_known_parameters_are_those_of_the_sources() -> None:
     assert all(is_known(it) for it in plugin_owners().packages)
 
 
+@pytest.mark.more
 def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:
     """A class of which nobody knows whose parameters it declares would make a plugin look smaller."""
     known = plugin_owners()

@@ -134,6 +134,7 @@ def test_nothing_is_linted_twice(here: Path) -> None:
     assert {it.code for it in first}, "there is something to keep"
 
 
+@pytest.mark.more
 def test_a_name_beside_is_asked_for_but_not_what_nobody_looks_at(here: Path) -> None:
     again()
     write(here / "arm_description/urdf/notes.txt", "nothing")
@@ -158,7 +159,8 @@ CHANGES: dict[str, Callable[[Path], object]] = {
 }
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_changed_is_noticed(here: Path, change: str) -> None:
     before, _ = again()
@@ -174,6 +176,7 @@ def test_what_changed_is_noticed(here: Path, change: str) -> None:
     assert new
 
 
+@pytest.mark.more
 def test_a_replaced_file_of_the_same_size_and_time_is_noticed(here: Path) -> None:
     path = here / SOURCES[2]
     before, _ = again()
@@ -238,6 +241,7 @@ def test_a_vocabulary_is_part_of_it(here: Path) -> None:
     assert identity(with_one) != before
 
 
+@pytest.mark.more
 def test_a_file_among_others_is_not_that_file_alone(here: Path) -> None:
     """parts.xacro is included by another one, unless it is linted alone."""
     again()
@@ -245,6 +249,7 @@ def test_a_file_among_others_is_not_that_file_alone(here: Path) -> None:
         assert again(paths=paths)[0] == linted(paths=paths)
 
 
+@pytest.mark.more
 def test_an_included_file_is_another_one_alone(here: Path) -> None:
     write(here / "two.xacro", f'<robot name="r" {XACRO}><link name="a"/><link name="b"/></robot>')
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
@@ -323,7 +328,7 @@ FOLDERS: dict[str, Callable[[Path], object]] = {
 }
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("fault", FOLDERS)
 def test_a_folder_that_cannot_be_written_is_no_error(
     here: Path, capsys: pytest.CaptureFixture[str], fault: str
@@ -335,6 +340,7 @@ def test_a_folder_that_cannot_be_written_is_no_error(
     assert "the cache is not kept" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_full_disk_leaves_nothing(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before, _ = again()
     write(here / SOURCES[2], '<robot name="plain"><link name="b"/></robot>')
@@ -534,6 +540,7 @@ def test_an_unchanged_lint_loads_no_rule(here: Path) -> None:
     assert ran[0].stdout.splitlines()[:-1] == ran[1].stdout.splitlines()[:-1]
 
 
+@pytest.mark.more
 def test_fixes_are_kept_and_made(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     broken = here / "two.urdf"
     write(broken, MARKED)

@@ -236,6 +236,7 @@ INCLUDES: list[tuple[dict[str, str], str, list[str]]] = [
 ]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("how", ["changed", "deleted", "new"])
 @pytest.mark.parametrize(("files", "name", "wanted"), INCLUDES)
 def test_who_reads_a_changed_file_changed(

@@ -283,6 +283,7 @@ STREAMS = [
 ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(("how", "code", "words"), STREAMS)
 def test_streams_that_are_closed_or_full(how: str, code: int, words: str) -> None:

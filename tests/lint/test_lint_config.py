@@ -195,7 +195,7 @@ PATTERNS = [
 ]
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("outside", [".", "robots"])
 @pytest.mark.parametrize(("pattern", "path", "hit"), PATTERNS)
 def test_patterns_hang_on_the_folder_of_the_file(

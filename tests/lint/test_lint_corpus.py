@@ -15,7 +15,7 @@ from multibot_rewrite.lint.registry import RULES
 from tools.pages import upstream
 from tools.pages.lint_triage import Judged, committed, judgements
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.deep
 
 UNFINISHED = {"MB001", "MB004"}
 JUDGED = [it for it in judgements() if RULES[it.code].level == ERROR]

@@ -15,7 +15,7 @@ from multibot_rewrite.lint import catalogue
 EXAMPLES: list[dict[str, Any]] = yaml.safe_load((FIXTURES / "lint" / "examples.yaml").read_text())
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: f"{it['code']}-{it['name']}")
 def test_an_example_is_found_in_its_line_and_level(example: dict[str, Any], tmp_path: Path) -> None:
     rule = catalogue.rules()[example["code"]]._replace(

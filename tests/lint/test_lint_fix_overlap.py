@@ -97,7 +97,7 @@ def levels_in(printed: object) -> list[tuple[str, str]]:
     return own + [it for inner in printed.values() for it in levels_in(inner)]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("code", TEXTS)
 @pytest.mark.parametrize(("level", "exit_code"), [("note", 0), ("warning", 1), ("error", 1)])
 def test_a_level_of_the_configuration_is_the_findings(
@@ -128,6 +128,7 @@ def test_the_longest_beginning_of_a_code_gives_the_level(
     assert levels_in(json.loads(capsys.readouterr().out)) == [("MB501", level)]
 
 
+@pytest.mark.more
 def test_what_fails_a_lint_is_asked_of_the_configurations_level(tmp_path: Path) -> None:
     for level, at, above in (("note", "note", "warning"), ("warning", "warning", "error")):
         given = (tmp_path, f'MB501 = "{level}"', TWO_ROOTS, "--select", "MB501", "--fail-on")
@@ -157,7 +158,7 @@ def inertia(ixx: float, iyy: float, izz: float) -> str:
     return f'<link name="a">\n<inertial>{inside}</inertial></link>\n'
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("long", range(3), ids=("ixx", "iyy", "izz"))
 def test_each_axis_of_an_inertia_is_looked_at(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], long: int

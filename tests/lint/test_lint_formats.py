@@ -137,7 +137,7 @@ def test_the_nasty_findings_are_what_the_tests_need(nasty: Linted) -> None:
     assert any("|" in it.message and "\\" in it.message for it in found)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", FORMATS)
 def test_a_report_is_utf8_and_the_same_each_time(name: str, linted: Linted) -> None:
     once = rendered(name, *linted)
@@ -259,6 +259,7 @@ JSON = object_of(
 )
 
 
+@pytest.mark.more
 def test_json_is_the_documented_object(linted: Linted) -> None:
     reported = report("json", linted)
     jsonschema.validate(reported, JSON)
@@ -364,7 +365,8 @@ def unknown(model: object) -> set[str]:
     return {*(model.model_extra or ()), *(key for value in inside for key in unknown(value))}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 def test_sarif_holds_by_its_models(linted: Linted) -> None:
     log = Sarif.model_validate_json(rendered("sarif", *with_fixes(linted)))
     # They lack this one, which the schema has.
@@ -372,6 +374,7 @@ def test_sarif_holds_by_its_models(linted: Linted) -> None:
     assert log.version == "2.1.0"
 
 
+@pytest.mark.more
 def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
     (run,) = report("sarif", nasty)["runs"]
     rules = run["tool"]["driver"]["rules"]
@@ -385,6 +388,7 @@ def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
             assert all(word in reported for word in words)
 
 
+@pytest.mark.more
 def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
     (run,) = report("sarif", nasty)["runs"]
     assert run["columnKind"] == "unicodeCodePoints"
@@ -398,6 +402,7 @@ def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
         assert (region["startLine"], region["startColumn"]) == (finding.line, finding.column)
 
 
+@pytest.mark.more
 def test_sarif_links_to_the_calls_of_macros(nasty: Linted) -> None:
     (it,) = (it for it in report("sarif", nasty)["runs"][0]["results"] if "relatedLocations" in it)
     assert it["message"]["text"].endswith(" via [wheel](1), [axle](2)")
@@ -406,6 +411,7 @@ def test_sarif_links_to_the_calls_of_macros(nasty: Linted) -> None:
     assert [place["region"]["startLine"] for place in places] == [5, 8]
 
 
+@pytest.mark.more
 def test_sarif_lists_the_files_that_were_linted(nasty: Linted) -> None:
     (run,) = report("sarif", nasty)["runs"]
     uris = [it["location"]["uri"] for it in run["artifacts"]]
@@ -457,7 +463,7 @@ def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
 # paths
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("spelled", ["a/b.urdf", "./a/b.urdf", "a/../a/b.urdf", "{here}/a/b.urdf"])
 def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: Path) -> None:
     path = spelled.format(here=here)
@@ -490,7 +496,8 @@ def prints(linted: Linted) -> list[tuple[str, str]]:
     return list(zip(there, [it["fingerprint"] for it in report("gitlab", linted)], strict=True))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 def test_no_two_fingerprints_are_equal(linted: Linted) -> None:
     twice = linted._replace(findings=[*linted.findings, *linted.findings])
     assert len(set(prints(twice))) == 2 * len(linted.findings)
@@ -657,6 +664,7 @@ def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:
     assert shown == [text.one_line(file) for file in nasty.files if file != "clean.urdf"]
 
 
+@pytest.mark.more
 def test_markdown_of_many_findings_fits_into_a_comment(thousand: Linted) -> None:
     markdown = rendered("markdown", *thousand)
     assert ROOM - 1000 < len(markdown) < ROOM + 100

@@ -490,6 +490,7 @@ def test_every_row_of_sdf_has_a_source() -> None:
             assert int(line) > 0
 
 
+@pytest.mark.more
 def test_every_value_of_a_plugin_has_a_source() -> None:
     vocabulary = load_vocabulary((), "", packages=False)
     places = [
@@ -503,7 +504,7 @@ def test_every_value_of_a_plugin_has_a_source() -> None:
     assert [it for it in places if not re.fullmatch(r"[\w/.+-]+:[1-9]\d*", it[2])] == []
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("value", "code"),
     [("4.5", ""), ("9", "MB125"), ("fast", "MB120"), ("", "")],

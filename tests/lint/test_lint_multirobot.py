@@ -193,7 +193,7 @@ LIDAR = (
 )
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("inside", "given", "expected"),
     [
@@ -364,7 +364,7 @@ def test_sensors_by_bare_name(options: dict[str, Any], expected: list[str], tmp_
     assert codes(tmp_path, IMU, "MB415 MB425", **options) == expected
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "text",
     [

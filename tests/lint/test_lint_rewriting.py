@@ -68,7 +68,8 @@ def test_only_what_ros_2_does_not_read_is_named(tmp_path: Path) -> None:
     assert "does not read <topicName> in ROS 2" in found.message
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("row", "text", "line"),
     [
@@ -103,6 +104,7 @@ def test_a_row_of_another_release(
     assert found("humble") == []
 
 
+@pytest.mark.more
 def test_a_plugin_that_only_another_release_has(tmp_path: Path) -> None:
     vocabulary = tmp_path / "my.vocab"
     vocabulary.write_text("[plugin lamp]\nopens: nothing\nreleases: <=jazzy\nlink uses link\n")

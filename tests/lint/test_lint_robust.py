@@ -261,6 +261,7 @@ def several(tmp_path: Path) -> Iterator[Path]:
     yield tmp_path
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("jobs", ["1", "2", "4"])
 @pytest.mark.parametrize(
     ("how", "said"),

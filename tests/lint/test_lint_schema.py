@@ -243,6 +243,7 @@ def test_the_schema_is_whole() -> None:
     assert set(sections) - reached == {"robot"}
 
 
+@pytest.mark.more
 def test_the_cost_of_a_large_robot_grows_with_its_size_and_not_faster() -> None:
     def prepared(count: int) -> Callable[[], object]:
         body = "".join(

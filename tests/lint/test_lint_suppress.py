@@ -358,7 +358,7 @@ IN_XACRO = [
 ]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("body", "wanted"), IN_XACRO)
 def test_in_xacro_it_stands_in_the_source(tmp_path: Path, body: str, wanted: list[str]) -> None:
     text = f'{XACRO}<link name="base"/>\n{body}\n</robot>'

@@ -28,11 +28,13 @@ def test_the_lists_are_whole() -> None:
     assert all(it.source.startswith("https://") for it in QUESTIONS)
 
 
+@pytest.mark.more
 def test_the_robot_without_a_fault_has_no_warning() -> None:
     assert [it for it in healthy_findings() if it.level != NOTE] == []
 
 
-@pytest.mark.sample(24)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("fault", [*CLASSES, *QUESTIONS], ids=lambda it: it.name)
 def test_a_fault_is_told(fault: Fault) -> None:
     quiet = (SILENT,) if fault.name in UNTOLD else (NOTE,)
@@ -40,13 +42,14 @@ def test_a_fault_is_told(fault: Fault) -> None:
     assert level_of(fault) in told
 
 
-@pytest.mark.sample(23)
+@pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("fault", ODD, ids=lambda it: it.name)
 def test_what_is_odd_and_healthy_is_left_alone(fault: Fault) -> None:
     assert [it for it in found_for(fault) if it.level != NOTE] == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_two_of_two_hundred_are_silent() -> None:
     levels = Counter(level_of(it) for it in (*CLASSES, *QUESTIONS))
     assert levels[SILENT] == len(UNTOLD)

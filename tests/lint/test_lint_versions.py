@@ -66,7 +66,7 @@ def complaints(text: str, version: str) -> list[Finding]:
     return [it for it in found if it.level == ERROR or it.code not in OF_OTHERS]
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(1)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", JOINTS)
@@ -77,7 +77,7 @@ def test_joints_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pa
     assert said.reads == all(it.level != ERROR for it in found)
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @needs_check
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("case", LINKS)
@@ -172,6 +172,7 @@ def near_the_pole(at: random.Random) -> tuple[float, float, float]:
     return at.uniform(-4, 4), pitch, at.uniform(-4, 4)
 
 
+@pytest.mark.more
 def test_roll_pitch_and_yaw_of_any_quaternion_are_the_same_rotation() -> None:
     at = random.Random(3)
     free = [tuple(at.gauss(0, 1) for _ in range(4)) for _ in range(2000)]
@@ -273,7 +274,8 @@ def is_among(part: tuple[Any, ...], others: list[tuple[Any, ...]]) -> bool:
     return any(len(part) == len(it) and all(map(same, part, it)) for it in others)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @needs_pin
 @pytest.mark.parametrize("version", ["1.1", "1.2"])
 @pytest.mark.parametrize("seed", range(8))
@@ -306,6 +308,7 @@ def test_a_rotation_that_was_ignored_is_the_one_that_is_written(seed: int) -> No
         assert all(np.abs(frames[it] - frames_after[it]).max() <= EXACT for it in frames)
 
 
+@pytest.mark.more
 @needs_pin
 def test_a_capsule_that_was_not_read_is_drawn_on_every_release() -> None:
     body = visual('<capsule length="0.4" radius="0.1"/>', '<origin xyz="1 0 0" rpy="0 0.5 0"/>')

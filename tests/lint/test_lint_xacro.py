@@ -76,7 +76,7 @@ PARTS = {
 }  # fmt: skip
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("case", PARTS)
 def test_line_and_column_are_those_of_the_source(tmp_path: Path, case: str) -> None:
     name, body, line, column = PARTS[case]
@@ -182,7 +182,7 @@ def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path
     assert found.arguments == ""
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
@@ -210,6 +210,7 @@ def test_a_set_that_fails_leaves_the_others(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.more
 def test_arguments_on_the_command_line_and_in_the_configuration(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -227,7 +228,7 @@ def test_arguments_on_the_command_line_and_in_the_configuration(
 # ---------------------------------------------------------------- parts and packages
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("space", ["", "  "])
 @pytest.mark.parametrize(
     "part",
@@ -276,7 +277,7 @@ def packages(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "roots", "expected"),
     [
@@ -381,6 +382,7 @@ def test_messages_hold_no_path_of_this_machine(tmp_path: Path) -> None:
     assert found.message == "xacro failed: No such file or directory: ws/robot/nowhere.xacro"
 
 
+@pytest.mark.more
 def test_a_configuration_lets_xacro_read_no_folder_but_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -423,3 +425,17 @@ def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path
     )
     found = linted(tmp_path, "robot/urdf/a.xacro", "robot/urdf/b.xacro", select=("MB234",))
     assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]
+
+
+def test_a_part_alone_is_known_by_what_includes_it(tmp_path: Path) -> None:
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="l"/></joint>'
+    xacro = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    part = tmp_path / "part.urdf.xacro"
+    part.write_text(f'<robot name="part" {xacro}><link name="l"/>{joint}</robot>')
+    alone = lint_files([str(part)], Settings(select=("MB202",)), jobs=1)
+    robot = f'<robot name="r" {xacro}><xacro:include filename="{{}}"/><link name="base"/></robot>'
+    (tmp_path / "robot.urdf.xacro").write_text(robot.format("part.urdf.xacro"))
+    assert len(alone) == 1 and lint_files([str(part)], Settings(select=("MB202",)), jobs=1) == []
+    (tmp_path / "robot.urdf.xacro").write_text(robot.format("other.xacro"))
+    assert lint_files([str(part)], Settings(select=("MB202",)), jobs=1) == alone

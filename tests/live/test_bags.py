@@ -151,7 +151,8 @@ def test_a_healthy_bag_has_no_finding(tmp_path: Path, mcap: bool) -> None:
     assert last["robot2/laser"] == (0, 2, 3, 0, 0, 0, 1)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_seeded_fault_is_found(fault: str, tmp_path: Path) -> None:
     change, codes, words = FAULTS[fault]
@@ -162,6 +163,7 @@ def test_a_seeded_fault_is_found(fault: str, tmp_path: Path) -> None:
     assert any(words in message for _, message in seen), seen
 
 
+@pytest.mark.more
 def test_what_the_plan_does_not_have_is_no_fault(tmp_path: Path) -> None:
     topics = healthy()
     for robot in ROBOTS:
@@ -224,6 +226,7 @@ def test_the_doctor_finds_what_needs_no_plan(
     assert wanted in out
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -281,6 +284,7 @@ def test_a_damaged_bag_is_one_line_or_is_read(
         assert "Traceback" not in err
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("text", [BOMB, "[" * 100_000, "a: b\n", "\xff", ""])
 def test_hostile_metadata_is_one_line(
     text: str, made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -292,6 +296,7 @@ def test_hostile_metadata_is_one_line(
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
+@pytest.mark.more
 def test_a_bag_without_messages_is_inconclusive(
     made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -317,6 +322,7 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
     assert [(it.code, it.names) for it in check(wanted, seen)] == [("MG102", ("/robot2/tf",))]
 
 
+@pytest.mark.more
 def test_the_robots_of_a_recording_are_told_by_its_topics(
     made: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

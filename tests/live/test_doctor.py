@@ -73,6 +73,7 @@ def test_the_robots_and_their_layout(
     assert (seen.layout.name if seen.layout else "") == layout
 
 
+@pytest.mark.more
 def test_parts_of_a_robot_are_no_robots() -> None:
     """Cameras and costmaps have namespaces with topics like a robot's."""
     graph = single()
@@ -111,6 +112,7 @@ def test_a_name_within_a_word_is_no_robots() -> None:
 # ---------------------------------------------------------------- close to a fault, and none
 
 
+@pytest.mark.more
 def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
     """The first robot kept its description: nothing meets."""
     graph = nav2_with_tools("L2")
@@ -151,6 +153,7 @@ def test_tools_on_another_clock_are_none_of_a_robot() -> None:
     assert diagnose(graph).findings == ()
 
 
+@pytest.mark.more
 def test_a_dock_that_no_robot_owns_may_be_on_a_shared_tf() -> None:
     graph = nav2_with_tools("L2")
     dock = Edge("dock", "map", "/tf_static", True, ())
@@ -188,7 +191,8 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
 # ---------------------------------------------------------------- the plan of what is seen
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
     graph = SYSTEMS[name]()
@@ -251,6 +255,7 @@ def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
     assert multibot.main(["check", "--snapshot", saved(tmp_path, EMPTY)]) == 3
 
 
+@pytest.mark.more
 def test_the_page(tmp_path: Path) -> None:
     graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
     given = ["--report", str(page), "-q"]
@@ -258,7 +263,8 @@ def test_the_page(tmp_path: Path) -> None:
     assert "MG402" in page.read_text()
 
 
-@pytest.mark.sample(31)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -297,6 +303,7 @@ def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFix
     assert (tmp_path / "fleet.yaml").read_text() == "mine"
 
 
+@pytest.mark.more
 def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
     """What the doctor calls healthy is so by its plan, too: only tools are not planned."""
     found = check(plan(("nav2",), "L1"), nav())

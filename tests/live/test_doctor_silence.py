@@ -113,12 +113,13 @@ SILENT: dict[str, Callable[[System], System]] = {
 }
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", SILENT)
 def test_it_is_no_fault(name: str) -> None:
     assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []
 
 
+@pytest.mark.more
 def test_an_idle_input_of_a_mux_is_not_one_that_it_has() -> None:
     inputs = [(SUBSCRIBES, f"/robot1/cmd_vel_{it}", TWIST) for it in ("tab", "tag")]
     graph = added("/robot1/twist_mux", *inputs)(idle_mux())

@@ -113,6 +113,7 @@ def test_what_is_one_robots_no_other_may_write_or_read(layout: str) -> None:
                 assert not allowed(form.format(name), read), name
 
 
+@pytest.mark.more
 def test_the_case_that_hurts() -> None:
     _, topics, _ = fleet("frames-per-robot")
     command = "rt/robot1/cmd_vel"
@@ -126,6 +127,7 @@ def test_the_case_that_hurts() -> None:
     assert not allowed("rt/anything/at/all", topics["/robot1"][1])
 
 
+@pytest.mark.more
 def test_what_every_node_needs_is_allowed() -> None:
     _, topics, _ = fleet("frames-per-robot")
     for enclave, node in (("/robot1", "/robot1/amcl"), ("/tools", "/rviz2")):
@@ -136,6 +138,7 @@ def test_what_every_node_needs_is_allowed() -> None:
         assert allowed(f"rq{node}/get_type_descriptionRequest", read)
 
 
+@pytest.mark.more
 def test_an_endpoint_by_parameter_is_allowed_although_it_is_not_planned(tmp_path: Path) -> None:
     nodes, plan, policy = (tmp_path / it for it in ("nodes.yaml", "plan.yaml", "policy.xml"))
     nodes.write_text(

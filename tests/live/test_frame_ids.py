@@ -120,7 +120,7 @@ def test_an_empty_frame_and_no_tf_say_nothing() -> None:
     assert codes(without_tf, "/robot1/image", "x") == []
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_systems_whose_headers_are_right(name: str) -> None:
     """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
@@ -144,6 +144,7 @@ def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
     assert codes(text, "/robot1/scan", "lidar") == ["MG412"]
 
 
+@pytest.mark.more
 def test_check_says_it_as_well() -> None:
     """With a plan, whether tf is shared or each robot's own; the topic itself is planned."""
     bare = heard(shared_tf(), "/robot1/scan", "base_link")
@@ -217,6 +218,7 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
 # ---------------------------------------------------------------- the file
 
 
+@pytest.mark.more
 def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
     own = (("arm", "active", ("joint1/position",)), ("spare", "inactive", ()))
     states = (

@@ -426,7 +426,7 @@ def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
     assert (found.code, found.level, found.node) == ("MG101", "warning", "/fleet_manager")
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "node",
     [
@@ -898,6 +898,7 @@ def test_the_cost_grows_with_the_fleet_and_not_faster() -> None:
     assert growth(prepared, 50, 200) < 1.5
 
 
+@pytest.mark.more
 def test_robots_outside_their_enclaves_cost_no_more_each_in_a_large_fleet() -> None:
     def prepared(count: int) -> Callable[[], object]:
         wanted = robots_called(*(f"robot{at}" for at in range(count)))

@@ -43,7 +43,8 @@ def _names_of_missing(plan: System, graph: System) -> Iterator[str]:
             yield it.name
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda fault: fault.name
 )
@@ -51,7 +52,7 @@ def test_a_seeded_fault_is_not_hidden_by_its_plan(fault: Fault) -> None:
     assert hidden(PLANS[fault.system](), fault.change(fault.system())) == []
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.layout}-{case.code}")
 def test_a_broken_fleet_is_not_hidden_by_its_plan(case: Case) -> None:
     assert hidden(read_plan(case.layout), case.broken(healthy(case.layout))) == []

@@ -201,6 +201,7 @@ def stacks() -> dict[str, list[NodeFacts]]:
     return {name: [bare(node) for node in stack_of(library, name)] for name in names}
 
 
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -217,6 +218,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
 
 
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
@@ -700,6 +702,7 @@ def shot(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.more
 def test_what_is_learned_gives_the_whole_table(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

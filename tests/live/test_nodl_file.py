@@ -144,6 +144,7 @@ def test_what_nodl_has_no_form_for_is_named() -> None:
 # ---------------------------------------------------------------- the command
 
 
+@pytest.mark.more
 def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

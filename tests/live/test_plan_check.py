@@ -52,6 +52,7 @@ def held(plan: Path, graph: System, capture: pytest.CaptureFixture[str]) -> tupl
     return code, *capture.readouterr()
 
 
+@pytest.mark.more
 def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     wanted = from_yaml(plan.read_bytes(), "plan")
     assert to_yaml(wanted).encode() == plan.read_bytes()
@@ -70,7 +71,8 @@ def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixtu
     assert held(written, as_planned(plan), capsys)[:2] == (0, "")
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -95,12 +97,14 @@ def test_a_wrong_plan_in_json_is_one_line(
     assert words in err
 
 
+@pytest.mark.more
 def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = held(plan, as_planned(plan), capsys)
     assert (code, out) == (0, "")
     assert err == "multibot: 2 robots, 0 findings: as planned (ROS 2 lyrical)\n"
 
 
+@pytest.mark.more
 def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
     code, out, _ = held(plan, graph, capsys)
@@ -109,6 +113,7 @@ def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str])
     assert "it subscribes to /cmd_vel instead" in out
 
 
+@pytest.mark.more
 def test_an_incomplete_view_is_inconclusive(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cut = Caveat("participants", True, "exactly 32 participants")
     graph = without_node(as_planned(plan), "/robot2/amcl")._replace(environment=environment(cut))
@@ -118,6 +123,7 @@ def test_an_incomplete_view_is_inconclusive(plan: Path, capsys: pytest.CaptureFi
     assert "exactly 32 participants" in err
 
 
+@pytest.mark.more
 def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = without_node(as_planned(plan), "/robot2/imu_driver")
     assert held(plan, graph, capsys)[0] == 1
@@ -127,7 +133,8 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
     assert held(plan, graph, capsys)[0] == 0
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -182,6 +189,7 @@ def test_a_wrong_plan_is_one_line(
     assert err.count("\n") == 1
 
 
+@pytest.mark.more
 def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
@@ -223,6 +231,7 @@ def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> 
     assert all(" (expanded):" in place for place in places)
 
 
+@pytest.mark.more
 def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
     _, out, _ = held(plan, graph, capsys)
@@ -232,6 +241,7 @@ def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) 
 # ---------------------------------------------------------------- what a plan has besides
 
 
+@pytest.mark.more
 def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = as_planned(plan)
     text = plan.read_text().partition("\nsources:")[0].replace("distro: lyrical\n", "") + "\n"
@@ -270,6 +280,7 @@ def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
     assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("when", ["", "planning"])
 def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: Path) -> None:
     nodes, plan = tmp_path / "nodes.yaml", tmp_path / "plan.yaml"

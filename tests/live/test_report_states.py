@@ -69,6 +69,7 @@ def test_only_a_fleet_without_findings_is_green() -> None:
     assert head(report_pages.not_closed()) == open_plan
 
 
+@pytest.mark.more
 def test_an_open_end_of_the_plan_is_a_finding_with_its_explanation() -> None:
     tree = page(report_pages.not_closed())
     (found,) = tree.find_class("finding")
@@ -85,6 +86,7 @@ def test_a_fault_in_tf_makes_its_robots_red() -> None:
     assert card.get("data-robot") == "0 1"
 
 
+@pytest.mark.more
 def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
     order = ["findings", "tf", "graph", "rules", "environment"]
     assert page(report_pages.tf_collision()).xpath("//section/@id") == order
@@ -92,6 +94,7 @@ def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
     assert page(report_pages.healthy()).xpath("//section/@id") == order
 
 
+@pytest.mark.more
 def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> None:
     tree = page(report_pages.twenty())
     (card,) = tree.find_class("card")
@@ -102,6 +105,7 @@ def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> No
     assert opened == ["g0", "shared"]
 
 
+@pytest.mark.more
 def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
     plan = nav2_graphs.fleet(40, 2)
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot39/topic1", "/topic1")
@@ -113,6 +117,7 @@ def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
     assert all("Not drawn" in it.text_content() for it in groups if not it.xpath(".//svg"))
 
 
+@pytest.mark.more
 def test_both_robots_of_cross_talk_are_concerned() -> None:
     rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
     assert rows["MG321"] == ("robot1", "robot2")
@@ -145,7 +150,7 @@ def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
     assert robots_of(by_plan, found) == {"fleet_a/robot2"}
 
 
-@pytest.mark.sample(31)
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
 def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
     scene = report_pages.doctors(fault.change(fault.system()))
@@ -207,6 +212,7 @@ def test_what_a_shared_node_lacks_is_dashed() -> None:
     assert cards(scene) == {"shared, or of no robot": "bad", "fleet_a/robot1": "good"}
 
 
+@pytest.mark.more
 def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
@@ -269,6 +275,7 @@ def test_page_and_command_say_the_same(
     assert (tree.find(".//header").get("class") == "good") == (listed == 0)
 
 
+@pytest.mark.more
 def test_the_open_ends_of_a_plan_are_on_the_page(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

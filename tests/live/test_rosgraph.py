@@ -96,6 +96,7 @@ def test_what_is_written_is_read_back() -> None:
     assert from_yaml(to_yaml(once).decode(), "again.yaml") == once
 
 
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", ["L1", "L4"])
 def test_the_graph_of_nav2_keeps_its_endpoints(layout: str) -> None:

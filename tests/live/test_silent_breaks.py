@@ -170,7 +170,7 @@ def spelled(layout: str, frame: str) -> str:
     return next(it for it in plan.robots[1].frames if frame in it)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", NAMED)
 def test_a_bare_odom_of_a_plugin(layout: str) -> None:
     def bare(frame: Edge) -> Edge:
@@ -185,7 +185,8 @@ def test_a_bare_odom_of_a_plugin(layout: str) -> None:
     assert "other findings" not in finding.hint
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", NAMED)
 def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:
     def bare(frame: Edge) -> Edge:
@@ -246,7 +247,7 @@ def test_a_drive_that_does_not_run(layout: str) -> None:
     assert finding.hint.startswith(f"{drive}, which sends {odom} -> {footprint}, does not run")
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("type_", ["tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"])
 def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
@@ -293,7 +294,7 @@ def test_two_parents_name_senders_of_this_topic_alone() -> None:
 
 
 # robot_state_publisher.cpp: frame_prefix is put in front of both ends, as it is written.
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("prefix", ["robot2/", "foo/", "foo", "my_"])
 def test_a_frame_prefix_beside_a_rewritten_description(layout: str, prefix: str) -> None:

@@ -51,7 +51,7 @@ def test_a_process_takes_it_as_it_is_started() -> None:
 COSTMAP = "local_costmap/local_costmap"
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("release", "stack", "words"),
     [
@@ -68,7 +68,7 @@ def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
     assert "local_costmap:/tf" in text
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("stack", "node", "words"),
     [

@@ -49,7 +49,8 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
     assert (tmp_path / "out" / "r1" / "r.urdf").read_text() == SMALL
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "command",
     [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan")],

@@ -77,6 +77,7 @@ UNREADABLE = {
 }
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("data", "words"), [pytest.param(*case, id=name) for name, case in UNREADABLE.items()]
 )
@@ -148,6 +149,7 @@ XACRO_FAILS = {
 }
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("body", "words"), [pytest.param(*case, id=name) for name, case in XACRO_FAILS.items()]
 )
@@ -325,6 +327,7 @@ WRONG_USE = {
 }
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("words", "said"), [pytest.param(*case, id=name) for name, case in WRONG_USE.items()]
 )
@@ -372,6 +375,7 @@ def _read_only(folder: Path) -> str:
     return "/sys/kernel/{robot}.urdf"
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("target", "said"),
     [

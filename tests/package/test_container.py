@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 import page_commands
+import pytest
 import yaml
 from paths import ROOT
 
@@ -22,6 +23,7 @@ INSTALLED = re.findall(r"^ +([a-z0-9-]+) \\$", DOCKERFILE, re.MULTILINE)
 OF_THE_IMAGE = {"robot_state_publisher", "tf2_ros"}
 
 
+@pytest.mark.more
 def test_every_package_of_the_fleet_is_installed(tmp_path: Path) -> None:
     there = page_commands.reader(tmp_path, ROS_DISTRO="jazzy")
     for line in (

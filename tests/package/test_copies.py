@@ -59,7 +59,7 @@ COPIES: list[Callable[[Any], Any]] = [
 COPY_IDS = ["copy", "deepcopy", "pickle", "newest"]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("again", COPIES, ids=COPY_IDS)
 @pytest.mark.parametrize("source", [SMALL, DOUBTFUL, ROVER], ids=["small", "finding", "rover"])
 def test_a_rewrite_can_be_copied(again: Callable[[Any], Any], source: str | Path) -> None:
@@ -140,6 +140,7 @@ def test_a_robot_of_a_fleet_can_be_copied(again: Callable[[Any], Any], fleet: Lo
     assert again(robot).node("amcl", "params.yaml") == robot.node("amcl", "params.yaml")
 
 
+@pytest.mark.more
 def test_the_descriptions_go_along_with_a_copy(fleet: LoadedFleet, tmp_path: Path) -> None:
     data, text = pickle.dumps(fleet), fleet.robots[0].description
     (tmp_path / "rover.urdf").unlink()

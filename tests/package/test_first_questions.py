@@ -37,6 +37,7 @@ def doctor(graph: System, folder: Path, capsys: pytest.CaptureFixture[str]) -> l
     return [line for line in capsys.readouterr().out.splitlines() if " MG" in line]
 
 
+@pytest.mark.more
 def test_why_does_cmd_vel_never_come(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -35,6 +35,7 @@ def linted(data: bytes) -> None:
     lint_data("robot.urdf", data, Settings())
 
 
+@pytest.mark.sample(6)
 @pytest.mark.slow
 @pytest.mark.parametrize("work", [rewritten, linted])
 @pytest.mark.parametrize("what", GROWING)

@@ -208,6 +208,7 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
 ENDINGS = (".urdf.xacro", ".urdf", ".sdf", ".yaml", ".json", ".toml")
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", CASES)
 def test_it_ends_with_one_clear_line(name: str, tmp_path: Path) -> None:
     text, (program, *words), code, said = CASES[name]

@@ -196,10 +196,12 @@ def test_the_package_ships_its_types_and_its_data() -> None:
     )
 
 
+@pytest.mark.more
 def test_every_module_says_what_it_is_for() -> None:
     assert [file for file, tree in sources().items() if not ast.get_docstring(tree)] == []
 
 
+@pytest.mark.more
 def test_every_module_can_be_imported() -> None:
     for file in sources():
         name = file.removesuffix(".py").replace("/", ".").removesuffix("__init__").rstrip(".")

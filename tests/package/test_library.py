@@ -86,6 +86,7 @@ def test_text_may_have_something_before_its_root(head: str) -> None:
     assert rewrite(head + SMALL, "r1").text == head + SMALL_R1
 
 
+@pytest.mark.more
 def test_a_xacro_file_is_expanded(tmp_path: Path) -> None:
     file = tmp_path / "rover.urdf.xacro"
     head = '<robot name="rover" xmlns:xacro="http://ros.org/wiki/xacro">'
@@ -172,7 +173,7 @@ def test_findings_are_warnings_in_order() -> None:
 # ---------------------------------------------------------------- fleets
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", [layout.name for layout in LAYOUTS])
 @pytest.mark.parametrize("source", [SMALL, DRIVE, IMU.format("imu")], ids=["small", "drive", "imu"])
 def test_a_fleet_is_as_many_single_calls(source: str, layout: str) -> None:

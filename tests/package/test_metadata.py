@@ -62,6 +62,7 @@ def test_the_change_log_is_what_bloom_takes() -> None:
     assert f"Changelog for package {PROJECT['name']}\n" in text
 
 
+@pytest.mark.more
 def test_the_manifest_is_what_ros_takes() -> None:
     package = pytest.importorskip("catkin_pkg.package", reason="no catkin_pkg")
     warnings: list[str] = []

@@ -84,6 +84,7 @@ def test_a_term_is_found_unless_it_is_plain_english() -> None:
     assert not list(found_in("the artefacts of rviz"))
 
 
+@pytest.mark.more
 def test_messages_have_no_private_term() -> None:
     assert [f"{place}: {it}" for place, text in messages() for it in found_in(text)] == []
 

@@ -29,6 +29,7 @@ def ros2(*words: str) -> int:
     return extension.main(parser=parser, args=args)
 
 
+@pytest.mark.more
 def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     rover = str(FIXTURES / "robots" / "rover.urdf")
     words = ["plan", rover, "robot1", "--stack", "nav2", "--form", "ros-args"]

@@ -147,20 +147,20 @@ def lost(read: dict[Path, Html], site: Path) -> Iterator[str]:
                 yield f"{page.relative_to(site)}: {link}"
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_links_lead_somewhere_on_the_site(read: dict[Path, Html], site: Path) -> None:
     assert len(read) > 60
     assert list(lost(read, site)) == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_site_fetches_nothing_from_elsewhere(read: dict[Path, Html]) -> None:
     assert [it for html in read.values() for it in html.loads if STARTS.match(it)] == []
     # The theme's component that asks GitHub for the stars of ``repo_url``.
     assert not any('data-md-component="source"' in page.read_text() for page in read)
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_files_of_the_repository_are_at_its_host(read: dict[Path, Html], site: Path) -> None:
     found = [it for html in read.values() for it in html.leads if "/blob/" in it or "/tree/" in it]
     ours = [it.partition("/HEAD/")[2] for it in found if "/multibot_rewrite/" in it]
@@ -168,7 +168,7 @@ def test_files_of_the_repository_are_at_its_host(read: dict[Path, Html], site: P
     assert [it for it in ours if not (ROOT / it.partition("#")[0]).exists()] == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_every_public_call_is_explained(read: dict[Path, Html], site: Path) -> None:
     ids = read[site / "api" / "index.html"].ids
     assert {f"multibot_rewrite.{it}" for it in multibot_rewrite.__all__} <= ids

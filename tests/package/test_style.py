@@ -35,6 +35,7 @@ def test_no_test_reads_a_clock() -> None:
     assert found - {own} == CLOCKS
 
 
+@pytest.mark.more
 def test_no_test_module_imports_another() -> None:
     """What several need is in tests/support."""
     found = [

@@ -42,6 +42,7 @@ def check(run: int) -> None:
     assert json.loads(made.stdout) == [outcome(*job) for job in chosen]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("run", OFTEN)
 def test_threads_of_a_fresh_process_give_what_one_thread_gives(run: int) -> None:

@@ -12,6 +12,7 @@ from multibot_rewrite.cli.multibot import main
 EXAMPLES = sorted((ROOT / "examples").rglob("fleet*.yaml"))
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("fleet", EXAMPLES, ids=lambda it: f"{it.parent.name}-{it.stem}")
 def test_an_example_starts_as_planned(fleet: Path, tmp_path: Path) -> None:

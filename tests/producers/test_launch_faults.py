@@ -125,12 +125,14 @@ def found_in(
     return code, json.loads(capsys.readouterr().out)["findings"]
 
 
+@pytest.mark.more
 def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert found_in(healthy, capsys) == (0, [])
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_at_its_place(
     name: str, healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -149,6 +151,7 @@ def test_a_planted_fault_is_found_at_its_place(
     assert code == (1 if it.level == "error" else 0)
 
 
+@pytest.mark.more
 def test_two_launch_files_are_one_system(
     healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

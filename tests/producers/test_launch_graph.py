@@ -83,6 +83,7 @@ def one(graph: LaunchGraph) -> LaunchedNode:
     return node
 
 
+@pytest.mark.more
 def test_a_node_is_under_the_group_that_has_it(tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {a: 1}}\n")
     found = one(
@@ -330,7 +331,8 @@ def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> 
     assert found.place[:2] == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
 
 
-@pytest.mark.sample(4)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -538,7 +540,7 @@ def generate_launch_description():
 """
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("rules", "code"),
     [("[]", 1), ("[('/tf', 'tf'), ('/tf_static', 'tf_static')]", 0), ("[('/tf', '1tf')]", 3)],
@@ -566,6 +568,7 @@ def test_the_whole_command(
         assert "MG102" in capsys.readouterr().out
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "name",
     ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
@@ -606,7 +609,7 @@ def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> No
 
 
 # By launch jazzy, substitutions/ and utilities/type_utils.py.
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("made", "said"),
     [
@@ -683,7 +686,7 @@ def test_launch_configurations_are_set_and_forgotten(tmp_path: Path) -> None:
 
 
 # launch_ros jazzy, utilities/normalize_parameters.py and evaluate_parameters.py.
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("given", "kept"),
     [
@@ -751,7 +754,7 @@ def test_substitutions_in_a_parameter_file_are_read(tmp_path: Path) -> None:
     assert values == {"a": 1, "b": False, "c": "x y", "d": "a b", "e": "$(var one) $x"}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("coroutine", ["OpaqueCoroutine(coroutine=None)", "launch.LaunchService()"])
 @pytest.mark.skipif(not without(), reason="launch is here")
 def test_what_the_stand_in_does_not_read_has_its_name_in_a_note(

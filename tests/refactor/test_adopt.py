@@ -77,6 +77,7 @@ def test_the_sources_take_the_prefix(case: str, tmp_path: Path) -> None:
     assert made.before == {str(path): path.read_bytes()}
 
 
+@pytest.mark.more
 def test_an_included_file_is_changed_once_for_all_that_include_it(tmp_path: Path) -> None:
     part = tmp_path / "part.xacro"
     part.write_text(
@@ -123,6 +124,7 @@ def test_a_urdf_beside_its_xacro_is_left(tmp_path: Path) -> None:
     assert list(made.unread) == [str(tmp_path / "r.urdf")]
 
 
+@pytest.mark.more
 def test_a_link_of_another_description_has_the_prefix_too(tmp_path: Path) -> None:
     (tmp_path / "part.xacro").write_text(f'<robot {SPACE}><gazebo reference="top"/></robot>')
     include = '<xacro:include filename="part.xacro"/><link name="base"/>'
@@ -170,6 +172,7 @@ def test_a_folder_without_a_robot_is_refused(tmp_path: Path) -> None:
         adopt(str(tmp_path))
 
 
+@pytest.mark.more
 def test_the_command_prints_a_patch_or_changes_the_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -134,6 +134,7 @@ def test_wrong_names_are_refused(package: Path, old: str, new: str, kind: str, s
         rename_symbol(old, new, str(package), kind=kind)
 
 
+@pytest.mark.more
 def test_the_command_writes_all_or_shows_it(
     package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

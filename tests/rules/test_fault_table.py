@@ -28,7 +28,7 @@ from multibot_rewrite.system.json import to_json
 NAMED = {it.name: it for it in FAULTS}
 
 
-@pytest.mark.sample(11)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
@@ -36,6 +36,7 @@ def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
     assert [str(it) for it in diagnose(read).findings] == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", TWINS)
 def test_what_looks_like_a_fault_and_is_none_has_no_finding(name: str) -> None:
     assert [str(it) for it in diagnose(SOURCES["file"].read(TWINS[name]())).findings] == []
@@ -52,6 +53,7 @@ def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:
     assert "/static_transform_publisher_x" in found.hint
 
 
+@pytest.mark.more
 def test_every_finding_says_what_it_is_about() -> None:
     """Of all faults, each with its code: a robot, a node or a name, and a remedy for itself."""
     for fault in FAULTS:
@@ -63,7 +65,7 @@ def test_every_finding_says_what_it_is_about() -> None:
             assert it.message and not it.message.startswith(" "), it
 
 
-@pytest.mark.sample(47)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("name", NAMED)
 def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) -> None:
@@ -78,7 +80,7 @@ def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) 
     assert {*seen.codes} <= {fault.code, *fault.also}
 
 
-@pytest.mark.sample(17)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda it: it.name
 )
@@ -89,6 +91,7 @@ def test_with_its_plan_it_is_the_same_or_what_the_plan_has_and_is_not_there(faul
     assert fault.code in found.codes or lost, found
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BUILT)
 def test_a_build_reads_it_back(name: str) -> None:
@@ -112,6 +115,7 @@ def test_there_are_faults_enough_and_no_need_without_a_fault() -> None:
     assert NAMED.keys() >= {*MORE_NEEDS, *BUILT}
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("at", range(0, len(FAULTS), 40))
 def test_a_bag_that_is_written_is_the_recording(at: int, tmp_path: Path) -> None:

@@ -129,14 +129,16 @@ IN_BOTH = [it for it in EVERY if BUILT not in it.options]
 CODES = {it.code for it in (*EVERY, *SHARED)}
 
 
-@pytest.mark.sample(17)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", BROKEN)
 def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
     kind, text, expected = BROKEN[name]
     assert by_both(kind, text, tmp_path, CODES) == ([expected], [expected])
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
     distro = str(rule.options.get("distro", NEWEST_LTS))

@@ -41,6 +41,7 @@ def leaves(layout: Any) -> list[str]:
     return [*leaves(layout["first"]), *leaves(layout["second"])]
 
 
+@pytest.mark.more
 def test_a_tab_for_all_robots_and_one_for_each(tmp_path: Path) -> None:
     made = built(tmp_path, "frames-per-robot")
     panels = made["configById"]
@@ -61,6 +62,7 @@ def test_a_tab_for_all_robots_and_one_for_each(tmp_path: Path) -> None:
     assert image["imageTopic"].rpartition("/")[0] == image["calibrationTopic"].rpartition("/")[0]
 
 
+@pytest.mark.more
 def test_links_without_a_prefix_get_that_of_the_robot(tmp_path: Path) -> None:
     """robot_state_publisher's frame_prefix: the links are bare, the frames are not."""
     layers = built(tmp_path, "frame-prefix")["configById"]["3D!all"]["layers"]

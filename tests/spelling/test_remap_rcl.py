@@ -55,6 +55,7 @@ def rules_of(lines: list[str], node: NodeTable) -> list[str]:
     return [word for before, word in itertools.pairwise(words) if before == "-r"]
 
 
+@pytest.mark.sample(3)
 def test_every_name_leads_where_the_table_says(table: Table) -> None:
     lines = ros_args(table).splitlines()
     cases, wanted = [], []

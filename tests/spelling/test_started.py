@@ -112,6 +112,7 @@ def test_the_data_says_where_each_rule_stands() -> None:
     assert own["diff_drive_controller"]["remappings"] == [["/tf", "tf"]]
 
 
+@pytest.mark.more
 def test_a_component_is_loaded_with_its_name_namespace_and_rules() -> None:
     found = {
         it.node.node: arguments(it)

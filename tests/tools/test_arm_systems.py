@@ -174,7 +174,8 @@ def told(plan: FleetPlan, seen: System, release: str = "") -> list[str]:
     return [f"{it.code} {it.node} {it.message}" for it in found]
 
 
-@pytest.mark.sample(31)
+@pytest.mark.more
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize(("name", "release"), CASES)
 def test_two_healthy_arms(name: str, release: str, layout: str, tmp_path: Path) -> None:
@@ -188,6 +189,7 @@ def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, System]:
     return plan, played("ur", "jazzy", plan)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("node", "code"),
     [("dashboard_client", "MG101"), ("io_and_status_controller", "MG101")],

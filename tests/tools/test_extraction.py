@@ -33,7 +33,7 @@ def facts(folder: Path, body: str, more: str = "", header: str = HEADER) -> set[
     return {it[1:-1] for it in facts_of(index, "robot", index.classes["Robot"][0], frozenset())}
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("body", "fact"),
     [

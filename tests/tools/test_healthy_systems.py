@@ -74,7 +74,8 @@ def graph(release: str, name: str) -> tuple[System, System]:
     return plan, System(tuple(Node(it, it) for it in owners), tuple(ends), (), around)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:

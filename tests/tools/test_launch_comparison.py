@@ -65,6 +65,7 @@ def test_every_exception_is_needed_and_says_why() -> None:
     assert all(len(reason.split()) >= 3 for reason in EXCEPTIONS.values())
 
 
+@pytest.mark.more
 def test_what_was_corrected_stays_so() -> None:
     rows = [it.split("\t") for it in (TABLES / "launch_corrected.tsv").read_text().splitlines()]
     assert len(rows) >= 9

@@ -29,6 +29,7 @@ def test_a_kind_is_what_it_loads(file: str, inside: str, kind: str) -> None:
     assert kind_of(PLUGIN.format(file, inside).encode()) == kind
 
 
+@pytest.mark.more
 def test_each_file_has_a_verdict_a_layout_and_release(tmp_path: Path) -> None:
     texts = {
         "plain.urdf": '<robot name="r"><link name="a"/></robot>',

@@ -31,7 +31,7 @@ def test_the_examples_of_a_rule(code: str, tmp_path: Path) -> None:
     judge_examples(RULES[code], tmp_path)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("code", BUILT)
 def test_the_examples_of_a_rule_for_which_a_fleet_is_built(code: str, tmp_path: Path) -> None:
     judge_examples(RULES[code], tmp_path)

@@ -88,7 +88,7 @@ def test_every_way_after_every_way_is_refused(robot: str) -> None:
             assert outcome(once, robot, second) == "MB106", (first, second)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("robot", NAMES)
 @pytest.mark.parametrize("first", WAYS[::7], ids=str)
 def test_some_ways_after_some_ways_are_refused(robot: str, first: dict[str, object]) -> None:
@@ -116,7 +116,7 @@ EDITS = {
 }
 
 
-@pytest.mark.sample(16)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("edit", EDITS)
 @pytest.mark.parametrize("robot", NAMES)
 @pytest.mark.parametrize("side", SIDES)
@@ -184,6 +184,7 @@ def test_words_of_robots(robot: str) -> None:
     assert not is_part(robot)
 
 
+@pytest.mark.more
 def test_a_part_of_that_name_is_by_chance() -> None:
     made = rewrite(ROVER, "left", affix="prefix", separators={"link": "_"}).text
     assert '"left_left_wheel"' in made

@@ -276,6 +276,7 @@ def test_ros_1_has_one_tf() -> None:
 LEFT = {"plugin": 25, "hardware": 11, "sensor": 0}
 
 
+@pytest.mark.more
 def test_what_is_not_known_is_counted() -> None:
     vocabulary = load_vocabulary((), NEWEST_LTS)
     for type_, most in LEFT.items():

@@ -243,7 +243,7 @@ def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
     return {it[1] for it in said if it}, result.not_proved
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
 def test_the_second_reading_names_what_is_shared(
     monkeypatch: pytest.MonkeyPatch, fault: Fault

@@ -53,7 +53,7 @@ def met(texts: dict[str, bytes], layout: str) -> set[str]:
     return {named(it.name.kind, it.name.name) for it in found}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
 def test_what_is_shared_is_named(fault: Fault) -> None:
     text = rewrite(RUNNING, "robot1", layout=fault.layout).data

@@ -215,7 +215,7 @@ NASTY = (
 )
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "body",
     [
@@ -278,6 +278,7 @@ def test_a_file_of_any_name(name: str, tmp_path: Path) -> None:
     assert loaded(text, tmp_path).vocabulary.find("plugin", "acme")[0].sites[0].kinds == ("joint",)
 
 
+@pytest.mark.more
 def test_what_a_small_vocabulary_lacks_can_be_suggested(corpus: dict[str, Path]) -> None:
     """With the elements alone every plugin and hardware class of the corpus is unknown."""
     texts = {name: (HERE / name).read_text() for name in ("urdf.vocab", "sdf.vocab")}

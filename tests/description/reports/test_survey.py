@@ -167,6 +167,7 @@ def test_the_walk_is_that_of_the_warnings() -> None:
 # ---------------------------------------------------------------- real files
 
 
+@pytest.mark.more
 def test_every_plugin_of_the_corpus_is_counted(corpus: dict[str, Path]) -> None:
     """Counted a second way: elements <plugin> with a library, wherever a <gazebo> block has them."""
     files = list(corpus.values())[::10]
@@ -181,6 +182,7 @@ def test_every_plugin_of_the_corpus_is_counted(corpus: dict[str, Path]) -> None:
     assert total.files == len(files)
 
 
+@pytest.mark.more
 def test_no_mention_of_the_corpus_is_lost(corpus: dict[str, Path]) -> None:
     for path in list(corpus.values())[::40]:
         found = inventory(path.read_text(), path.name)

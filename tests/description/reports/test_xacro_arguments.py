@@ -57,6 +57,7 @@ def test_a_prefix_of_an_arm() -> None:
     assert arm["tf_prefix"].value == "{robot}_"
 
 
+@pytest.mark.more
 def test_an_argument_of_an_included_file_that_names_one_link() -> None:
     tool = by_name(XACROS / "arm.urdf.xacro")["tool"]
     assert tool == Argument("tool", "gripper", (Use("link", "whole", "", 1, 4, "{robot}"),), 0, "")
@@ -74,6 +75,7 @@ def test_numbers_switches_and_words_of_a_table_take_no_name() -> None:
     assert "not a boolean" in arm["sim"].fault or "sim" in arm["sim"].fault
 
 
+@pytest.mark.more
 def test_a_path_goes_into_no_name() -> None:
     meshes = by_name(XACROS / "arm.urdf.xacro")["meshes"]
     assert (meshes.uses, meshes.others, meshes.fault) == ((), 1, "")
@@ -85,7 +87,7 @@ def test_a_namespace() -> None:
     assert namespace.value == "{robot}"
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("default", "name", "use", "value"),
     [

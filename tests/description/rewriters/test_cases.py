@@ -224,7 +224,7 @@ LAWS = (
 every = pytest.mark.parametrize("case", REWRITTEN, ids=lambda case: case.name)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @every
 def test_case(case: Case) -> None:
     assert faults(FIRST, case) == []

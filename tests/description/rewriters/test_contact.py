@@ -123,7 +123,7 @@ def test_the_name_is_made_anew(links: list[Link], old: str, postfix: str, prefix
     assert names(links, respell=prefixed)[-1] == prefix
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("scope", ["", "r::base::", "world::r::base::"])
 @pytest.mark.parametrize(("links", "old", "postfix", "prefix"), CASES)
 def test_a_contact_sensor_follows(

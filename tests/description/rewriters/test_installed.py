@@ -295,6 +295,7 @@ def test_every_call_refuses_a_wrong_entry_point(make: Make, value: str, words: s
     assert words in complaint()
 
 
+@pytest.mark.more
 @WRONG_POINTS
 def test_a_wrong_entry_point_is_refused(make: Make, value: str, words: str) -> None:
     make("aa", SECTION.format(name="aa"), value=value)

@@ -133,6 +133,7 @@ def test_a_second_site_at_one_path_is_refused(tmp_path: Path) -> None:
     assert complaint(path) == f"{path}:5: @x is there already, at line 3"
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("text", "line"),
     [
@@ -212,7 +213,8 @@ def test_the_builtin_vocabulary_has_no_mistake() -> None:
     assert builtin_tree((), NEWEST_LTS).formats.keys() >= {"robot"}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("type_", TYPES)
 def test_a_builtin_name_has_one_section_for_each_ros(type_: str) -> None:
     sections = [r for r in builtin() if r.type == type_]
@@ -223,6 +225,7 @@ def test_a_builtin_name_has_one_section_for_each_ros(type_: str) -> None:
     assert [name for name, ros in count if ros and name in plain] == []
 
 
+@pytest.mark.more
 def test_every_builtin_section_says_what_it_is() -> None:
     silent = [f"{r.file}:{r.line} {r.name}" for r in builtin() if not (r.about or r.source)]
     assert silent == []
@@ -253,7 +256,7 @@ def test_without_its_file_the_plugin_is_reported() -> None:
     assert codes.count("MB901") == 4
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("section", "expected"),
     [

@@ -79,7 +79,7 @@ def test_a_plugin_is_unknown_where_its_release_lacks_it(path: str, release: str)
     assert bool(rows(path, release, "young")) == (release in ("kilted", "rolling"))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("release", RELEASES)
 def test_an_element_and_what_is_in_it_are_not_read_without_their_release(
     path: str, release: str
@@ -97,7 +97,7 @@ def test_all_releases_together_are_one_page(path: str) -> None:
     assert (first.topics, second.topics, second.releases) == (("beam",), ("beam_info",), "lyrical+")
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("row", "message"),
     [

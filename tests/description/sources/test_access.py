@@ -71,7 +71,7 @@ def test_the_folder_of_a_file_that_is_in_no_package(tmp_path: Path) -> None:
     assert "is outside of the folders" in including(tmp_path / "a" / "r.xacro", "../part.xacro")
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("home", ["home", "home/user"])
 def test_a_home_is_no_robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: str) -> None:
     """It may be a repository, and hold a robot: what is beside the robot is read, no more."""
@@ -222,7 +222,7 @@ def test_variables_of_ros_are_seen(
     assert b'<link name="waffle"/>' in expand(str(tmp_path / "r.xacro"), {})
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("call", ["env HUSKY_ARM", "optenv HUSKY_ARM none"])
 def test_another_variable_is_refused_and_not_silently_its_default(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str

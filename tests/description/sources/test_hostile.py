@@ -226,7 +226,7 @@ def test_every_file_has_its_expectation() -> None:
     assert len(SAID) >= 30
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", SAID)
 def test_a_hostile_file_gets_nothing(
     scene: Scene, name: str, capfd: pytest.CaptureFixture[str]
@@ -246,6 +246,7 @@ def have(fence: str) -> bool:
     )
 
 
+@pytest.mark.sample(5)
 @pytest.mark.slow
 @pytest.mark.parametrize("fence", ALONE)
 @pytest.mark.parametrize("name", sorted(SAID))
@@ -265,6 +266,7 @@ def test_all_fences_are_there(scene: Scene) -> None:
     assert held == tuple(it for it in FENCES if have(it))
 
 
+@pytest.mark.sample(5)
 @pytest.mark.slow
 @pytest.mark.parametrize("fence", ALONE)
 @pytest.mark.parametrize("name", sorted(set(SAID) - LARGE - (ENDLESS - {"sleep"})))

@@ -43,7 +43,8 @@ def made(head: str, body: str, folder: Path) -> Path:
     return path
 
 
-@pytest.mark.sample(7)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("value", ["{robot}_", "left_"])
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 @pytest.mark.parametrize("separator", ["/", "_"])
@@ -85,7 +86,7 @@ def test_a_prefix_stays_in_a_layout_that_leaves_frames_bare() -> None:
     assert texts(made, "frame_name") == ["camera_link"]
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both"])
 @pytest.mark.parametrize("value", ["{robot}", "robot1"])
 def test_a_namespace_is_there_once(layout: str, value: str) -> None:
@@ -94,7 +95,7 @@ def test_a_namespace_is_there_once(layout: str, value: str) -> None:
     assert "robot1/robot1" not in made
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("value", ["{robot}/arm", "fleet/{robot}"])
 def test_a_namespace_of_several_parts_is_the_robots_own(value: str) -> None:
     made = rewrite(BASE, "robot1", layout="both", xacro_args={"namespace": value}).text
@@ -121,6 +122,7 @@ def test_an_argument_without_a_separator(tmp_path: Path) -> None:
     assert names(done, "link") == ["myleftbase"]
 
 
+@pytest.mark.more
 def test_an_argument_that_takes_only_known_words_does_not_hide_the_others() -> None:
     given = {"namespace": "{robot}", "wheel": "small"}
     made = rewrite(BASE, "small", layout="both", xacro_args=given).text
@@ -196,7 +198,8 @@ def test_names_of_two_robots_do_not_meet(tmp_path: Path) -> None:
     assert "a and a_b would both have the link 'a_b_x'" in refused.value.findings[0].message
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 @pytest.mark.parametrize("separator", ["/", "_"])
 def test_strip_gives_the_expansion_back(affix: str, separator: str) -> None:
@@ -206,6 +209,7 @@ def test_strip_gives_the_expansion_back(affix: str, separator: str) -> None:
     assert back == expand(str(ARM), {"tf_prefix": "left_"})
 
 
+@pytest.mark.more
 def test_strip_without_the_xacro_is_refused() -> None:
     made = rewrite(ARM, "left", xacro_args=PREFIX)
     with pytest.raises(RewriteRefused) as refused:
@@ -229,6 +233,7 @@ def test_an_srdf_keeps_what_its_urdf_names(tmp_path: Path) -> None:
     assert 'link1="left_tool0"' in done
 
 
+@pytest.mark.more
 def test_a_result_can_be_pickled() -> None:
     made = rewrite(ARM, "left", xacro_args=PREFIX)
     copy = pickle.loads(pickle.dumps(made))
@@ -236,6 +241,7 @@ def test_a_result_can_be_pickled() -> None:
     assert copy.changes == made.changes
 
 
+@pytest.mark.more
 def test_an_explanation_says_where_the_name_is_from() -> None:
     lines = Path(ARM).read_text().splitlines()
     line = next(at for at, it in enumerate(lines, 1) if 'tool0"' in it and "<link" in it)
@@ -263,7 +269,8 @@ PLAIN_SRDF = """\
 """
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["postfix", "tf-per-robot"])
 def test_an_srdf_that_knows_nothing_of_the_argument(layout: str) -> None:
     done = rewrite(PLAIN_SRDF, "left", urdf=ARM, xacro_args=PREFIX, layout=layout)
@@ -283,7 +290,8 @@ def test_an_srdf_that_knows_nothing_of_the_argument(layout: str) -> None:
     assert back.decode() == PLAIN_SRDF
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
 def test_names_of_an_argument_are_not_shared_by_all(layout: str) -> None:
     base = rewrite(BASE, "robot1", layout=layout, xacro_args={"namespace": "{robot}"})
@@ -328,7 +336,8 @@ def test_a_default_that_is_replaced_is_followed_as_well(tmp_path: Path) -> None:
     assert job.own.plain == {("link", "arm_base"): "left_base"}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("policy", "codes"),
     [
@@ -365,6 +374,7 @@ def test_an_srdf_for_a_default_that_is_replaced_is_not_followed(tmp_path: Path) 
     assert '"arm_base"' in done.text
 
 
+@pytest.mark.more
 def test_an_srdf_of_an_argument_behind_names(tmp_path: Path) -> None:
     body = '<link name="base$(arg p)"/><link name="tip"/><joint name="base" type="fixed">'
     body += '<parent link="base$(arg p)"/><child link="tip"/></joint>'

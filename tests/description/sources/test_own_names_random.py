@@ -84,7 +84,7 @@ POSTFIX = {"layout": "postfix", "affix": "postfix", "separators": {"link": "_"}}
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(trees(), policies, ROBOTS, VALUES)
 @example(MET, POSTFIX, "left", "{robot}_")
 def test_every_name_has_the_robots_name_once(

@@ -150,6 +150,7 @@ def test_a_name_behind_an_escape_is_what_an_expression_makes(tmp_path: Path) -> 
     assert [it.kind for it in pieces] == ["expression"]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "file", ["fixtures/xacros/arm.urdf.xacro", "examples/namespace_and_prefix/hexbase.urdf.xacro"]
 )

@@ -56,6 +56,7 @@ def test_it_is_expanded_and_takes_arguments(tmp_path: Path) -> None:
         read_whole(str(path), {"namespace": "r1/"})
 
 
+@pytest.mark.more
 def test_where_nodes_name_frames_no_argument_may_name_links(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(TURTLEBOT)
     fleet = tmp_path / "fleet.yaml"

@@ -79,6 +79,7 @@ def _rewritten(file: str, side: str, results: multiprocessing.Queue[str]) -> Non
     results.put(text if int(status[1]) == os.getpid() else "")
 
 
+@pytest.mark.more
 def test_a_fork_does_not_talk_to_the_server_of_its_parent(file: Path) -> None:
     """Both use it at once: answers would go to the wrong one."""
     rewrite(file, "robot1")

@@ -86,6 +86,7 @@ def test_bad_input_is_one_line_with_a_remedy(source: bytes, words: str) -> None:
     assert error.__context__ is None or error.__suppress_context__, "the parser's traceback shows"
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "source",
     [

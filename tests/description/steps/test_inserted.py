@@ -69,7 +69,7 @@ EMPTY_NAMESPACES = [
 ]
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("element", EMPTY_NAMESPACES)
 @pytest.mark.parametrize("layout", ["L1", "L2", "L3"])
 def test_an_empty_namespace_is_filled_and_emptied_again(element: str, layout: str) -> None:

@@ -118,6 +118,7 @@ def test_libsdformat_reads_what_is_read_here(name: str, tmp_path: Path) -> None:
     assert ign_reads(rewrite(data, "r1").data, tmp_path)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("part", [b"<a ", b"<!--", b"<![CDATA[", b"<?xml ", b"<?xml ?>", b"<a b='"])
 def test_a_text_made_to_hurt_is_looked_at_once(part: bytes) -> None:
     """Each would take hours if every part were looked for up to the end of the text."""
@@ -155,6 +156,7 @@ MORE = (
 )
 
 
+@pytest.mark.more
 def test_a_text_without_slips_is_told_at_a_glance(monkeypatch: pytest.MonkeyPatch) -> None:
     chance = random.Random(5)
     texts = [b"".join(chance.choices(PIECES + MORE, k=chance.randint(1, 9))) for _ in range(3000)]

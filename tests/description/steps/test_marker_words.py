@@ -16,7 +16,7 @@ def marker(distro: str) -> str:
     return next(it for it in lines if "<!-- multibot" in it and "/tf_static" in it)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
 def test_controllers_take_rules_of_their_plugin(distro: str) -> None:
     assert "all robots would share the root namespace, /tf, /tf_static)" in marker(distro)

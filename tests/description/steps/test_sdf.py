@@ -156,6 +156,7 @@ def outcome(data: bytes, options: Options) -> refusal_reasons.Outcome:
     return refusal_reasons.Outcome("", "; ".join(wrong))
 
 
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_every_model_is_rewritten_or_refused(models: dict[str, Path], options: Options) -> None:

@@ -229,6 +229,7 @@ def test_every_srdf_follows_its_urdf(pairs: dict[str, Pair]) -> None:
     assert sum(pair.covered for pair in pairs.values()) >= LEAST_COVERED
 
 
+@pytest.mark.sample(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_some_with_options(pairs: dict[str, Pair], options: Options) -> None:
@@ -395,6 +396,7 @@ BAD = {
 }
 
 
+@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("name", BAD)
 def test_what_cannot_work_is_one_line(folder: Path, name: str) -> None:

@@ -40,6 +40,7 @@ def two(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.more
 def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
     assert init(two) == 2
     said = capsys.readouterr().err
@@ -50,11 +51,13 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
     assert not (two / "fleet.yaml").exists()
 
 
+@pytest.mark.more
 def test_the_one_that_a_launch_file_loads_is_taken(two: Path) -> None:
     (two / "up.launch.py").write_text("path = os.path.join(share, 'tractor.urdf')\n")
     assert taken(two)["description"] == "tractor.urdf"
 
 
+@pytest.mark.more
 def test_the_one_whose_joints_the_files_have_is_taken(two: Path) -> None:
     values = {"joints": ["pull_left", "pull_right"], "base": "tractor_base"}
     section = {"wheels": {"ros__parameters": values}}
@@ -80,6 +83,7 @@ def test_a_part_and_a_prop_are_no_rivals(two: Path) -> None:
     assert taken(two)["description"] == "digger.urdf"
 
 
+@pytest.mark.more
 def test_files_of_one_name_in_two_folders_are_variants(tmp_path: Path, capsys: Any) -> None:
     for name, more in (("one", ()), ("two", ("third",))):
         (tmp_path / name).mkdir()
@@ -90,6 +94,7 @@ def test_files_of_one_name_in_two_folders_are_variants(tmp_path: Path, capsys: A
     assert "2 descriptions" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_a_file_that_includes_another_of_its_name(tmp_path: Path) -> None:
     """As a MoveIt config that adds ros2_control to the robot: that one is the robot."""
     wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -104,6 +109,7 @@ def test_a_file_that_includes_another_of_its_name(tmp_path: Path) -> None:
     assert taken(tmp_path)["description"] == "car_config/car.urdf.xacro"
 
 
+@pytest.mark.more
 def test_packages_of_a_copy_without_git_are_found(tmp_path: Path) -> None:
     """As in an image or an archive: packages are in folders of their own kind."""
     wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -132,6 +138,7 @@ def test_what_is_launched_and_cannot_be_read_is_said(two: Path, capsys: Any) -> 
     assert not (two / "fleet.yaml").exists()
 
 
+@pytest.mark.more
 def test_an_sdf_is_for_the_simulator_and_its_urdf_for_the_rest(tmp_path: Path) -> None:
     (tmp_path / "car.urdf").write_text(robot("car", "a", "b"))
     drive = (
@@ -151,6 +158,7 @@ def test_an_sdf_is_for_the_simulator_and_its_urdf_for_the_rest(tmp_path: Path) -
     assert fleet["simulator"] == "gazebo"
 
 
+@pytest.mark.more
 def test_a_real_robot_has_no_bridge(two: Path) -> None:
     (two / "tractor.urdf").unlink()
     (two / "bridge.yaml").write_text(
@@ -182,6 +190,7 @@ MIR = """\
 """
 
 
+@pytest.mark.more
 def test_an_argument_that_would_name_the_robot_twice_stays_empty(
     tmp_path: Path, capsys: Any
 ) -> None:
@@ -213,6 +222,7 @@ Visualization Manager:
 """
 
 
+@pytest.mark.more
 def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
     """Not even where no description of that robot is there: of its names none is known."""
     (two / "tractor.urdf").unlink()
@@ -226,6 +236,7 @@ def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
     assert "#   a.rviz: of its links and joints 0 in a hundred" in (two / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
     (two / "tractor.urdf").unlink()
     section = {"amcl": {"ros__parameters": {"base_frame_id": "digger_base"}}}
@@ -235,6 +246,7 @@ def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
     assert taken(two)["companions"]["params"] == ["z_nav.yaml"]
 
 
+@pytest.mark.more
 def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -> None:
     """A launch file loads another one: both may be meant."""
     for name in ("cart", "dog"):
@@ -253,6 +265,7 @@ def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -
     assert "2 descriptions" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
     for at in range(70):
         thing = '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
@@ -262,6 +275,7 @@ def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
     assert taken(tmp_path)["description"] == "zebra.urdf"
 
 
+@pytest.mark.more
 def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) -> None:
     """As xarm_moveit_config: an SRDF of macros has no name in its text, one makes two robots, one
     has the macros alone; each arm has a folder of MoveIt's files with the same names."""

@@ -80,6 +80,7 @@ def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     assert all(b - a >= 0.5 for a, b in pairwise(places))
 
 
+@pytest.mark.more
 def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
     (tmp_path / "wide.urdf").write_text(WIDE)
     fleet = made(tmp_path, tmp_path / "wide.urdf", "-n", 3)
@@ -159,7 +160,8 @@ def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> No
     assert set(fleet["companions"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "name", ["launch_tutorial/rover.urdf", "two_robots_postfix/scout.urdf.xacro"]
 )
@@ -174,11 +176,13 @@ def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path
     assert "srdf" not in fleet and "stack" not in fleet
 
 
+@pytest.mark.more
 def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
     assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]
 
 
+@pytest.mark.more
 def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
     for name in ("rover.urdf", "two_finger_arm.urdf"):
         shutil.copy(ROBOTS / name, tmp_path)
@@ -187,6 +191,7 @@ def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
     assert robots == {"rover1": "rover.urdf", "two_finger_arm1": "two_finger_arm.urdf"}
 
 
+@pytest.mark.more
 def test_a_layout_that_does_not_work_is_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -201,6 +206,7 @@ def test_a_layout_that_does_not_work_is_replaced(
     assert why in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None:
     world = '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="fixed">'
     world += '<parent link="world"/><child link="a"/></joint></robot>'
@@ -232,6 +238,7 @@ def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> N
     assert "#   old.rviz: this is a ROS 1 config" in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: Path) -> None:
     """``a.urdf`` would come first: its path is shorter."""
     text = '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
@@ -241,7 +248,8 @@ def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: P
     assert fleet["description"] == "other.urdf"
 
 
-@pytest.mark.sample(5)
+@pytest.mark.more
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "launch",
     [
@@ -261,6 +269,7 @@ def test_what_a_xacro_needs_is_as_its_launch_file_has_it(launch: str, tmp_path: 
     assert "# It needs kind; init chose a value" in (tmp_path / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
     """As ``ur_type`` of Universal Robots, whose default is the name of no robot."""
     body = '<xacro:arg name="kind" default="none"/><xacro:include filename="$(arg kind).xacro"/>'
@@ -304,6 +313,7 @@ def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     assert "gz_ros_control" not in (tmp_path / "out" / "plan.yaml").read_text()
 
 
+@pytest.mark.more
 def test_the_hardware_of_the_real_robot_needs_no_manager_in_a_simulator(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -401,6 +411,7 @@ def yard(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.more
 def test_a_part_of_another_robot_is_known_as_a_key_too(yard: Path) -> None:
     """``crane_hook`` is nothing but a part; ``hook`` and ``mast`` may be words of any node."""
     assert params_of(yard, some={"crane_hook": 1, "lift_joint": 2, "mast_top": 3}) == []
@@ -415,6 +426,7 @@ def params_of(yard: Path, **values: object) -> list[str]:
     return [Path(it).stem for it in taken]
 
 
+@pytest.mark.more
 def test_files_that_name_joints_of_another_robot_are_its_own(yard: Path) -> None:
     rover, crane = ["lidar_link", "imu_link"], ["lift_joint", "crane_hook"]
     assert params_of(yard, wheels=rover, hook=crane) == ["wheels"]
@@ -446,6 +458,7 @@ def test_files_in_the_folder_of_the_robot_are_its_own(yard: Path) -> None:
     assert params_of(yard) == ["a"]
 
 
+@pytest.mark.more
 def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
     shutil.copy(ROBOTS / "rover.srdf", yard / "urdf")
     (yard / "crane_config").mkdir()
@@ -457,6 +470,7 @@ def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
     assert (fleet["srdf"], fleet.get("companions", {})) == ("urdf/rover.srdf", {})
 
 
+@pytest.mark.more
 def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     walls = "".join(f'<link name="wall_{at}"/>' for at in range(3))
     (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
@@ -464,6 +478,7 @@ def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"
 
 
+@pytest.mark.more
 def test_a_robot_that_its_description_has_in_the_map_gets_no_pose(tmp_path: Path) -> None:
     """go2_ros2_sdk go2.urdf: robot_state_publisher sends map -> odom, so a pose has no place in tf."""
     joint = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'

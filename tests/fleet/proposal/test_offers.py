@@ -22,6 +22,7 @@ ARM = """\
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("arguments", "prefix"),
     [

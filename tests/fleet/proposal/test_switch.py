@@ -62,6 +62,7 @@ def fleet_of(folder: Path, *words: str) -> Any:
     return yaml.safe_load(file.read_text())
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("switch", ["sim_mode", "use_sim", "use_gazebo", "sim_gazebo", "gz"])
 def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
     write(folder, switch, "false")
@@ -72,17 +73,20 @@ def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
     assert said in (folder / "fleet.yaml").read_text()
 
 
+@pytest.mark.more
 def test_a_real_robot_gets_the_other_value(folder: Path) -> None:
     write(folder, "use_sim", "true")
     fleet = fleet_of(folder, "--simulator", "none")
     assert (fleet["simulator"], fleet["arguments"]) == ("none", {"use_sim": "false"})
 
 
+@pytest.mark.more
 def test_what_suits_stays(folder: Path) -> None:
     write(folder, "use_sim", "true")
     assert "arguments" not in fleet_of(folder)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("simulator", "value", "says"),
     [
@@ -109,6 +113,7 @@ def test_hardware_of_the_other_world_stops_the_build(
     assert not (folder / "out").exists()
 
 
+@pytest.mark.more
 def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
     """Where the simulator has no plugin of ros2_control, nothing reads the real robot's block."""
     write(folder, "use_sim", "false")
@@ -126,6 +131,7 @@ def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
 IF, UNLESS = '<xacro:if value="$(arg {switch})">', '<xacro:unless value="$(arg {switch})">'
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("word", ["gazebo", "sim"])
 def test_a_word_that_a_xacro_compares_is_a_switch(word: str, folder: Path) -> None:
     """lbr_description has mode: mock, gazebo or hardware."""
@@ -138,6 +144,7 @@ def test_a_word_that_a_xacro_compares_is_a_switch(word: str, folder: Path) -> No
     assert fleet_of(folder)["arguments"] == {"mode": word}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("plugin", "hardware"),
     [

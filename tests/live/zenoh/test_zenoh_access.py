@@ -181,6 +181,7 @@ def test_wrong_keys_are_one_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.more
 def test_a_build_writes_a_file_each(tmp_path: Path) -> None:
     assert built(tmp_path, "{router: 'tcp/localhost:7447', domain: 3}") == 0
     out = tmp_path / "out" / "zenoh"

@@ -108,6 +108,7 @@ def test_fixed_joints_that_are_heard_elsewhere_are_said(
     assert "robot2: " in said and "(lidar_link/robot2 by 0.030 m and 0.0 degrees)" in said
 
 
+@pytest.mark.more
 def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(with_places(healthy("postfix"))))
@@ -122,6 +123,7 @@ def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> N
     assert heard["lidar_link/robot2"][:3] == [0.1, 0, 0.09]
 
 
+@pytest.mark.more
 def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(healthy("postfix")))
@@ -142,6 +144,7 @@ def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None
     assert set(two["heard"].values()) == {"heard"}
 
 
+@pytest.mark.more
 def test_a_recording_has_places_too(tmp_path: Path) -> None:
     """The last of its transforms: 99 m ahead after 100 messages."""
     made_bags = pytest.importorskip("made_bags", reason="no rosbags")

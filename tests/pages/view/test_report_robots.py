@@ -60,10 +60,12 @@ def test_a_fleet_is_at_the_head_with_its_frames_as_heard(files: dict[str, str]) 
     assert page.index("<h1>") < page.index("<iframe") < page.index('id="environment"')
 
 
+@pytest.mark.more
 def test_a_plan_alone_has_no_robots_in_3d(files: dict[str, str]) -> None:
     assert "<iframe" not in report(files, "plan")
 
 
+@pytest.mark.more
 def test_what_was_built_knows_its_fleet_file(files: dict[str, str], tmp_path: Path) -> None:
     """Until that is changed: then it says something else than the plan."""
     out = tmp_path / "out"
@@ -74,6 +76,7 @@ def test_what_was_built_knows_its_fleet_file(files: dict[str, str], tmp_path: Pa
     assert "<iframe" not in report(built, "plan")
 
 
+@pytest.mark.more
 def test_a_report_is_written_where_robots_cannot_be_shown(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -86,6 +89,7 @@ def test_a_report_is_written_where_robots_cannot_be_shown(
     assert "the report does not show the robots in 3D" in told and "[view]" in told
 
 
+@pytest.mark.more
 def test_a_check_without_a_report_loads_no_model(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -106,7 +106,7 @@ def parameters(outputs: Outputs, robot: str) -> dict[str, dict[str, object]]:
     }
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_prefixes_follow_the_description(layout: str, tmp_path: Path) -> None:
     outputs = made(tmp_path, MOCK, CONTROLLERS, layout)
@@ -118,7 +118,7 @@ def test_prefixes_follow_the_description(layout: str, tmp_path: Path) -> None:
     assert sections.get("gravity") == (None if bare else {"tf_prefix": "right_"})
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_prefix_that_its_code_ends(layout: str, tmp_path: Path) -> None:
     outputs = made(tmp_path, FRANKA, STATE, layout)

@@ -77,7 +77,7 @@ def test_groups_have_the_joints_that_a_plan_moves() -> None:
     assert (virtual.parent, virtual.child, virtual.place.line) == ("odom", "base", 2)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("joints", "passive", "found"),
     [
@@ -105,6 +105,7 @@ def test_a_virtual_joint_that_moves_needs_a_sender(tmp_path: Path) -> None:
     assert "odom -> base" in made[0].message
 
 
+@pytest.mark.more
 def test_an_srdf_is_read_by_a_move_group_that_may_run(tmp_path: Path) -> None:
     plan, _ = planned(tmp_path, "shoulder, elbow")
     (found,) = (it for it in plan.fleet.facts if it.name == "move_group")

@@ -19,6 +19,7 @@ ONE_LINE = ("MB80", "MB853", "MB854", "MB885", "MB874", "MF802")
 PLACE = re.compile(r"\w+\.(urdf|yaml):\d+")
 
 
+@pytest.mark.sample(4)
 @pytest.mark.slow
 @pytest.mark.parametrize("files", [FILES, ARM_FILES], ids=["rover", "arm"])
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -316,7 +317,8 @@ ARM_BREAKS = [
 EVERY = [*((FILES, *it) for it in BREAKS), *((ARM_FILES, *it) for it in ARM_BREAKS)]
 
 
-@pytest.mark.sample(31)
+@pytest.mark.more
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("files", "file", "old", "new", "code", "line", "other"), EVERY)
 def test_a_break_is_found_with_its_lines(
     files: dict[str, str],

@@ -69,6 +69,7 @@ def test_both_places_are_told() -> None:
     assert "see slam.yaml:3" in found.hint
 
 
+@pytest.mark.more
 def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)

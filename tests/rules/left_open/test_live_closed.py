@@ -12,6 +12,7 @@ from multibot_rewrite.cli.multibot import main
 pytestmark = pytest.mark.live
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize(
     "layout", ["postfix", pytest.param("frames-per-robot", marks=pytest.mark.deep)]
 )
