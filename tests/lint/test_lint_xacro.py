@@ -427,15 +427,13 @@ def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path
     assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]
 
 
-def test_a_part_alone_is_known_by_what_includes_it(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("included", "codes"), [("part.urdf.xacro", []), ("o.xacro", ["MB202"])])
+def test_a_part_alone_is_known_by_what_includes_it(
+    included: str, codes: list[str], tmp_path: Path
+) -> None:
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="l"/></joint>'
-    xacro = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
-    part = tmp_path / "part.urdf.xacro"
-    part.write_text(f'<robot name="part" {xacro}><link name="l"/>{joint}</robot>')
-    alone = lint_files([str(part)], Settings(select=("MB202",)), jobs=1)
-    robot = f'<robot name="r" {xacro}><xacro:include filename="{{}}"/><link name="base"/></robot>'
-    (tmp_path / "robot.urdf.xacro").write_text(robot.format("part.urdf.xacro"))
-    assert len(alone) == 1 and lint_files([str(part)], Settings(select=("MB202",)), jobs=1) == []
-    (tmp_path / "robot.urdf.xacro").write_text(robot.format("other.xacro"))
-    assert lint_files([str(part)], Settings(select=("MB202",)), jobs=1) == alone
+    includes = f'<xacro:include filename="{included}"/><link name="base"/>'
+    files = {"part.urdf.xacro": xacro(f'<link name="l"/>{joint}'), "r.xacro": xacro(includes)}
+    write(tmp_path, {"package.xml": MANIFEST % "p", **files})
+    found = linted(tmp_path, "part.urdf.xacro", select=("MB202",))
+    assert [it.code for it in found] == codes
