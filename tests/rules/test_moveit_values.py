@@ -56,6 +56,7 @@ def limits(joint: str, values: str) -> str:
         ("lift", "min_position: -1.5", [("MB898", WARNING)]),
         ("lift", "max_position: -0.5, min_position: 0.5", [("MB125", WARNING)]),
         ("lift", "has_jerk_limits: true", [("MB115", ERROR)]),
+        ("$(arg prefix)a", "has_velocity_limits: true, max_velocity: 1", [("MB120", ERROR)]),
         # A continuous joint has no range, and the URDF no velocity for it.
         ("turn", "has_velocity_limits: true, max_velocity: 99.0, max_position: 9.0", []),
     ],

@@ -138,10 +138,10 @@ def _is_read(fact: Declared, name: str, whole: Mapping[str, Given], at: str) -> 
 
 def filled(text: str, path: str, name: str) -> tuple[str, ...]:
     """The words of a check's arguments, with what the words in brackets of a path are in a name."""
-    put = stands_for(path, name) if "<" in text else {}
-    for word, part in put.items():
-        text = text.replace(word, part)
-    return tuple(text.split())
+    words = text.split()
+    for word, part in (stands_for(path, name) if "<" in text else {}).items():
+        words = [it.replace(word, part) for it in words]
+    return tuple(words)
 
 
 def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
