@@ -150,7 +150,7 @@ def test_the_command_ends_with_the_level_of_the_fault(
     assert fault.code in capsys.readouterr().out
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_page_is_that_of_today() -> None:
     page = (ROOT / "docs" / "measurements.md").read_text()
     assert "#" + "\n".join(lines()).strip() in page

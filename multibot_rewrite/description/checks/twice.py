@@ -100,10 +100,11 @@ def is_part(robot: str) -> bool:
 
 
 def _carries_name(name: UsedName, robot: str) -> bool:
-    text = name.text.lstrip("/")
+    # A name may be a slash and no more: that of robot1 is //robot1.
+    text = name.text.removeprefix("/")
     if text == robot:
         return name.kind == "namespace"
-    return text.startswith(tuple(robot + it for it in BETWEEN)) or text.endswith(
+    return text.lstrip("/").startswith(tuple(robot + it for it in BETWEEN)) or text.endswith(
         tuple(it + robot for it in BETWEEN)
     )
 

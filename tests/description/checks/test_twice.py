@@ -250,3 +250,10 @@ def test_robots_of_one_call_are_each_looked_at() -> None:
     for before, after in pairwise(["robot2", "robot1", "robot3"]):
         with pytest.raises(RewriteRefused, match="already rewritten for robot1"):
             next(rewrite_all(once, [before, after]))
+
+
+def test_a_link_that_is_a_slash_is_rewritten_once() -> None:
+    slash = '<robot name="r"><link name="/"/></robot>'
+    once = rewrite(slash, "robot1").text
+    assert 'name="//robot1"' in once
+    assert outcome(once, "robot1", {}) == "MB106"
