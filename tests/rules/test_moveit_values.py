@@ -177,13 +177,18 @@ STATE = '<group_state name="home"{}><joint name="{}" value="0"/></group_state>'
         (STATE.format("", "lift"), []),
         (STATE.format(' group="rest"', "root_joint"), []),
         (STATE.format(' group="arm"', "lost"), [("MB804", ERROR)]),
+        (STATE.format("", "lost"), [("MB804", WARNING)]),
+        (
+            STATE.format("", "lift") + '<group name="all"><link name="lost"/></group>',
+            [("MB803", WARNING)],
+        ),
         ('<rotor_params><joint name="lift" mass="1" gear_ratio="9"/></rotor_params>', []),
         (
             '<rotor_params><joint name="lost" mass="1" gear_ratio="9"/></rotor_params>',
-            [("MB804", ERROR)],
+            [("MB804", WARNING)],
         ),
     ],
 )
 def test_an_srdf_of_pinocchio(rest: str, expected: list[tuple[str, str]], tmp_path: Path) -> None:
-    codes = ("MB115", "MB804", "MB805", "MB812", "MB901")
+    codes = ("MB115", "MB803", "MB804", "MB805", "MB812", "MB901")
     assert linted(tmp_path, "arm.srdf", SRDF.format(rest), codes) == expected

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.description.checks.links_and_joints import Robot
@@ -15,6 +14,7 @@ from multibot_rewrite.rules.description.references.lookup import undeclared
 from multibot_rewrite.rules.description.srdf.shared import (
     ARM,
     VIRTUAL,
+    level_of,
     srdf_rule,
     undeclared_for_moveit,
 )
@@ -53,7 +53,8 @@ other_robot = srdf_rule(
     good=ARM,
 )(undeclared_for_moveit("MB802"))
 
-srdf_link = srdf_rule(
+
+@srdf_rule(
     "MB803",
     "srdf-link",
     ERROR,
@@ -63,7 +64,11 @@ srdf_link = srdf_rule(
     fix="Correct the name.",
     bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
     good='<group name="arm"><joint name="j"/><link name="b"/></group>',
-)(partial(undeclared, "MB803"))
+)
+def srdf_link(subject: Subject) -> Iterator[Problem]:
+    """Of Pinocchio, which reads none of these, a warning."""
+    level = level_of(subject)
+    yield from (it._replace(level=level) for it in undeclared("MB803", subject))
 
 
 @srdf_rule(
@@ -79,9 +84,10 @@ srdf_link = srdf_rule(
     line=2,
 )
 def srdf_joint(subject: Subject) -> Iterator[Problem]:
-    """All but the free flyer in a state for Pinocchio."""
+    """All but the free flyer in a state for Pinocchio, which leaves the others out: a warning."""
+    level = level_of(subject)
     yield from (
-        it
+        it._replace(level=level)
         for it in undeclared("MB804", subject)
         if it.element.tag != "joint" or text_of(it.element) != FREE_FLYER
     )

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial, wraps
 
+from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import SRDF, rule
 from multibot_rewrite.description.checks.planning_groups import is_pinocchios
 from multibot_rewrite.description.checks.problem import Problem
@@ -39,6 +40,12 @@ def of_moveit(
             yield from check(subject)
 
     return found
+
+
+def level_of(subject: Subject) -> str:
+    """How bad a name is that the URDF does not have, where it is no error: Pinocchio leaves a joint
+    of a state out and reads no group."""
+    return WARNING if is_pinocchios(subject.document.root) else ""
 
 
 def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
