@@ -7,7 +7,6 @@ Rows are Python and not YAML, since the start of every command reads them and no
 from __future__ import annotations
 
 import re
-from fnmatch import fnmatchcase, translate
 from functools import cache, lru_cache
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -127,6 +126,8 @@ WORLD_NODES = frozenset({"gazebo"})
 
 def tool_patterns() -> tuple[str, ...]:
     """The patterns of all tools, without those inside another."""
+    from fnmatch import fnmatchcase  # few commands ask for a pattern
+
     every = [it.pattern for it in TOOLS]
     return tuple(
         it for it in every if not any(it != other and fnmatchcase(it, other) for other in every)
@@ -148,6 +149,8 @@ def only_looks(word: str) -> bool:
 
 @cache
 def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
+    from fnmatch import translate
+
     return re.compile("|".join(map(translate, patterns)))
 
 

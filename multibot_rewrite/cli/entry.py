@@ -4,6 +4,7 @@ written yet, and Python's traceback would tell of imports. ``guarded`` takes ove
 
 from __future__ import annotations
 
+import gc
 import signal
 from importlib import import_module
 
@@ -28,5 +29,6 @@ def urdf_lint() -> int:
 def _run(name: str) -> int:
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+    gc.disable()
     code: int = import_module(f"{_COMMANDS}.{name}").main()
     return code

@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import io
 import os
-import shutil
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -117,6 +116,7 @@ def status() -> Callable[[str], None]:
     screen = sys.stderr
     if screen is None or not screen.isatty() or os.environ.get("TERM") == "dumb":
         return lambda _: None
+    import shutil  # only a terminal has a width
 
     def show(text: str) -> None:
         width = shutil.get_terminal_size().columns - 1

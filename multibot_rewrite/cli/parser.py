@@ -11,7 +11,6 @@ from functools import partial
 from itertools import pairwise, takewhile
 from typing import NoReturn
 
-from multibot_rewrite.base import other_words
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
@@ -204,6 +203,8 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     wrong = next((name for name in names if name not in known), "")
     if not wrong:
         return ""
+    from multibot_rewrite.base import other_words  # a mistake alone needs them
+
     if other := other_words.OPTIONS.get(wrong):
         return f"unknown option {wrong}; use {other}"
     # Dashes are in all of them: compared with these, every short word is like every other.

@@ -8,7 +8,6 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
-from multibot_rewrite.base.findings.codes import check_codes
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
@@ -48,6 +47,7 @@ def check_report(options: argparse.Namespace, printed: bool) -> None:
     standard output; ``printed`` is whether the result does."""
     for option, codes in (("--select", options.select), ("--ignore", options.ignore)):
         if codes:
+            from multibot_rewrite.base.findings.codes import check_codes
             from multibot_rewrite.lint.catalogue import rules  # it imports every check
 
             check_codes(codes, option, rules())
@@ -77,6 +77,8 @@ def report_first(
 
 def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
     """Write the findings beside the result: as text to standard error, else to standard output."""
+    if options.format == TEXT and not findings:
+        return False
     if options.format == TEXT:
         colour = is_coloured(options.color, sys.stderr)
         sys.stderr.write(_text(options, findings, about, NO_RULES, colour=colour))

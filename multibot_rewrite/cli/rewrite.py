@@ -27,7 +27,6 @@ from multibot_rewrite.cli.rewrite_use import (
 )
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
-from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.checks.verdict import given, not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.sources.own_names import filled, name_robot
@@ -49,11 +48,20 @@ def run(options: argparse.Namespace) -> int:
     check_use(options, names)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
     source: Source = standard_input() if options.input == "-" else options.input
-    if is_beside(source):
+    if _is_beside(source):
         from multibot_rewrite.cli import rewrite_file  # a description needs none of it
 
         return rewrite_file.run(options, source, names)
     return (_undo if options.strip else _rewrite)(options, source, names)
+
+
+def _is_beside(source: Source) -> bool:
+    """As ``is_beside``, which need not be asked of what is called as descriptions are."""
+    if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
+        return False
+    from multibot_rewrite.companions.kinds import is_beside
+
+    return is_beside(source)
 
 
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:

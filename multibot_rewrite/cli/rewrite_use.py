@@ -149,7 +149,8 @@ def deliver(
         every = chain(more, files if options.in_place else map(_no_link, files))
         write_files(options, watched(every, total, "writing"))
         return
-    write_files(options, more)
+    if more:
+        write_files(options, more)
     colour = prints_colour(options)
     for robot, before, data in results:
         name = input_name(options)

@@ -17,10 +17,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.checks.arguments import unread_arguments
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.verdict import not_proved
-from multibot_rewrite.description.reports.changes import list_changes
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import Source, is_xacro
@@ -98,6 +96,8 @@ class Rewrite(NamedTuple):
     @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
+        from multibot_rewrite.description.reports.changes import list_changes  # few ask for it
+
         return list_changes(self.template, self.robot)
 
 
@@ -194,6 +194,10 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
 def _unread(prepared: Prepared) -> Iterator[Finding]:
     """Warnings about arguments that no file of the xacro knows."""
     document, read = prepared.template.inventory.document, prepared.job.read
+    if not read.unread:
+        return iter(())
+    from multibot_rewrite.description.checks.arguments import unread_arguments
+
     found = unread_arguments(document.root, read.unread, read.arguments)
     return to_findings(document, found, WARNING, of_file=True)
 

@@ -12,7 +12,6 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import TWIN, Naming, overlap
 from multibot_rewrite.description.checks import audit
 from multibot_rewrite.description.checks import robots as checks
-from multibot_rewrite.description.checks.arguments import missed_by_arguments
 from multibot_rewrite.description.checks.meeting import shared_by_all, shared_by_both, shared_with
 from multibot_rewrite.description.checks.mentions import MENTIONED, find_mentions, usual_names
 from multibot_rewrite.description.checks.problem import Problem, to_findings
@@ -48,8 +47,11 @@ def prepare(
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
-    missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
-    findings += to_findings(inventory.document, missed, WARNING)
+    if own.robot:
+        from multibot_rewrite.description.checks.arguments import missed_by_arguments
+
+        missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
+        findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
     names = _mentionable(inventory, plan.renames)
     values, usual = slot_values(inventory.document.root), usual_names(naming)

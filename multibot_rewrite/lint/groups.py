@@ -37,11 +37,13 @@ GROUPS = (
 )
 
 
-def rules_of(group: Group) -> list[Rule]:
-    """The rules of a group's themes; a group of one file is its own theme."""
+def rules_of(group: Group, of_robots: bool = True) -> list[Rule]:
+    """The rules of a group's themes, those that are ``of_robots`` too; a group of one file is its own
+    theme."""
     module = import_module(f"multibot_rewrite.rules.description.{group.module}")
     themes: tuple[str | ModuleType, ...] = getattr(module, "THEMES", (module,))
-    found = (_loaded(theme, module.__name__) for theme in themes)
+    more = getattr(module, "OF_ROBOTS", ()) if of_robots else ()
+    found = (_loaded(theme, module.__name__) for theme in (*themes, *more))
     return [it for theme in found for it in vars(theme).values() if isinstance(it, Rule)]
 
 
@@ -50,9 +52,10 @@ def _loaded(theme: str | ModuleType, package: str) -> ModuleType:
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
-    """The rules that are on and check a subject of that format, by their codes."""
+    """The rules that are on and check a subject of that format, by their codes; none of those that
+    find nothing without robots where none are named."""
     levels = tuple(settings.levels.items())
-    return _active(settings.select, settings.ignore, levels, format_)
+    return _active(settings.select, settings.ignore, levels, format_, bool(settings.robots))
 
 
 @lru_cache(maxsize=16)
@@ -61,10 +64,11 @@ def _active(
     ignore: tuple[str, ...],
     levels: tuple[tuple[str, str], ...],
     format_: str,
+    of_robots: bool,
 ) -> tuple[Rule, ...]:
     settings = Settings(select=select, ignore=ignore, levels=dict(levels))
     groups = (it for it in GROUPS if it.of_urdf or format_ != URDF)
-    rules = (it for group in groups for it in rules_of(group) if format_ in it.formats)
+    rules = (it for group in groups for it in rules_of(group, of_robots) if format_ in it.formats)
     return tuple(sorted((it for it in rules if is_on(settings, it.code)), key=_code))
 
 

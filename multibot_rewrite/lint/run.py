@@ -11,12 +11,6 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import Finding, by_place
 from multibot_rewrite.base.outside import Asked, digest, recorded
-from multibot_rewrite.lint.cache.cache import (
-    among_from,
-    among_written,
-    findings_from,
-    findings_written,
-)
 from multibot_rewrite.rules.settings import Settings
 
 if TYPE_CHECKING:
@@ -58,12 +52,22 @@ def lint_files(
         for path, (its, asked) in zip(unknown, linted, strict=True):
             found[path] = its
             if cache:
-                cache.keep(_group(path), _key(path, settings), findings_written(its), asked)
+                _keep(cache, path, settings, its, asked)
     return _in_order(_once(it for path in paths for it in found[path] or ()), paths)
 
 
 def _known(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
+    from multibot_rewrite.lint.cache.cache import findings_from
+
     return findings_from(cache.recall(_group(path), _key(path, settings)))
+
+
+def _keep(
+    cache: Cache, path: str, settings: Settings, found: list[Finding], asked: Asked | None
+) -> None:
+    from multibot_rewrite.lint.cache.cache import findings_written
+
+    cache.keep(_group(path), _key(path, settings), findings_written(found), asked)
 
 
 def _group(path: str) -> str:
@@ -73,6 +77,8 @@ def _group(path: str) -> str:
 
 def _key(path: str, settings: Settings) -> str:
     """What a file's findings rest on beside the run and what is read: its place among the others."""
+    from multibot_rewrite.lint.cache.cache import among_written
+
     return digest(repr((path, *among_written(settings, path))).encode())
 
 
@@ -81,6 +87,8 @@ def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) 
     the arguments that xacro files know. A xacro file alone may be included in its package."""
     if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
+    from multibot_rewrite.lint.cache.cache import among_from, among_written
+
     key = digest("\n".join(paths).encode("utf-8", "surrogateescape"))
     known = among_from(cache.recall(AMONG, key), settings) if cache else None
     if known is not None:

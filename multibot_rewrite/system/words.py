@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterable
 
 # They set a robot in motion: of these types always, of the second ones where the name says so.
 _ALWAYS = (
@@ -14,7 +14,7 @@ _BY_NAME = (
     "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "std_msgs/msg/Float64MultiArray",
     "std_msgs/msg/Float64",
 )  # fmt: skip
-_NAMED = re.compile(r"cmd|vel|command|setpoint|speed")
+_NAMED = ("cmd", "vel", "command", "setpoint", "speed")
 # Where to go, and where a robot is: a person or program sends it to one robot.
 _POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
 # Without underscores.
@@ -45,7 +45,7 @@ _OF_ONE_SENSOR = (
 # No sensor's: a person's hand, a clock.
 _NO_SENSOR = ("sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference")
 # What is sent to joints, as Isaac Sim and topic_based_ros2_control have it, is no state of them.
-_TO_JOINTS = re.compile(r"cmd|command|goal|target|desired|reference")
+_TO_JOINTS = ("cmd", "command", "goal", "target", "desired", "reference")
 JOYSTICK = "sensor_msgs/msg/Joy"
 DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
@@ -54,7 +54,11 @@ PLAYER = "rosbag2_player"
 
 def moves(name: str, type_: str) -> bool:
     """Does the topic set a robot in motion?"""
-    return type_ in _ALWAYS or (type_ in _BY_NAME and bool(_NAMED.search(name.rpartition("/")[2])))
+    return type_ in _ALWAYS or (type_ in _BY_NAME and _has(name.rpartition("/")[2], _NAMED))
+
+
+def _has(name: str, words: Iterable[str]) -> bool:
+    return any(it in name for it in words)
 
 
 def is_pose_order(plain: str, type_: str) -> bool:
@@ -82,7 +86,7 @@ def kind_of_data(name: str, type_: str) -> str:
         return MAP if "map" in name.split("/")[-2:] else ""
     if type_ == _TEXT:
         return DESCRIPTION if last.endswith(("description", "urdf")) else ""
-    if type_ == JOINTS and _TO_JOINTS.search(last):
+    if type_ == JOINTS and _has(last, _TO_JOINTS):
         return ""
     sensor = type_.startswith("sensor_msgs/") and not type_.startswith(_NO_SENSOR)
     return _KINDS.get(type_, type_) if sensor or type_ == ODOMETRY else ""

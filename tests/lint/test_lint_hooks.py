@@ -22,13 +22,14 @@ from multibot_rewrite.cli.declared.description import LINT
 from multibot_rewrite.cli.lint import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.version import __version__
 
 pytestmark = pytest.mark.slow
 
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 PAGE = (ROOT / "docs" / "lint.md").read_text()
 HOME = "https://github.com/OWNER/multibot_rewrite"
-REVISION = "v0.1.0"
+REVISION = f"v{__version__}"
 BASH = ("bash", "-e", "-o", "pipefail", "-c")
 IDENTITY = ("-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main")
 HAND = '<joint name="wrist" type="fixed"><parent link="base"/><child link="hand"/></joint>'

@@ -163,6 +163,7 @@ FAULTS = (
     (control("").replace("system", "System"), "word", "ros2_control", "type"),
     ('<material name="m"><color rgba="0 0 0"/></material>', "value", "color", "rgba"),
     ('<material name="m"><color rgba="0 0 0 2"/></material>', "value", "color", "rgba"),
+    ('<material name="m"><color rgba="100 05 0 1"/></material>', "value", "color", "rgba"),
     ('<material name="m"><color rgba="-1 0 0 1"/></material>', "value", "color", "rgba"),
     ('<material name="m"><color rgba="red"/></material>', "value", "color", "rgba"),
 )

@@ -19,6 +19,8 @@ import pytest
 import yaml
 from paths import ROOT
 
+from multibot_rewrite.version import __version__
+
 WORKFLOWS = ROOT / ".github" / "workflows"
 TOOL: dict[str, Any] = runpy.run_path(str(ROOT / ".ci" / "release.py"))
 # What is of a package's build and not of the package.
@@ -242,7 +244,7 @@ def test_a_prepared_release_says_one_version_and_what_is_new(repository: Path) -
     assert "\n7.8.9 (2030-01-02)\n------------------\n* " in changes
     for name in TOOL["PLACES"]:
         assert "7.8.9" in (repository / name).read_text()
-    assert 'version = "0.1.0"' not in (repository / "pyproject.toml").read_text()
+    assert f'version = "{__version__}"' not in (repository / "pyproject.toml").read_text()
 
 
 def test_the_notes_are_those_of_one_version(repository: Path) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import LEVELS, Finding
 from multibot_rewrite.base.record import NamedTuple
@@ -19,16 +19,19 @@ NO_LEVELS: Mapping[str, str] = {}
 _SLOT = "\0"
 
 
-class Selecting(Protocol):
-    """``select`` and ``ignore`` are codes or how they begin, the longer one wins; ``levels`` maps
-    them to levels or ``OFF``."""
+if TYPE_CHECKING:
+    from typing import Protocol
 
-    @property
-    def select(self) -> Sequence[str]: ...
-    @property
-    def ignore(self) -> Sequence[str]: ...
-    @property
-    def levels(self) -> Mapping[str, str]: ...
+    class Selecting(Protocol):
+        """``select`` and ``ignore`` are codes or how they begin, the longer one wins; ``levels`` maps
+        them to levels or ``OFF``."""
+
+        @property
+        def select(self) -> Sequence[str]: ...
+        @property
+        def ignore(self) -> Sequence[str]: ...
+        @property
+        def levels(self) -> Mapping[str, str]: ...
 
 
 class Selection(NamedTuple):

@@ -21,12 +21,12 @@ from multibot_rewrite.description.readback.meeting import (
     said,
     same_for_all,
 )
+from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
 from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
 from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.system.records import KINDS
 
 LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ALL = "all robots would"
@@ -148,7 +148,7 @@ def _changed(
 
 def _alike(reading: Reading, robot: str) -> bool:
     """Are there topics that differ in the place of the robot's name alone?"""
-    topics = {it.name for it in reading.names if it.kind in KINDS}
+    topics = {it.name for it in reading.names if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
     return len(bare) < len(topics)
 

@@ -68,10 +68,7 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
         if not _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors()):
             section, known = plugin_section(plugin, vocabulary)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
-    for system in root.iter("ros2_control"):
-        class_ = hardware_class(system)
-        if class_:
-            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
+    yield from hardware_parts(root, vocabulary)
     for sensor in root.iter("sensor"):
         type_ = sensor.get("type", "").strip()
         if type_ and _is_simulated(sensor):
@@ -81,6 +78,14 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
         uri = child_text(include, "uri")
         if uri and next(include.iterancestors("model", "gazebo"), None) is not None:
             yield ActivePart(INCLUDE, include, uri, None)
+
+
+def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
+    """The hardware classes of a description."""
+    for system in root.iter("ros2_control"):
+        class_ = hardware_class(system)
+        if class_:
+            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
 
 
 def plugin_name(plugin: _Element) -> str:

@@ -118,7 +118,7 @@ def node_of(
         name,
         namespace,
         rules,
-        tuple(_by_themselves(endpoints, section, bare, release, wheels_in(plugin))),
+        tuple(_by_themselves(endpoints, section, bare, release, plugin)),
         tuple(_stems(plugin, section, bound)),
         frames,
         tuple(_sends(plugin, section, frames, links)),
@@ -234,15 +234,18 @@ def _by_themselves(
     section: VocabularySection,
     bare: BoundNode,
     release: str,
-    may_drive: bool,
+    plugin: _Element,
 ) -> Iterator[ReadEndpoint]:
     """The endpoints with what controllers publish under the names they have without any rule, in a
     release in which they take none of the plugin that loads them."""
-    apart = section.process_wide and not controller_way(release).of_manager
+    if not section.process_wide:
+        yield from endpoints
+        return
+    may_drive, of_manager = wheels_in(plugin), controller_way(release).of_manager
     for it in endpoints:
-        if section.process_wide and it.name in TF_TOPICS and not may_drive:
+        if it.name in TF_TOPICS and not may_drive:
             continue
-        if apart and it.role == PUBLISHES:
+        if not of_manager and it.role == PUBLISHES:
             yield it._replace(full=full_name(it.name, it.kind, bare), of_controllers=True)
         else:
             yield it

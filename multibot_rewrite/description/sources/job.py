@@ -13,7 +13,6 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.sources.known_arguments import joined
 from multibot_rewrite.description.sources.own_names import (
     OF_ALL,
     Arguments,
@@ -183,8 +182,13 @@ def reader(
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
     """An argument is for a URDF, its SRDF, or both."""
     each = [it.known for it in texts if it.known is not None]
-    known, files = joined(each), tuple(path for it in texts for path in it.read)
-    return FilesRead(files, known.names, known.lacks(sorted(args)) if each else ())
+    files = tuple(path for it in texts for path in it.read)
+    if not each:
+        return FilesRead(files)
+    from multibot_rewrite.description.sources.known_arguments import joined  # of xacros alone
+
+    known = joined(each)
+    return FilesRead(files, known.names, known.lacks(sorted(args)))
 
 
 def job_for(

@@ -17,7 +17,6 @@ from operator import sub
 from lxml import etree
 
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
@@ -119,6 +118,8 @@ def _refuse_other_kinds(source: bytes, file: str) -> None:
     """What is no XML at all is told by what it is."""
     text = source[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
     if text and not text.startswith(b"<"):
+        from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
+
         refuse_others(source, file, *DESCRIPTIONS, SRDF)
 
 

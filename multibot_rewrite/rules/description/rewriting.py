@@ -24,6 +24,7 @@ from multibot_rewrite.description.checks.unknown import unknown_parts
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
+from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
 
@@ -61,9 +62,14 @@ def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
     return audit(subject.inventory, subject.tree)
 
 
+@memoized
+def _unknown_parts(subject: Subject) -> tuple[Problem, ...]:
+    return tuple(unknown_parts(subject.inventory, subject.tree))
+
+
 def _unknown(code: str, subject: Subject) -> Iterator[Problem]:
     """What runs in a document and is not known, of one code."""
-    return (it for it in unknown_parts(subject.inventory, subject.tree) if it.code == code)
+    return (it for it in _unknown_parts(subject) if it.code == code)
 
 
 unknown_plugin = rule(

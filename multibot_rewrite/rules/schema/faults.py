@@ -122,13 +122,14 @@ def _to_check(
 
 
 def _with_odd_values(
-    alike: Sequence[etree._Element], typed: Iterable[tuple[int, str]]
+    alike: Sequence[etree._Element], typed: Iterable[tuple[int, Kind]]
 ) -> Iterable[etree._Element]:
     """Elements of the same attributes, looked at by columns: most values come again and again."""
     columns = list(zip(*[it.values() for it in alike], strict=True))
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
-        odd = {value for value in set(columns[at]) if not is_fine(kind, value)}
+        values = set(columns[at]).difference(kind.choices)
+        odd = {value for value in values if not is_fine(kind.type, value)}
         if odd:
             pairs = zip(alike, columns[at], strict=True)
             found |= {element: None for element, value in pairs if value in odd}

@@ -182,8 +182,8 @@ def section_of(element: etree._Element, known: Schema) -> Section | None:
 @lru_cache(maxsize=2048)
 def typed_attributes(
     version: Version, name: str, keys: tuple[str, ...]
-) -> tuple[tuple[int, str], ...] | None:
-    """Which attributes have a type, and which; None where one of them is a fault itself."""
+) -> tuple[tuple[int, Kind], ...] | None:
+    """Which attributes have a type, and what they hold; None where one of them is a fault itself."""
     section = schema(version).sections[name]
     known = section.attributes
     if any(f"@{key}" in section.later for key in keys):
@@ -194,8 +194,9 @@ def typed_attributes(
         return None
     if any(kind.required and key not in keys for key, kind in known.items()):
         return None
-    types = [known[key].type if key in known else "" for key in keys]
-    return tuple((at, kind) for at, kind in enumerate(types) if kind)
+    return tuple(
+        (at, known[key]) for at, key in enumerate(keys) if key in known and known[key].type
+    )
 
 
 def sections_below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:

@@ -10,18 +10,18 @@ from math import isfinite
 from multibot_rewrite.base.lazy import lazy_compile
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
-_UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
-# Digits that are not all 0.
-_ABOVE = r"\+?(?=[\d.]*[1-9])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d)?"
+_UNIT = r"(?:0+(?:\.\d*)?|\.\d+|1(?:\.0*)?)"
 # What most values look like. urdfdom accepts spaces before a single number and none after it.
+_ONE = lazy_compile(rf" *{_SCALAR}", re.ASCII)
+_THREE = lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII)
 FINE = {
-    "number": lazy_compile(rf" *{_SCALAR}", re.ASCII),
-    "numbers": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
+    "number": _ONE,
+    "numbers": _THREE,
     "rgba": lazy_compile(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
     "quaternion": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{3}} *", re.ASCII),
-    "unsigned": lazy_compile(rf" *(?!-){_SCALAR}", re.ASCII),
-    "positive": lazy_compile(rf" *{_ABOVE}", re.ASCII),
-    "positives": lazy_compile(rf" *{_ABOVE}(?: +{_ABOVE}){{2}} *", re.ASCII),
+    "unsigned": _ONE,
+    "positive": _ONE,
+    "positives": _THREE,
     "version": lazy_compile(r"1\.[0-2]", re.ASCII),
     "filled": lazy_compile(r"\S.*"),
 }
@@ -44,7 +44,12 @@ _UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 
 def is_fine(kind: str, value: str) -> bool:
     """Does a value look like most correct ones? (Others may be correct as well.)"""
-    return len(value) <= _LONG and kind in FINE and bool(FINE[kind].fullmatch(value))
+    if len(value) > _LONG or kind not in FINE or FINE[kind].fullmatch(value) is None:
+        return False
+    if kind == "unsigned":
+        return not value.lstrip().startswith("-")
+    # Each number has a digit that is not 0 in front of its exponent, and no minus.
+    return kind not in _BEYOND or all(it.strip("+0.")[:1].isdigit() for it in value.split())
 
 
 def shortened(text: str) -> str:

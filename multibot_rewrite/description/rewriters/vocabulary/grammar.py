@@ -70,8 +70,9 @@ _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
+_BARE_OPENS = ("nothing", "model", "namespace", "world", "unknown")
 _OPENS = lazy_compile(
-    r"nothing|model|namespace|world|unknown|(address|file)(?:\+([1-9]\d*))?:(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
+    r"(address|file)(?:\+([1-9]\d*))?:(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
 )
 _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
@@ -237,7 +238,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
-    wrong = [word for word in words[1:] if key == "opens" and not _OPENS.fullmatch(word)]
+    wrong = [word for word in words[1:] if key == "opens" and not _opens(word)]
     if wrong:
         raise VocabularyError(
             f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
@@ -309,8 +310,12 @@ def is_step(text: str) -> bool:
 
 def split_opens(word: str) -> tuple[str, ...]:
     """Kind, step, conditions, path and default of a word of ``opens:``; empty without a path."""
-    found = _OPENS.fullmatch(word)
+    found = None if word in _BARE_OPENS else _OPENS.fullmatch(word)
     return found.groups(default="") if found else ("", "", "", "", "")
+
+
+def _opens(word: str) -> bool:
+    return word in _BARE_OPENS or _OPENS.fullmatch(word) is not None
 
 
 @lru_cache(maxsize=PATHS)

@@ -14,7 +14,6 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import (
     read_header,
     read_section,
 )
-from multibot_rewrite.description.rewriters.vocabulary.merging import merge
 from multibot_rewrite.description.rewriters.vocabulary.values import (
     Value,
     Values,
@@ -82,6 +81,8 @@ class Vocabulary:
             if new.ros in ("", old.ros) and (self.release or new.releases == old.releases)
         ]
         for at in same:
+            from multibot_rewrite.description.rewriters.vocabulary.merging import merge
+
             found[at] = merge(found[at], new)
         if not same:
             found.append(new)

@@ -9,5 +9,6 @@ THEMES = (
     ".resources",
     ".prefixes",
     ".named_robots",
-    ".meeting",
 )
+# The same, of rules that find nothing where no robots are named.
+OF_ROBOTS = (".meeting",)

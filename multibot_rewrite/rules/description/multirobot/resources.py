@@ -13,8 +13,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import (
     ADDRESS,
     FILE,
-    HARDWARE,
-    active_parts,
+    hardware_parts,
     opened,
 )
 from multibot_rewrite.description.readback.parameters import given_at
@@ -75,8 +74,8 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
 
 def _usual_device(subject: Subject) -> Iterator[Problem]:
     """Addresses and files that hardware opens where the description names none."""
-    for part in active_parts(subject.document.root, subject.tree.vocabulary):
-        if part.kind == HARDWARE and part.section is not None:
+    for part in hardware_parts(subject.document.root, subject.tree.vocabulary):
+        if part.section is not None:
             for kind, value, path in opened(part.element, part.section):
                 if kind in (ADDRESS, FILE) and not any(given_at(part.element, path)):
                     message = f"{value!r} is the {kind} of every robot: {path} is not given"

@@ -30,10 +30,10 @@ from multibot_rewrite.rules.description.references.shared import (
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.system.records import EXPORTS, Interface
 
 if TYPE_CHECKING:
     from multibot_rewrite.rules.system.interfaces import Missing
+    from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
@@ -52,7 +52,9 @@ _POSITION = block('<joint name="j">', '<command_interface name="position"/>')
 
 def _not_exported(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
-        from multibot_rewrite.rules.system.interfaces import missing  # few descriptions need it
+        # Few descriptions need them.
+        from multibot_rewrite.rules.system.interfaces import missing
+        from multibot_rewrite.system.records import EXPORTS
 
         chosen = _chosen(subject) if any(missing(known)) else ()
         rest = [it for it in known if it.role == EXPORTS or not _said(it).startswith(chosen)]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from math import pi, radians
 
 from lxml.etree import _Element
@@ -200,11 +201,16 @@ def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
 def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Rotations of more than a turn by a round number: nobody writes 90 radians."""
     for origin in subject.elements.every("origin"):
-        found = numbers(origin.get("rpy", "")) or ()
-        odd = next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
+        odd = _turned(origin.get("rpy", ""))
         if odd is not None:
             message = f"rpy has {odd:g}, which is more than a turn: it is in radians"
             yield Problem(origin, message, "rpy", f"{odd:g} degrees are {radians(odd):.4g}")
+
+
+@lru_cache(maxsize=1024)  # most rotations come again and again
+def _turned(rpy: str) -> float | None:
+    found = numbers(rpy) or ()
+    return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
 
 
 def _is_degrees(angle: float) -> bool:
