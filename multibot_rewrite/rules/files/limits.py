@@ -47,7 +47,7 @@ _ARM = """\
 """
 _BESIDE = {
     "package.xml": "<package><name>arm</name></package>",
-    "urdf/arm.urdf": _ARM,
+    "urdf/rover.urdf": _ARM,
     "arm.srdf": '<robot name="arm"><group name="arm"><joint name="lift"/></group></robot>',
 }
 
@@ -130,7 +130,9 @@ def _solver(group: str) -> str:
 def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
     """Nothing where an SRDF makes names of its groups when it is expanded."""
     sites = [it for it in file.names if it.kind == "group" and it.is_sure]
-    asked = bool(sites) and not file.is_certain and not is_for_ros_1(file.file)
+    # A build that has the SRDF knows its groups, and says it as of any name.
+    told = file.is_certain and bool(file.declared.get("group"))
+    asked = bool(sites) and not told and not is_for_ros_1(file.file)
     groups = _groups(file.file) if asked else frozenset()
     for it in sites if groups else ():
         if it.text and it.text not in groups and it.text.isidentifier():
