@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
+    from multibot_rewrite.description.joining.part import Part
     from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.fleet.file.system_sources import (
         compare,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
     from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.refactor.adopt import Adopted, adopt
+    from multibot_rewrite.refactor.join import Joined, join, split
     from multibot_rewrite.refactor.rename import Renaming, rename_symbol
     from multibot_rewrite.system.records import System
 
@@ -43,9 +45,11 @@ __all__ = [
     "Change",
     "Finding",
     "InputError",
+    "Joined",
     "LoadedFleet",
     "LoadedRobot",
     "MultibotError",
+    "Part",
     "ProofError",
     "Renaming",
     "Rewrite",
@@ -58,6 +62,7 @@ __all__ = [
     "adopt",
     "compare",
     "explain",
+    "join",
     "judge",
     "load_fleet",
     "rename_symbol",
@@ -65,6 +70,7 @@ __all__ = [
     "rewrite_all",
     "rewrite_file",
     "rewrite_files",
+    "split",
     "strip",
     "system_of_bag",
     "system_of_description",
@@ -82,6 +88,8 @@ _HOMES = {
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
     **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
     **dict.fromkeys(("Adopted", "adopt"), "refactor.adopt"),
+    **dict.fromkeys(("Joined", "join", "split"), "refactor.join"),
+    "Part": "description.joining.part",
     **dict.fromkeys(("Renaming", "rename_symbol"), "refactor.rename"),
     "LoadedRobot": "fleet.robots.loaded_robot",
     "System": "system.records",

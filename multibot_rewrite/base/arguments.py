@@ -108,6 +108,12 @@ def _names(what: str, value: object) -> object:
     return tuple(_text(f"{what}[{at}]", it) for at, it in enumerate(value))
 
 
+def _records(what: str, value: object) -> object:
+    if isinstance(value, Iterable) and not isinstance(value, str | bytes | bytearray | Mapping):
+        return tuple(value)
+    raise _wrong(what, value, "write a list")
+
+
 def _texts_by_name(what: str, value: object) -> object:
     if not isinstance(value, Mapping):
         raise _wrong(what, value, "write a dict of str")
@@ -160,6 +166,7 @@ READERS: Mapping[str, Reader] = {
     "bool": _switch,
     "int": _number,
     "Iterable[str]": _names,
+    "Iterable[Part]": _records,
     "Mapping[str, str] | None": _or_none(_texts_by_name),
     "str | os.PathLike[str]": _path,
     "Source": _source,

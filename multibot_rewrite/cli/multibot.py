@@ -57,7 +57,6 @@ def overview(colour: str) -> str:
     text = "\n".join(
         (
             "usage: multibot COMMAND [options]",
-            "",
             "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
             "",
             "examples:",

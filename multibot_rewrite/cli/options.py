@@ -108,6 +108,11 @@ def repeated(name: str, metavar: str, about: str) -> Option:
     )
 
 
+def each(name: str, metavar: str, about: str) -> Option:
+    """An option that is written once for each of several things, in their order; it may be empty."""
+    return Option((name,), about, {"metavar": metavar, "action": "append", "default": []})
+
+
 def rare(option: Option) -> Option:
     """An option that ``--help`` does not show."""
     return option._replace(shown=False)

@@ -15,9 +15,10 @@ from itertools import chain
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import PREFIX, Naming, affix, make_naming
+from multibot_rewrite.base.naming import affix
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -42,11 +43,6 @@ from multibot_rewrite.refactor.source_edits import (
     first_difference,
 )
 
-# What carries the robot's name where its topics have a namespace; the model's name is its spawner's.
-_KINDS = (
-    "link", "joint", "frame", "sensor", "light", "transmission", "actuator", "hardware", "gpio",
-    "shape",
-)  # fmt: skip
 _PARTS = ("link", "joint")
 NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
 TRIED = "robot1_"
@@ -159,16 +155,11 @@ def _texts(found: Iterable[Description]) -> dict[str, bytes]:
     return {os.path.realpath(path): data for path, data in read}
 
 
-def _naming() -> Naming:
-    named = make_naming("frames-per-robot", PREFIX)
-    return named._replace(separators=dict.fromkeys(_KINDS, ""))
-
-
 def _changes(it: Description) -> Iterator[Change]:
     """Where the prefix goes in the values of a description. A link or joint that it does not have is
     one of another description that includes the same file."""
     document, claims, *_ = it.inventory
-    naming = _naming()
+    naming = prefixing()
     spellings = make_renames(it.inventory, naming).values
     for claim, names, spelling in zip(claims, it.inventory.names, spellings, strict=True):
         places = [found.affix.at for found in spelling]
@@ -199,8 +190,8 @@ def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> Ite
 def _not_written(it: Description) -> Iterator[Left]:
     """Names that a plugin takes where none is written: they need an element of their own."""
     document, _, _, declared, *_ = it.inventory
-    for one in insertions(it.inventory.served, declared, _naming()):
-        if one.kind in _KINDS and it.read:
+    for one in insertions(it.inventory.served, declared, prefixing()):
+        if one.kind in PREFIXED and it.read:
             origin = it.read.origins.of(document.elements.index(one.parent))
             source = it.read.sources[origin.file] if origin else b""
             where = (origin.file, *locate(source, origin.start)) if origin else (it.path,)

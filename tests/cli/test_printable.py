@@ -134,6 +134,7 @@ LINES = (
     *(["check-launch", f"{EVIL}.launch.py"], ["check-launch", EVIL, "x.launch.py"]),
     *(["view", FILE, "-o", f"{EVIL}.html"], ["view", f"{EVIL}.yaml"], ["view", FILE, EVIL]),
     *(["adopt", "."], ["adopt", EVIL], ["adopt", ".", EVIL], ["rename", EVIL, "b", "."]),
+    *(["join", FILE, EVIL, "--at", EVIL], ["join", FILE, FILE, "--at", EVIL, "--prefix", "a_"]),
     *(["rename", "a", EVIL, "."], ["rename", "a", "b", EVIL]),
     *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
 )

@@ -36,6 +36,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "adopt": (multibot.main, ["adopt", "."], 2),
+    "join": (multibot.main, ["join", PATH, PATH, "--at", "base"], 2),
     "rename": (multibot.main, ["rename", "a", "b", "."], 2),
     "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from multibot_rewrite.cli.declared.description import ADOPT, LINT, POSTFIX, RENAME
+from multibot_rewrite.cli.declared.description import ADOPT, JOIN, LINT, POSTFIX, RENAME
 from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, VIEW
 from multibot_rewrite.cli.declared.graph import CHECK, CHECK_LAUNCH, LEARN, SNAPSHOT
 from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
@@ -24,6 +24,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             EXPLAIN,
             INIT,
             INSPECT,
+            JOIN,
             LEARN,
             PLAN,
             REHEARSE,

@@ -23,6 +23,7 @@ from multibot_rewrite.cli.options import (
     OptionGroup,
     argument,
     choice,
+    each,
     output,
     path_option,
     rare,
@@ -251,4 +252,75 @@ ADOPT = Command(
     more="Proved for each description: with an empty prefix the result is what it was, with"
     " prefix:=robot1_ every name of a link, joint, frame, sensor and of ros2_control has it."
     " Launch files are left.",
+)
+JOIN = Command(
+    "join",
+    "join",
+    "%(prog)s FILE [NAME:=VALUE...] FILE... --at LINK [options]",
+    "Join robot descriptions: a gripper on an arm, an arm on a base.",
+    (
+        Example("multibot join arm.urdf gripper.urdf --at tool0 -o robot.urdf"),
+        Example("multibot join arm.urdf hand.urdf --at tool0 --prefix hand_"),
+        Example('multibot join base.urdf arm.urdf --at plate --pose "0.2 0 0 0 0 1.57"'),
+        Example("multibot join robot.urdf.join -o robot.urdf", "parts listed in a file"),
+        Example(
+            "multibot join base.urdf arm.urdf.xacro type:=ur5e arm.urdf.xacro type:=ur3e"
+            " --at left_plate --at right_plate --prefix left_ --prefix right_",
+            "two arms on a base",
+        ),
+        Example("multibot join robot.urdf --split parts/", "the parts again, byte by byte"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "words",
+                    "FILE",
+                    "the first part, then those that are fixed to it or to one before;"
+                    " NAME:=VALUE behind a xacro is for it",
+                    "+",
+                ),
+                VOCABULARY,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        OptionGroup(
+            "parts, once for each behind the first, in their order",
+            (
+                each("--at", "LINK", "the link that it is fixed to, by its name in the result"),
+                rare(
+                    each(
+                        *("--pose", "POSE"),
+                        '"x y z roll pitch yaw" of its root there; metres, radians',
+                    )
+                ),
+                each("--prefix", "WORD", "what goes before its names, such as left_"),
+            ),
+        ),
+        OptionGroup(
+            'files beside, once for each part, the first one too; each may be ""',
+            (
+                rare(each("--srdf", "FILE", "the SRDF of the part")),
+                rare(each("--controllers", "A,B", "parameter files of its controllers")),
+            ),
+        ),
+        OptionGroup(
+            "output",
+            (
+                output("write the result there"),
+                path_option("--split", "write the parts of a joined FILE into a folder", "FOLDER"),
+            ),
+        ),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use, a file that cannot be read, or parts that cannot be joined",
+    more="Proved on each run: every part taken out of the result again is what went in, and no joint"
+    " inside a part has changed. Names that two parts have are refused: give one a --prefix."
+    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part, the"
+    " first one too, join these as well, into PATH.srdf and PATH_controllers.yaml. A .join file says"
+    " all of it as YAML, and every command that takes a description takes one:"
+    "\n\n  join:\n    - {description: arm.urdf}\n"
+    "    - {description: hand.urdf, prefix: hand_, at: {parent: tool0, pose: {z: 0.1}}}",
 )

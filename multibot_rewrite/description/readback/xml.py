@@ -71,6 +71,13 @@ def elements_at(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]
             yield from elements_at(child, steps[1:])
 
 
+def plain(element: _Element) -> tuple[object, ...]:
+    """An element as its readers see it: without comments, blanks between elements and the order of
+    attributes."""
+    parts = tuple(plain(it) for it in element.iterchildren("*"))
+    return element.tag, frozenset(element.items()), text_of(element), parts
+
+
 def is_on(text: str | None, usual: bool) -> bool:
     """A boolean parameter: case does not count; any other text leaves the default."""
     known = {"true": True, "1": True, "false": False, "0": False}

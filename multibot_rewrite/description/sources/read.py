@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 Source = str | bytes | os.PathLike[str]
 XACRO = ".xacro"
+# A list of parts, as YAML.
+JOIN = ".join"
 _MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
 _COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
@@ -82,6 +84,10 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         data, texts = expand_whole(path, xacro_args, reach=TRUSTED if trust else BOUNDED)
         known = known_arguments(texts.values()) if xacro_args else KnownArguments()
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
+    if path.endswith(JOIN) and not xacro_args:
+        from multibot_rewrite.description.joining.from_file import read_joined
+
+        return read_joined(path, trust)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
     return SourceText(read_model(path), path, (path,))

@@ -166,11 +166,16 @@ def _refuse_wide(document: Document) -> None:
 
 def start_offsets(source: bytes) -> list[int]:
     """The byte offsets of the start tags of a well-formed text, in document order."""
+    source = silenced(source)
+    return [found.start() for found in _OPENING.finditer(source)]
+
+
+def silenced(source: bytes) -> bytes:
+    """The text with blanks, as many, for comments, CDATA and processing instructions."""
     after_declaration = 5 if source.startswith(b"<?xml ") else 0
     if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
-        # Blanks of the same length, so that every offset still holds.
-        source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
-    return [found.start() for found in _OPENING.finditer(source)]
+        return _SILENT.sub(lambda found: b" " * len(found[0]), source)
+    return source
 
 
 def without_comments(source: bytes) -> bytes:

@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.fleet_file import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 
@@ -67,8 +67,8 @@ def _told_apart(path: str, alike: Collection[str]) -> str:
 
 
 def expanded_name(path: str) -> str:
-    """The file's name once xacro is expanded."""
-    name = os.path.basename(path).removesuffix(".xacro")
+    """The file's name once xacro is expanded, or parts are joined."""
+    name = os.path.basename(path).removesuffix(XACRO).removesuffix(JOIN)
     return name if "." in name else f"{name}.urdf"
 
 

@@ -15,6 +15,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.joining.semantic import without_virtual_joints, xml_text
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.fleet.file.cell_file import Cell
 from multibot_rewrite.fleet.file.fleet_file import Pose
@@ -51,7 +52,7 @@ def joined_urdf(name: str, world: str, arms: Sequence[Arm]) -> bytes:
         root.extend(list(_parts(own, arm, world if base == world else "", materials)))
         root.extend(mounted)
     _check_names(root, _NAMED, arms)
-    return _text(root)
+    return xml_text(root)
 
 
 def joined_srdf(cell: Cell, arms: Sequence[Arm]) -> bytes:
@@ -63,19 +64,17 @@ def joined_srdf(cell: Cell, arms: Sequence[Arm]) -> bytes:
     root = etree.Element("robot", name=cell.name)
     for arm in arms:
         own = read_xml(arm.srdf, arm.place)
-        virtual = {it.get("name") for it in own.iterchildren("virtual_joint") if _stands(it, arm)}
-        for above in (*own.findall("group"), *own.findall("group_state")):
-            for it in above.findall("joint"):
-                if it.get("name") in virtual:
-                    above.remove(it)
-        root.extend([it for it in own if it.tag != "virtual_joint"])
+        for it in own.iterchildren("virtual_joint"):
+            _check_stands(it, arm)
+        without_virtual_joints(own)
+        root.extend(list(own))
     known = [it.get("name", "") for it in root.iterchildren("group")]
     for name, parts in cell.groups.items():
         _check_parts(cell, name, parts, known)
         group = etree.SubElement(root, "group", name=name)
         group.extend(etree.Element("group", name=it) for it in parts)
     _check_names(root, ("group", "end_effector"), arms)
-    return _text(root)
+    return xml_text(root)
 
 
 def _root_link(own: _Element, arm: Arm) -> str:
@@ -133,13 +132,12 @@ def _rename_material(own: _Element, name: str, new: str) -> None:
             it.set("name", new)
 
 
-def _stands(joint: _Element, arm: Arm) -> bool:
+def _check_stands(joint: _Element, arm: Arm) -> None:
     if joint.get("type") != "fixed":
         what = (
             f"the virtual joint {joint.get('name')!r} of robot {arm.name!r} is {joint.get('type')}"
         )
         raise InputError(f"{arm.place}: cell: {what}; an arm of a cell stands: make it fixed")
-    return True
 
 
 def _check_parts(cell: Cell, name: str, parts: Sequence[str], known: Sequence[str]) -> None:
@@ -162,8 +160,3 @@ def _check_names(root: _Element, tags: Iterable[str], arms: Sequence[Arm]) -> No
                 what = f"two robots have the {tag} {name!r}"
                 raise InputError(f"{arms[0].place}: cell: {what}; {hint}")
             seen.add(name)
-
-
-def _text(root: _Element) -> bytes:
-    etree.indent(root)
-    return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"

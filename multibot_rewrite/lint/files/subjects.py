@@ -17,8 +17,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import package_folder
+from multibot_rewrite.description.sources.read import JOIN, has_xacro
 from multibot_rewrite.description.sources.read import XACRO as ENDING
-from multibot_rewrite.description.sources.read import has_xacro
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.description.steps.document import Document, read_document
@@ -47,6 +47,12 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     What others include is linted where it is used. Such a xacro file, or one that only defines what
     others use, is not expanded alone, and may have any root element.
     """
+    if path.endswith(JOIN):
+        from multibot_rewrite.description.joining.from_file import read_joined  # few are joined
+
+        made = read_joined(path, settings.trust)
+        yield make_subject(read_document(made.data, made.file), settings)
+        return
     document = read_document(data, path)
     xacro, included = path.endswith(ENDING) or has_xacro(data), path in settings.included
     part = included or (xacro and _only_defines(document.root))

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``multibot join``: several descriptions become one robot, or are taken out of it again."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.walk import check_link, check_target
+from multibot_rewrite.description.joining.from_file import parts_of
+from multibot_rewrite.description.joining.part import ZERO, Part
+from multibot_rewrite.description.sources.read import JOIN
+from multibot_rewrite.refactor.join import Joined, join, split
+
+# Options that are written for each part.
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the joined description, or its parts; returns the exit code."""
+    options.vocabulary = [*configured_vocabulary(options.words[0]), *options.vocabulary]
+    return (_split if options.split else _join)(options)
+
+
+def _join(options: argparse.Namespace) -> int:
+    parts = list(_parts(options))
+    made = join(
+        parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
+    )
+    _deliver(options, made, parts)
+    for it in (*map(str, made.findings), *made.notes):
+        note(options, it)
+    why = ", ".join(made.not_proved)
+    end = f"joined, not proved: {why}" if why else "joined; proved"
+    note(options, f"{', '.join(made.parts)}: {end}")
+    return DONE
+
+
+def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
+    """The description, with the files that belong to it beside it."""
+    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
+    more = [(ending, data) for ending, data in beside if data]
+    if more and not goes_to_file(options):
+        raise UsageError("several files are made: name the description with -o robot.urdf")
+    if not goes_to_file(options):
+        deliver(options, made.data)
+        return
+    stem = options.output.removesuffix(".urdf")
+    items = [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)]
+    _write(options, items, [*options.words, *_files(parts)])
+
+
+def _files(parts: Sequence[Part]) -> Iterator[str]:
+    for it in parts:
+        yield from map(str, filter(None, (it.description, it.srdf, *it.controllers)))
+
+
+def _write(
+    options: argparse.Namespace, items: Sequence[tuple[str, bytes]], read: Sequence[str]
+) -> None:
+    """Write all or none, and nothing over a file that is read."""
+    for path, _ in items:
+        check_target(path, read, "--split" if options.split else "--output")
+        check_link(path)
+    write_files(options, items)
+
+
+def _split(options: argparse.Namespace) -> int:
+    if len(options.words) != 1:
+        raise UsageError("--split takes one file, which multibot join made")
+    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
+    if given:
+        raise UsageError(f"--{given} is for joining, it cannot go with --split")
+    made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
+    items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
+    _write(options, items, options.words)
+    note(options, f"{options.split}: {', '.join(os.path.basename(path) for path, _ in items)}")
+    return DONE
+
+
+def _parts(options: argparse.Namespace) -> Iterator[Part]:
+    """The parts as the words name them: each file with the xacro arguments behind it."""
+    if options.words[0].endswith(JOIN):
+        yield from _listed(options)
+        return
+    files: list[tuple[str, dict[str, str]]] = []
+    for word in options.words:
+        name, is_argument, text = word.partition(":=")
+        if not is_argument:
+            files.append((word, {}))
+        elif not files:
+            raise UsageError(f"{word}: write it behind the xacro that it is for")
+        else:
+            files[-1][1][name] = text
+    many = len(files)
+    ends = _for_each("--at", options.at, many)
+    poses = _for_each("--pose", options.pose, many)
+    prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
+    srdfs = _of_each("--srdf", options.srdf, many)
+    controllers = _of_each("--controllers", options.controllers, many)
+    every = zip(files, ends, poses, prefixes, srdfs, controllers, strict=True)
+    for (file, given), at, pose, prefix, srdf, yaml in every:
+        where = at, _numbers(pose), prefix
+        yield Part(file, *where, "", given, srdf or None, tuple(filter(None, yaml.split(","))))
+
+
+def _listed(options: argparse.Namespace) -> Sequence[Part]:
+    """The parts that a file lists, which says everything of them."""
+    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
+    if more:
+        raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
+    return parts_of(options.words[0])
+
+
+def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
+    """The value for each part; the first part has none unless there is one for all."""
+    if of_all and len(values) == many:
+        return list(values)
+    return ["", *_of_each(option, values, many - 1, " behind the first")]
+
+
+def _of_each(option: str, values: Sequence[str], many: int, which: str = "") -> list[str]:
+    if not values or len(values) == many:
+        return list(values) or [""] * many
+    what = f"{option} is there {plural(len(values), 'time')} for {plural(many, 'part')}{which}"
+    raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
+
+
+def _numbers(pose: str) -> Sequence[float]:
+    if not pose:
+        return ZERO
+    try:
+        return tuple(map(float, pose.replace(",", " ").split()))
+    except ValueError:
+        raise UsageError(f'--pose "{pose}": write six numbers, "x y z roll pitch yaw"') from None

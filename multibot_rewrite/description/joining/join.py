@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parts -> one description: each text is kept as it is, behind those before it, with a joint between.
+
+The first part's file goes on: its declaration, name and attributes are those of the whole. A root link
+``world`` of a later part is left out, and what stands on it is fixed to ``at`` itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from operator import attrgetter
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import Edit, InputError, UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.description.joining import materials
+from multibot_rewrite.description.joining.blocks import said_once
+from multibot_rewrite.description.joining.fixing import fixed
+from multibot_rewrite.description.joining.kept import (
+    Section,
+    is_joined_whole,
+    placed,
+    section,
+    sections,
+)
+from multibot_rewrite.description.joining.part import (
+    ZERO,
+    Part,
+    ReadPart,
+    check_meeting,
+    read_part,
+    with_names,
+)
+from multibot_rewrite.description.joining.proof import prove
+from multibot_rewrite.description.joining.second_reading import Mounted
+from multibot_rewrite.description.joining.spaces import own_spaces
+from multibot_rewrite.description.joining.spans import Spans
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
+
+JOINED = "the joined description"
+_START = attrgetter("start")
+# So many ends of a robot are offered where none is named.
+_ENDS = 5
+
+
+class JoinedText(NamedTuple):
+    """One description of several: ``notes`` are what a person should know, ``findings`` are about
+    names that have no prefix."""
+
+    data: bytes
+    parts: tuple[Mounted, ...]
+    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
+
+
+class Given(NamedTuple):
+    """A part and the bytes and name of its file."""
+
+    part: Part
+    data: bytes
+    file: str
+
+
+def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
+    """Join descriptions; raises UsageError and InputError in one line, ProofError."""
+    if len(given) < 2:
+        raise UsageError("one description alone: give those that are joined to it, too")
+    parts = [read_part(*it, tree, at == 0) for at, it in enumerate(given)]
+    _check_given(given, parts)
+    known: dict[tuple[str, str], str] = {}
+    with_names(known, parts[0])
+    mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
+    data = parts[0].text
+    notes: list[str] = []
+    for it, part in zip(given[1:], parts[1:], strict=True):
+        check_meeting(part, known)
+        data, made, told = _added(data, it.part, part, parts[0], tree)
+        with_names(known, part)
+        mounted.append(made)
+        notes += told
+    prove(data, mounted, tree)
+    findings = tuple(found for part in parts for found in part.findings)
+    return JoinedText(data, tuple(mounted), tuple(notes), findings)
+
+
+def _check_given(given: Sequence[Given], parts: Sequence[ReadPart]) -> None:
+    if given[0].part.at:
+        raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
+    first = parts[0]
+    before = sections(first.data, first.file) if is_joined_whole(first.data) else [first]
+    names = [it.name for it in (*before, *parts[1:])]
+    twice = next((it for at, it in enumerate(names) if it in names[:at]), None)
+    if twice is not None:
+        raise UsageError(f"two parts are called {twice!r}; give one a name or prefix of its own")
+    for it in given:
+        pose = tuple(it.part.pose)
+        if len(pose) != 6 or not all(
+            isinstance(one, int | float) and isfinite(one) for one in pose
+        ):
+            raise UsageError(f"{it.file}: a pose is six numbers: x y z roll pitch yaw")
+
+
+def _added(
+    data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
+) -> tuple[bytes, Mounted, Sequence[str]]:
+    """The text with one part more."""
+    joined = collect(read_document(data, JOINED), tree)
+    robot = read_robot(joined.document.root)
+    _check_link(spec.at, part, robot)
+    names = materials.other_looks(joined.document.root, part, first.file)
+    text = materials.prefixed(part.text, part.file, part.prefix, names)
+    part = part._replace(inventory=collect(read_document(text, part.file), tree))
+    root, spans = part.inventory.document.root, Spans(part.inventory.document)
+    start, end = spans.inside(root)
+    once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
+    if mount.joint in robot.joint or mount.joint in part.robot.joint:
+        raise InputError(
+            f"{part.file}: joint {mount.joint!r} is there already; name the part otherwise"
+        )
+    edits = [*mount.edits, *materials.repeated(joined.document.root, spans), *once.part]
+    edits += own_spaces(joined.document, spans, edits)
+    made = _edited(text, edits)
+    more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
+    base = _edited(data, once.joined)
+    mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
+    return placed(base, first.name, first.prefix, more), mounted, (*mount.notes, *once.notes)
+
+
+def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
+    return b"".join(cut(text, sorted(edits, key=_START)))
+
+
+def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
+    if at in robot.link:
+        return
+    ends = [it for it in robot.link if it not in robot.below]
+    if not at:
+        some = ", ".join(ends[:_ENDS])
+        raise UsageError(f"{part.file}: name the link that it is fixed to with --at, as {some}")
+    near = did_you_mean_one_of(at, robot.link) or f"it ends in {', '.join(ends[:_ENDS])}"
+    raise UsageError(f"{part.file}: no part before it has a link {at!r}; {near}")

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How a joined text says what it was made of, so that each part can be taken out byte by byte.
+
+A part stands in front of ``</robot>`` of the first one, between two comments:
+
+    <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
+    <!-- multibot end gripper TAIL -->
+
+``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
+tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place:
+
+    <!-- multibot was 1 OLD -->
+
+A comment holds no ``--``, and no colon before a blank: launch files pass a description as YAML.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from urllib.parse import quote, unquote
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.joining.spans import Spans
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.document import read_document, silenced
+
+_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
+_PART = lazy_compile(
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (.*?) -->", re.DOTALL
+)
+_LAST = b"<!-- multibot end "
+_END = _LAST + b"%s "
+_WAS = lazy_compile(rb"<!-- multibot was ([01]) (.*?) -->", re.DOTALL)
+_OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
+_MARKS = lazy_compile(
+    rb"  <!-- multibot (?:base .*?-->\n|part .*?-->)|<!-- multibot (?:was .*?-->|end .*?-->\n)",
+    re.DOTALL,
+)
+_ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
+
+
+class Section(NamedTuple):
+    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
+    ``materials``."""
+
+    name: str
+    prefix: str
+    materials: tuple[str, ...]
+    text: bytes
+
+
+def is_joined(text: bytes) -> bool:
+    """Has it a comment of a join?"""
+    return _OURS.search(text) is not None
+
+
+def is_joined_whole(text: bytes) -> bool:
+    """Is it the result of a join?"""
+    return _BASE.search(text) is not None
+
+
+def without_marks(text: bytes) -> bytes:
+    """The text without the comments of a join: its parts cannot be told any more."""
+    return _MARKS.sub(b"", text)
+
+
+def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
+    """The edit that puts ``new``, an element or nothing, where ``old`` was, and keeps that."""
+    kept = b"<!-- multibot was %d %s -->" % (bool(new), _hidden(old))
+    return Edit(start, end, kept + new, None)
+
+
+def section(it: Section, start: int, end: int) -> bytes:
+    """A part for a joined text; ``start`` and ``end`` are those of what is in its root."""
+    names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
+    words = _words(it.name, prefix=it.prefix, materials=names)
+    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
+    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
+    return first + it.text[start:end] + last
+
+
+def _words(name: str, **more: str) -> bytes:
+    return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
+
+
+def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
+    """The text of the first part, or of parts joined so far, with one more section."""
+    last = text.rfind(_LAST) if is_joined_whole(text) else -1
+    if last >= 0:
+        at = text.index(b" -->\n", last) + len(b" -->\n")
+        return text[:at] + more + text[at:]
+    at = silenced(text).rindex(b"</")
+    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
+    return text[:at] + mark + more + text[at:]
+
+
+def sections(text: bytes, file: str) -> list[Section]:
+    """The parts of a joined text, the first one first; raises InputError."""
+    before = _undone(text, file)
+    mark = _BASE.search(before)
+    if mark is None:
+        raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
+    found = list(_behind(before, mark.end(), file))
+    last = found[-1][1] if found else mark.end()
+    base = before[: mark.start()] + before[last:]
+    name, prefix = ((word or b"").decode() for word in mark.groups())
+    return [Section(name, prefix, (), base), *(it for it, _ in found)]
+
+
+def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[Section, int]]:
+    """Each part that follows, and where it ends."""
+    while part := _PART.match(text, at):
+        name, prefix, materials, head = (word or b"" for word in part.groups())
+        end = _END % name
+        close = text.find(end, part.end())
+        stop = text.find(b" -->\n", close + len(end))
+        if close < 0 or stop < 0:
+            what = f"the comment at the end of part {name.decode()!r} was edited by hand"
+            raise InputError(f"{file}: {what}")
+        tail = text[close + len(end) : stop]
+        whole = _shown(head) + text[part.end() : close] + _shown(tail)
+        names = tuple(unquote(it) for it in materials.decode().split(",") if it)
+        at = stop + len(b" -->\n")
+        yield Section(name.decode(), prefix.decode(), names, whole), at
+
+
+def _undone(text: bytes, file: str) -> bytes:
+    """The text with what was left out or changed in its old place."""
+    spans = Spans(read_document(text, file))
+    edits = [
+        Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
+    ]
+    return b"".join(cut(text, edits))
+
+
+def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
+    if found[1] == b"0":
+        return found.end()
+    element = spans.first_from(found.end())
+    if element is None:
+        raise InputError(f"{file}: what stood behind a comment 'multibot was' was edited by hand")
+    return spans.end_of(element)
+
+
+_SHOWN: Mapping[bytes, bytes] = {b"%25": b"%", b"%2D": b"-", b"%20": b" "}
+_HIDDEN = {shown: hidden for hidden, shown in _SHOWN.items()}
+_CODE = lazy_compile(rb"%25|%2D|%20")
+
+
+def _hidden(text: bytes) -> bytes:
+    return _ESCAPED.sub(lambda it: _HIDDEN[it[0]], text)
+
+
+def _shown(text: bytes) -> bytes:
+    return _CODE.sub(lambda it: _SHOWN[it[0]], text)

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A joined text as its readers see it: every element of every part is there, on the link it should be.
+
+What an earlier part says already may be left out: a material, a block of the whole robot. A part's link
+``world`` gives way to the link that the part is on.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import ProofError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import WORLD
+from multibot_rewrite.description.checks.poses import Pose, pose_of
+from multibot_rewrite.description.checks.rotation import (
+    matrix_of_quaternion,
+    product,
+    quaternion_of_rpy,
+    turned,
+)
+from multibot_rewrite.description.joining.part import ReadPart
+from multibot_rewrite.description.readback.xml import plain, read_xml
+
+_KINDS = ("link", "joint")
+# Metres, and entries of a matrix.
+_ROUNDED = 1e-9
+
+
+class Mounted(NamedTuple):
+    """A part with where it is in the joined robot: fixed to the link ``at`` at a ``pose``, by the new
+    ``joint``, or by its own where that is empty. ``text`` is its text there."""
+
+    part: ReadPart
+    at: str
+    pose: Sequence[float]
+    joint: str
+    text: bytes
+
+    @property
+    def is_without_world(self) -> bool:
+        """Does its link ``world`` give way?"""
+        return bool(self.at) and self.part.root == WORLD
+
+
+def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
+    """Raise ProofError unless the joined description is one tree of all that the parts have."""
+    left = Counter(plain(it) for it in root.iterchildren("*"))
+    wanted: Counter[tuple[str, str]] = Counter()
+    for mounted in parts:
+        file = mounted.part.file
+        own = read_xml(mounted.part.inventory.document.source, file)
+        for it in own.iterchildren("*"):
+            key = plain(it)
+            if left[key]:
+                left[key] -= 1
+            elif not _stands_for_it(it, mounted, root):
+                raise ProofError(f"{file}: <{it.tag}> {it.get('name', '')!r} is not what it was")
+        wanted.update(_names(own))
+        wanted -= Counter([("link", WORLD)] if mounted.is_without_world else [])
+        if mounted.joint:
+            wanted["joint", mounted.joint] += 1
+            _check_joint(mounted, root)
+    found = Counter(_names(root))
+    if found != wanted:
+        kind, name = next(iter((found - wanted) + (wanted - found)))
+        raise ProofError(f"{kind} {name!r} is there {found[kind, name]} times")
+    _check_tree(root)
+
+
+def _names(root: _Element) -> Iterator[tuple[str, str]]:
+    return ((str(it.tag), it.get("name", "")) for it in root.iterchildren(*_KINDS))
+
+
+def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
+    """Is there something in the place of an element of a part?"""
+    name = it.get("name", "")
+    of_world = {"link": name, "gazebo": it.get("reference", "")}.get(str(it.tag)) == WORLD
+    if mounted.is_without_world and of_world:
+        return True
+    if it.tag == "joint":
+        return (
+            mounted.is_without_world and _end(it, "parent") == WORLD and _moved(it, mounted, root)
+        )
+    if it.tag == "material":
+        return any(other.get("name") == name for other in root.iterchildren("material"))
+    return it.tag == "gazebo" and not it.get("reference") and _is_said(it, root)
+
+
+def _is_said(block: _Element, root: _Element) -> bool:
+    """Does the whole say all of a block; of a plugin that is there, all of its parameter files?"""
+    blocks = [it for it in root.iterchildren("gazebo") if not it.get("reference")]
+    said = [it for block in blocks for it in block.iterchildren("*")]
+    for it in block.iterchildren("*"):
+        same = [one for one in said if plain(one) == plain(it)]
+        there = [one for one in said if one.tag == "plugin" == it.tag and _file(one) == _file(it)]
+        files = {plain(file) for one in there for file in one.iterchildren("parameters")}
+        has_files = all(plain(file) in files for file in it.iterchildren("parameters"))
+        if not same and not (there and has_files):
+            return False
+    return True
+
+
+def _file(plugin: _Element) -> str:
+    return plugin.get("filename", "")
+
+
+def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
+    """Is a joint on the world, with all that it has, on the part's link now?"""
+    new = next((it for it in root.iterchildren("joint") if it.get("name") == old.get("name")), None)
+    if new is None or _end(new, "parent") != mounted.at:
+        return False
+    same = [[plain(it) for it in one if it.tag not in ("parent", "origin")] for one in (old, new)]
+    inner = pose_of(old.find("origin"))
+    outer = _pose(mounted.pose)
+    if inner is None or same[0] != same[1] or old.attrib != new.attrib:
+        return False
+    x, y, z = (a + b for a, b in zip(outer.at, turned(outer.matrix, inner.at), strict=True))
+    return _is_at(new, Pose((x, y, z), product(outer.matrix, inner.matrix)))
+
+
+def _check_joint(mounted: Mounted, root: _Element) -> None:
+    joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
+    ends = [_end(joint, tag) for tag in ("parent", "child")]
+    fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
+    if not fixed or not _is_at(joint, _pose(mounted.pose)):
+        raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
+
+
+def _is_at(joint: _Element, wanted: Pose) -> bool:
+    found = pose_of(joint.find("origin"))
+    if found is None:
+        return False
+    pairs = zip((found.at, *found.matrix), (wanted.at, *wanted.matrix), strict=True)
+    return all(
+        abs(a - b) < _ROUNDED for one, other in pairs for a, b in zip(one, other, strict=True)
+    )
+
+
+def _pose(six: Sequence[float]) -> Pose:
+    x, y, z, roll, pitch, yaw = map(float, six)
+    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
+
+
+def _end(joint: _Element, tag: str) -> str:
+    found = joint.find(tag)
+    return "" if found is None else found.get("link", "")
+
+
+def _check_tree(root: _Element) -> None:
+    """One root, and each other link below it, by one joint."""
+    links = {it.get("name", "") for it in root.iterchildren("link")}
+    ends = [(_end(it, "child"), _end(it, "parent")) for it in root.iterchildren("joint")]
+    below: dict[str, list[str]] = {}
+    for child, parent in ends:
+        below.setdefault(parent, []).append(child)
+    todo = sorted(links - {child for child, _ in ends})
+    is_one = len(todo) == 1 and len(ends) == len(links) - 1
+    for link in todo:  # grows
+        todo += below.get(link, [])
+        if len(todo) > len(links):
+            break
+    if not is_one or set(todo) != links:
+        raise ProofError("the joined description is not one tree")

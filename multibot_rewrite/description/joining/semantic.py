@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The SRDFs of parts as one: groups, end effectors, states, passive joints and disabled collisions.
+
+A virtual joint says where a robot stands: that of the first part stays, a later part stands on a
+link. Links that meet at a joint between two parts are adjacent; of any other pair of links of two parts
+nothing is known here.
+
+Sources: moveit2 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is the
+root link), moveit_setup_assistant compute_default_collisions.cpp (``computeConnectionGraph``: links
+without geometry between two others leave these adjacent).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+from lxml import etree
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.collect import SRDF, collect, declarations
+from multibot_rewrite.description.steps.document import read_document
+
+_NAMED = ("group", "end_effector")
+_USES = ("group", "group_state")
+
+
+class PartSemantics(NamedTuple):
+    """A part with the bytes of its SRDF, as its prefix spells it, empty where it has none."""
+
+    part: ReadPart
+    data: bytes
+    file: str
+
+
+class JoinedSemantics(NamedTuple):
+    """One SRDF, and what a person should know."""
+
+    data: bytes
+    notes: tuple[str, ...]
+
+
+def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
+    """The SRDF of a part with its prefix; raises InputError."""
+    declared = declarations(part.data, part.file, tree)
+    found = collect(read_document(data, file), tree, declared)
+    if found.format != SRDF:
+        raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF, not an SRDF")
+    if part.prefix:
+        kinds = (*PREFIXED, "group")
+        with in_one_line():
+            prepared = pipeline.prepare(data, file, prefixing(kinds), tree, declared)
+            data = next(pipeline.render(prepared, [part.prefix], again=True))
+    return PartSemantics(part, data, file)
+
+
+def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes) -> JoinedSemantics:
+    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have."""
+    described = read_xml(urdf, "the joined description")
+    root = etree.Element("robot", name=described.get("name", ""))
+    known: dict[tuple[str, ...], str] = {}
+    for at, it in enumerate(parts):
+        own = read_xml(it.data, it.file) if it.data else root.makeelement("robot", {})
+        if at:
+            without_virtual_joints(own)
+        _check_names(own, it, known)
+        root.extend(list(own))
+    pairs = sorted(set(_adjacent(described, parts)))
+    for one, other in pairs:
+        etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason="Adjacent")
+    return JoinedSemantics(xml_text(root), tuple(_unknown(described, parts, pairs)))
+
+
+def without_virtual_joints(own: _Element) -> None:
+    """Take the virtual joints of an SRDF out, and their uses in groups and states."""
+    joints = list(own.iterchildren("virtual_joint"))
+    names = {it.get("name") for it in joints}
+    uses = (it for tag in _USES for above in own.findall(tag) for it in above.findall("joint"))
+    for it in [*joints, *(it for it in uses if it.get("name") in names)]:
+        above = it.getparent()
+        if above is not None:
+            above.remove(it)
+
+
+def xml_text(root: _Element) -> bytes:
+    """A description as it is written, a line an element."""
+    etree.indent(root)
+    return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
+
+
+def _check_names(own: _Element, it: PartSemantics, known: dict[tuple[str, ...], str]) -> None:
+    named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
+    for key in dict.fromkeys(named):
+        if key in known:
+            what = f"{key[0]} {key[1]!r} is in {known[key]}, too; give the part a prefix of its own"
+            raise InputError(f"{it.file}: {what}")
+        known[key] = it.file
+
+
+def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
+    """Pairs of links of two parts with nothing that has a shape between them."""
+    beside: dict[str, set[str]] = defaultdict(set)
+    for joint in described.iterchildren("joint"):
+        one, other = (_link_of(joint, tag) for tag in ("parent", "child"))
+        beside[one].add(other)
+        beside[other].add(one)
+    shaped = _shaped(described)
+    for it in parts:
+        own = set(it.part.robot.link)
+        for link in sorted(own & shaped):
+            for other in _near(link, beside, shaped):
+                if other not in own:
+                    yield min(link, other), max(link, other)
+
+
+def _link_of(joint: _Element, tag: str) -> str:
+    found = joint.find(tag)
+    return "" if found is None else found.get("link", "")
+
+
+def _shaped(described: _Element) -> set[str]:
+    links = described.iterchildren("link")
+    return {it.get("name", "") for it in links if it.find("collision") is not None}
+
+
+def _near(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> Iterator[str]:
+    seen, todo = {link}, [link]
+    for at in todo:  # grows
+        for other in beside[at] - seen:
+            seen.add(other)
+            if other in shaped:
+                yield other
+            else:
+                todo.append(other)
+
+
+def _unknown(
+    described: _Element, parts: Sequence[PartSemantics], pairs: Collection[tuple[str, str]]
+) -> Iterator[str]:
+    """How many pairs of links of two parts MoveIt checks."""
+    shaped = _shaped(described)
+    sizes = [len(shaped & set(it.part.robot.link)) for it in parts]
+    many = (sum(sizes) ** 2 - sum(it * it for it in sizes)) // 2 - len(pairs)
+    if many:
+        what = f"{plural(many, 'pair')} of links of two parts are checked for collisions"
+        yield f"SRDF: {what}; MoveIt's Setup Assistant finds those that never touch"

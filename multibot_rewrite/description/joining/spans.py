@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where whole elements are in the bytes of a document."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+from lxml.etree import _Element
+
+from multibot_rewrite.description.steps.document import Document, silenced, tag_end
+
+
+class Spans:
+    """The place of each element; an element ends before the next one beside it, or before the end tag
+    of the one it is in."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self._silent = silenced(document.source)
+        self._starts = dict(zip(document.elements, document.starts, strict=True))
+
+    def start_of(self, element: _Element) -> int:
+        """The offset of its start tag."""
+        return self._starts[element]
+
+    def end_of(self, element: _Element) -> int:
+        """The offset right after it."""
+        return self._silent.rindex(b">", 0, self._behind(element)) + 1
+
+    def text_of(self, element: _Element) -> bytes:
+        """The bytes of it."""
+        return self.document.source[self.start_of(element) : self.end_of(element)]
+
+    def inside(self, element: _Element) -> tuple[int, int]:
+        """From behind its start tag to its end tag; for one without an end tag both are its end."""
+        start = tag_end(self.document.source, self.start_of(element))
+        end = self.end_of(element)
+        return (start, self._silent.rindex(b"</", 0, end)) if start < end else (end, end)
+
+    def first_from(self, offset: int) -> _Element | None:
+        """The first element that starts there or later."""
+        at = bisect_left(self.document.starts, offset)
+        return self.document.elements[at] if at < len(self.document.elements) else None
+
+    def _behind(self, element: _Element) -> int:
+        """Where something else starts: nothing of the element is there or later."""
+        beside = next(element.itersiblings("*"), None)
+        if beside is not None:
+            return self._starts[beside]
+        above = element.getparent()
+        if above is None:
+            return len(self._silent)
+        return self._silent.rindex(b"</", 0, self.end_of(above))

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Several descriptions become one robot, and are taken out of it again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
+from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
+from multibot_rewrite.description.joining.part import Part, prefixing
+from multibot_rewrite.description.joining.proof import split_text
+from multibot_rewrite.description.joining.semantic import (
+    JoinedSemantics,
+    PartSemantics,
+    joined_srdf,
+    spelled_srdf,
+)
+from multibot_rewrite.description.readback.meeting import meetings, said
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.read import (
+    Source,
+    SourceText,
+    args_for,
+    read_file,
+    read_whole,
+)
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
+
+
+class Joined(NamedTuple):
+    """One robot of several descriptions. ``srdf`` is the SRDF of all that have one, ``controllers``
+    the one file of their controllers' parameters; both are empty where no part has them. ``parts`` are
+    their names; ``notes`` are what was left out and what two parts have in the running system,
+    ``findings`` are about names without the prefix."""
+
+    data: bytes
+    srdf: bytes
+    controllers: bytes
+    parts: tuple[str, ...]
+    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def text(self) -> str:
+        """The description as str, for ``robot_description``; raises nothing."""
+        return self.data.decode()
+
+    @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why a name may lack its prefix, with counts, as ``1 plugin not known``; empty where the join
+        is proved. Raises nothing."""
+        return not_proved(self.findings)
+
+
+@checked
+def join(
+    parts: Iterable[Part], *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+) -> Joined:
+    """Join descriptions: each part after the first is fixed to a link of those before it.
+
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Raises
+    UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
+    name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
+    """
+    wrong = next((it for it in parts if not isinstance(it, Part)), None)
+    if wrong is not None:
+        raise UsageError(f"join(): parts has a {type(wrong).__name__}; write Part('arm.urdf')")
+    given, tree = tuple(parts), builtin_tree(tuple(vocabulary), release_here(distro))
+    texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
+    pairs = zip(given, texts, strict=True)
+    made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
+    semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
+    names = tuple(it.part.name for it in made.parts)
+    told = (*_unread(given, texts), *_relative(made))
+    notes = (*told, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
+    return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
+
+
+@checked
+def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
+    """The parts of what ``join`` made, by name, as they were. Raises InputError for a text that no
+    join made or that was edited where a part cannot be known any more."""
+    read_in = read_whole(source, {})
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    return split_text(read_in.data, read_in.file, tree)
+
+
+def _unread(given: Sequence[Part], texts: Sequence[SourceText]) -> Iterator[str]:
+    """Arguments that no file of a part's xacro has."""
+    for it, text in zip(given, texts, strict=True):
+        for name in text.known.lacks(sorted(it.xacro_args)) if text.known else ():
+            yield f"{text.file}: no file of the xacro has the argument {name}"
+
+
+def _relative(made: JoinedText) -> Iterator[str]:
+    """Meshes and pictures that are looked up from the folder of a part's file."""
+    for it in made.parts:
+        root, file = it.part.inventory.document.root, it.part.file
+        names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
+        found = [name for name in names if name and "://" not in name and name[0] != "/"]
+        if found:
+            what = f"{file}: {found[0]!r} is looked up from the folder of the file"
+            more = f", and {len(found) - 1} more" if len(found) > 1 else ""
+            yield f"{what}{more}; write package://NAME/..."
+
+
+def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:
+    if not any(it.srdf for it in given):
+        return JoinedSemantics(b"", ())
+    parts = []
+    for it, mounted in zip(given, made.parts, strict=True):
+        if it.srdf is None:
+            parts.append(PartSemantics(mounted.part, b"", ""))
+            continue
+        read_in = read_whole(it.srdf, args_for(it.srdf, it.description, it.xacro_args), trust)
+        parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
+    return joined_srdf(parts, made.data)
+
+
+def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:
+    files = []
+    for it, mounted in zip(given, made.parts, strict=True):
+        part = mounted.part
+        before = collect(read_document(part.data, part.file), tree)
+        files += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
+    return joined_files(files) if files else JoinedFiles(b"", ())
+
+
+def _met(made: JoinedText, tree: Tree) -> Iterator[str]:
+    """Topics, nodes and frames that two parts have in the running system."""
+    vocabulary = tree.vocabulary
+    named = {it.part.name: read(it.text, it.part.file, vocabulary).names for it in made.parts}
+    for it in meetings(named, prefixing()):
+        what = said(f"{it.robot} and {it.other}", it.name, it.twin)
+        yield f"{what}; a prefix changes no topics, nodes and ports"

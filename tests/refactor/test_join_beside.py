@@ -1,0 +1,201 @@
+"""SRDFs and controllers' parameters of joined parts: what they become, by hand; what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from lxml import etree
+
+from multibot_rewrite import InputError, Part, join
+from multibot_rewrite.cli.multibot import main
+
+SHAPE = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+ARM = f"""<robot name="arm">
+  <link name="base">{SHAPE}</link><link name="hand">{SHAPE}</link><link name="tool"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/></joint>
+  <joint name="end" type="fixed"><parent link="hand"/><child link="tool"/></joint>
+</robot>
+"""
+GRIPPER = f"""<robot name="gripper">
+  <link name="root"/><link name="palm">{SHAPE}</link><link name="finger">{SHAPE}</link>
+  <joint name="in" type="fixed"><parent link="root"/><child link="palm"/></joint>
+  <joint name="grip" type="continuous"><parent link="palm"/><child link="finger"/></joint>
+</robot>
+"""
+ARM_SRDF = """<robot name="arm">
+  <virtual_joint name="stand" type="fixed" parent_frame="world" child_link="base"/>
+  <group name="arm"><joint name="stand"/><joint name="turn"/></group>
+  <group_state name="home" group="arm"><joint name="turn" value="0"/></group_state>
+  <disable_collisions link1="base" link2="hand" reason="Adjacent"/>
+</robot>
+"""
+GRIPPER_SRDF = """<robot name="gripper">
+  <virtual_joint name="held" type="floating" parent_frame="world" child_link="root"/>
+  <group name="fingers"><joint name="held"/><joint name="grip"/></group>
+  <end_effector name="eef" parent_link="palm" group="fingers"/>
+  <passive_joint name="grip"/>
+  <disable_collisions link1="palm" link2="finger" reason="Adjacent"/>
+</robot>
+"""
+# By hand: the second virtual joint and its uses are gone; hand and palm meet, as MoveIt's Setup
+# Assistant has it, since tool and root have no shape.
+JOINED_SRDF = """<?xml version='1.0' encoding='utf-8'?>
+<robot name="arm">
+  <virtual_joint name="stand" type="fixed" parent_frame="world" child_link="base"/>
+  <group name="arm">
+    <joint name="stand"/>
+    <joint name="turn"/>
+  </group>
+  <group_state name="home" group="arm">
+    <joint name="turn" value="0"/>
+  </group_state>
+  <disable_collisions link1="base" link2="hand" reason="Adjacent"/>
+  <group name="g_fingers">
+    <joint name="g_grip"/>
+  </group>
+  <end_effector name="g_eef" parent_link="g_palm" group="g_fingers"/>
+  <passive_joint name="g_grip"/>
+  <disable_collisions link1="g_palm" link2="g_finger" reason="Adjacent"/>
+  <disable_collisions link1="g_palm" link2="hand" reason="Adjacent"/>
+</robot>
+"""
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: {rate}
+    joint_state_broadcaster: {{type: joint_state_broadcaster/JointStateBroadcaster}}
+    {name}: {{type: joint_trajectory_controller/JointTrajectoryController}}
+# moves
+{name}:
+  ros__parameters:
+    joints: [{joint}]
+    constraints: {{goal_time: 1e-3}}
+"""
+
+
+def parts(prefix: str = "g_") -> list[Part]:
+    return [
+        Part(ARM, srdf=ARM_SRDF),
+        Part(GRIPPER, "tool", prefix=prefix, srdf=GRIPPER_SRDF),
+    ]
+
+
+def files(
+    folder: Path, first: str = "follow", second: str = "follow", rate: int = 100
+) -> list[str]:
+    made = []
+    for name, controller, joint, hertz in (("a", first, "turn", 100), ("b", second, "grip", rate)):
+        path = folder / f"{name}.yaml"
+        path.write_text(CONTROLLERS.format(name=controller, joint=joint, rate=hertz))
+        made.append(str(path))
+    return made
+
+
+def test_one_srdf_has_what_the_parts_have_and_the_pair_that_meets() -> None:
+    made = join(parts())
+    assert made.srdf.decode() == JOINED_SRDF
+    assert made.notes == (
+        "SRDF: 3 pairs of links of two parts are checked for collisions; "
+        "MoveIt's Setup Assistant finds those that never touch",
+    )
+
+
+def test_an_srdf_of_one_part_is_enough() -> None:
+    first, second = parts()
+    made = etree.fromstring(join([first._replace(srdf=None), second]).srdf)
+    assert made.get("name") == "arm"
+    assert made.xpath("group/@name") == ["g_fingers"]
+    assert join([it._replace(srdf=None) for it in (first, second)]).srdf == b""
+
+
+def test_a_group_of_two_parts_and_what_is_no_srdf_are_refused() -> None:
+    first, second = parts("")
+    both = ARM_SRDF.replace('"arm"', '"fingers"')
+    with pytest.raises(
+        InputError, match="group 'fingers' is in <text>, too; give the part a prefix"
+    ):
+        join([first._replace(srdf=both), second])
+    with pytest.raises(InputError, match="not an SRDF"):
+        join([first._replace(srdf="<sdf/>"), second])
+
+
+def test_one_controller_manager_has_the_controllers_of_both(tmp_path: Path) -> None:
+    arm, gripper = parts()
+    one, other = files(tmp_path)
+    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    trajectory = {"type": "joint_trajectory_controller/JointTrajectoryController"}
+    assert yaml.safe_load(made.controllers) == {
+        "controller_manager": {
+            "ros__parameters": {
+                "update_rate": 100,
+                "joint_state_broadcaster": {
+                    "type": "joint_state_broadcaster/JointStateBroadcaster"
+                },
+                "follow": trajectory,
+                "g_follow": trajectory,
+            }
+        },
+        "follow": {"ros__parameters": {"joints": ["turn"], "constraints": {"goal_time": "1e-3"}}},
+        "/g_follow": {
+            "ros__parameters": {"joints": ["g_grip"], "constraints": {"goal_time": "1e-3"}}
+        },
+    }
+    # PyYAML takes it for a text, rcl for a number: in quotes it would be a text for both.
+    assert b"goal_time: 1e-3" in made.controllers
+
+
+def test_controllers_that_meet_are_refused_and_other_values_told(tmp_path: Path) -> None:
+    arm, gripper = parts("")
+    one, other = files(tmp_path)
+    with pytest.raises(InputError, match=r"controller 'follow' is in .*a.yaml, too; give the part"):
+        join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    one, other = files(tmp_path, second="grip", rate=500)
+    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    assert f"{other}: controller_manager.update_rate is 500, before it 100, which is taken" in (
+        made.notes
+    )
+
+
+def test_a_broadcaster_of_some_joints_is_of_its_part(tmp_path: Path) -> None:
+    arm, gripper = parts()
+    one, other = files(tmp_path)
+    own = "\njoint_state_broadcaster: {ros__parameters: {joints: [grip]}}\n"
+    Path(other).write_text(Path(other).read_text() + own)
+    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    found = yaml.safe_load(made.controllers)
+    assert found["/g_joint_state_broadcaster"]["ros__parameters"]["joints"] == ["g_grip"]
+    assert {"joint_state_broadcaster", "g_joint_state_broadcaster"} <= set(
+        found["controller_manager"]["ros__parameters"]
+    )
+
+
+def test_the_command_writes_them_beside_the_description(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("arm", ARM), ("gripper", GRIPPER)):
+        Path(f"{name}.urdf").write_text(text)
+    Path("arm.srdf").write_text(ARM_SRDF)
+    Path("gripper.srdf").write_text(GRIPPER_SRDF)
+    one, other = files(Path())
+    words = ["join", "arm.urdf", "gripper.urdf", "--at", "tool", "--prefix", "g_"]
+    words += ["--srdf", "arm.srdf", "--srdf", "gripper.srdf"]
+    words += ["--controllers", one, "--controllers", other]
+    assert main(words) == 2
+    assert "name the description with -o" in capsys.readouterr().err
+    assert main([*words, "-o", "out/robot.urdf"]) == 0
+    assert sorted(it.name for it in Path("out").iterdir()) == [
+        "robot.srdf",
+        "robot.urdf",
+        "robot_controllers.yaml",
+    ]
+    assert Path("out/robot.srdf").read_text() == JOINED_SRDF
+    assert main([*words[:-2], "-o", "out/robot.urdf"]) == 2
+    assert "--controllers is there 1 time for 2 parts" in capsys.readouterr().err
+    # Beside arm.urdf it would be written over a file that is read.
+    assert main([*words, "-o", "arm.urdf"]) == 2
+    assert main([*words[:7], "-o", "arm.urdf"]) == 2
+    assert main([*words, "-o", "gripper"]) == 2
+    assert Path("gripper.srdf").read_text() == GRIPPER_SRDF
