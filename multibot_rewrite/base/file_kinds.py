@@ -73,7 +73,8 @@ BESIDE = (
         MOVEIT,
         lazy_compile(
             rb"^(?:joint_limits|moveit_simple_controller_manager|controller_names|controller_list"
-            rb"|\w+:\s*\n\s+kinematics_solver)\b",
+            rb"|planner_configs|planning_plugins?|request_adapters"
+            rb"|\w+:\s*\n\s+(?:kinematics_solver|planner_configs|default_planner_config))\b",
             re.MULTILINE,
         ),
     ),

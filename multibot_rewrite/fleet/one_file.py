@@ -24,7 +24,7 @@ from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.rules.files.judge import judged_once
-from multibot_rewrite.rules.files.wheels import with_wheels
+from multibot_rewrite.rules.files.wheels import with_description
 
 # Code -> what is counted and what is said of it. A file with one of these findings is not proved.
 REASONS = {
@@ -188,7 +188,7 @@ def _for_robot(
     named = made.file._replace(
         robots=frozenset(robots), own=frozenset(robots if len(robots) == 1 else ())
     )
-    named = with_wheels(named, job.inventories[0].document) if job else named
+    named = with_description(named, job.inventories[0].document) if job else named
     findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
     ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
     return RewrittenFile(robot, kind, made.text.encode(), ordered, _not_proved(ordered, made.kept))

@@ -19,17 +19,15 @@ from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import entries, package_of
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.lint.files.named import robot_name
+from multibot_rewrite.lint.files.named import descriptions_below, robot_name
 from multibot_rewrite.lint.files.pairing import described
 from multibot_rewrite.lint.files.subjects import make_subject
 from multibot_rewrite.rules.files.judge import judged, rules_for
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
 
-_ENDINGS = (".urdf", ".xacro")
-# A package's folders, how deep, and how many descriptions are read.
-_SKIPPED = frozenset(("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds"))
-_DEEP, _MOST, _TRIED = 3, 60, 6
+# How many descriptions are read.
+_TRIED = 6
 _DESCRIPTION = "_description"
 _KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
 _AS_WRITTEN = make_naming("tf-per-robot")
@@ -53,19 +51,7 @@ def robots_of(file: str, settings: Settings) -> Robots:
 
 def _descriptions(folder: str) -> list[str]:
     """The files below a folder with a robot that has a name: others are parts of these."""
-    files = [path for path, _ in zip(_files(folder, _DEEP), range(_MOST), strict=False)]
-    return [path for path in files if robot_name(path)]
-
-
-def _files(folder: str, deep: int) -> Iterator[str]:
-    inner = []
-    for name in sorted(entries(folder)):
-        if name.endswith(_ENDINGS):
-            yield os.path.join(folder, name)
-        elif "." not in name and name not in _SKIPPED:
-            inner.append(os.path.join(folder, name))
-    for it in inner if deep else ():
-        yield from _files(it, deep - 1)
+    return [path for path in descriptions_below(folder) if robot_name(path)]
 
 
 def _together(paths: Sequence[str], settings: Settings) -> Robots:

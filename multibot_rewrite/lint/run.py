@@ -84,8 +84,8 @@ def _key(path: str, settings: Settings) -> str:
 
 def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
     """The settings for one of several files: what the others include, the URDFs of SRDFs, and
-    the arguments that xacro files know."""
-    if len(paths) == 1:
+    the arguments that xacro files know. A xacro file alone may be included in its package."""
+    if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
     from multibot_rewrite.lint.cache.cache import among_from, among_written
 

@@ -439,7 +439,7 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
 
 
 def test_another_controller_manager_needs_no_namespace() -> None:
-    text = "moveit_controller_manager: moveit_simple_controller_manager/Simple\n"
+    text = "moveit_controller_manager: moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
     assert text_of(text, context()) == text and codes(text, context("L4")) == []
 
 

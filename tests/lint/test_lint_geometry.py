@@ -94,8 +94,11 @@ def tool(type_: str, axis: str, limit: str, more: str = "", at: str = "0.5 0 0")
 WEAK = '<limit lower="-1" upper="1" effort="10" velocity="1"/>'
 STRONG = '<limit lower="-1" upper="1" effort="30" velocity="1"/>'
 CPU = Change('type="gpu_lidar"', 'type="ray"')
+# A plugin of Gazebo Classic sends what it sees.
+SENT = Change("<topic>scan", '<plugin filename="libgazebo_ros_ray_sensor.so" name="l"/><topic>scan')
 HOUSED = [
     CPU,
+    SENT,
     Change("<lidar><range>", "<ray><range>"),
     Change("</range></lidar>", "</range></ray>"),
     Change(
@@ -205,6 +208,7 @@ PLANTED: dict[str, tuple[str, list[Change], str]] = {
     "near plane at the lens": (ROVER, clip("0", "100"), "MB629"),
     "near plane behind the lens": (ROVER, clip("-0.1", "100"), "MB629"),
     "lidar in its housing": (ROVER, [*HOUSED, Change("<min>0.1", "<min>0.02")], "MB630"),
+    "lidar of Gazebo Classic": (ROVER, [CPU], "MB637"),
     "lidar deep in a box": (
         ROVER,
         [
@@ -414,6 +418,7 @@ HEALTHY: dict[str, tuple[str, list[Change]]] = {
         ROVER,
         [
             CPU,
+            SENT,
             Change("<lidar>", scan("2.2", "-2.2").replace("<lidar>", "<ray>")),
             Change("</lidar>", "</ray>"),
         ],
@@ -421,7 +426,7 @@ HEALTHY: dict[str, tuple[str, list[Change]]] = {
     "lidar of one ray": (ROVER, [Change("<lidar>", scan("0", "0"))]),
     "lidar of a whole turn": (ROVER, [Change("<lidar>", scan("0", "6.28319"))]),
     "clip planes with one default": (ROVER, [Change(CAMERA, "<camera><clip><far>10</far></clip>")]),
-    "lidar on a graphics card in its housing": (ROVER, [HOUSED[3]]),
+    "lidar on a graphics card in its housing": (ROVER, [HOUSED[-1]]),
     "lidar that starts outside of its housing": (ROVER, HOUSED),
     "lidar above its housing": (
         ROVER,

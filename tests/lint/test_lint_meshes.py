@@ -79,6 +79,7 @@ def linted(workspace: Path, *names: str, select: str = "MB7", roots: bool = True
         ("../../meshes/Base.stl", ["MB713"]),
         ("Bass.stl", ["MB701"]),
         ("file:///home/me/Base.stl", ["MB704"]),
+        ("file:/home/me/Base.stl", ["MB704"]),
         ("/home/me/Base.stl", ["MB704"]),
         ("C:\\me\\Base.stl", ["MB704", "MB705"]),
         (r"package://arm\meshes\Base.stl", ["MB705"]),

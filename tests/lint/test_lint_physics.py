@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.description.physics.inertia import eigenvalues
@@ -221,6 +221,21 @@ def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path)
 )
 def test_the_robot_as_a_whole(body: str, expected: str, tmp_path: Path) -> None:
     assert reported(found(body, tmp_path, WHOLE)) == expected
+
+
+@pytest.mark.parametrize(
+    ("inside", "level"),
+    [
+        ('<ros2_control name="c" type="system"><sensor name="s"/></ros2_control>', NOTE),
+        ('<gazebo reference="a1"><sensor name="s" type="imu"/></gazebo>', ERROR),
+    ],
+)
+def test_a_sensor_of_hardware_is_none_of_a_simulator(
+    inside: str, level: str, tmp_path: Path
+) -> None:
+    body = robot("", MOVES, "") + inside
+    (finding,) = found(body, tmp_path, Settings(select=("MB610",)))
+    assert finding.level == level
 
 
 def test_how_much_gazebo_leaves_out_is_told(tmp_path: Path) -> None:

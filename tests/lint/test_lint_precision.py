@@ -20,6 +20,7 @@ from multibot_rewrite.lint.registry import RULES
 JUDGED, RIGHT = 10, 0.95
 LEAST_DEFECTS, LEAST_ODDITIES = 100, 60
 TABLE = precisions()
+REPOSITORIES, FALSE = ROOT / "fixtures" / "lint" / "repositories.tsv", 0.03
 
 
 def test_every_rule_comes_once() -> None:
@@ -33,6 +34,18 @@ def test_enough_was_judged_and_enough_is_true(row: Precision) -> None:
     assert row.referee, "what was run or read"
     if row.judged and RULES[row.code].level != NOTE:
         assert row.true / row.judged >= RIGHT
+
+
+def test_few_findings_in_unseen_repositories_are_false() -> None:
+    """The sums of the kept table are those of the page."""
+    _, *rows = (
+        it.split("\t") for it in REPOSITORIES.read_text().splitlines() if not it.startswith("#")
+    )
+    sums = [sum(int(row[column]) for row in rows) for column in range(1, 7)]
+    assert sums[2] + sums[5] <= FALSE * sum(sums)
+    page = (ROOT / "docs" / "measurements.md").read_text()
+    for level, of_level in (("errors", sums[:3]), ("warnings", sums[3:])):
+        assert f"| {level} | {' | '.join(map(str, of_level))} |" in page
 
 
 @pytest.mark.slow

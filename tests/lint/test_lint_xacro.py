@@ -425,3 +425,15 @@ def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path
     )
     found = linted(tmp_path, "robot/urdf/a.xacro", "robot/urdf/b.xacro", select=("MB234",))
     assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]
+
+
+@pytest.mark.parametrize(("included", "codes"), [("part.urdf.xacro", []), ("o.xacro", ["MB202"])])
+def test_a_part_alone_is_known_by_what_includes_it(
+    included: str, codes: list[str], tmp_path: Path
+) -> None:
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="l"/></joint>'
+    includes = f'<xacro:include filename="{included}"/><link name="base"/>'
+    files = {"part.urdf.xacro": xacro(f'<link name="l"/>{joint}'), "r.xacro": xacro(includes)}
+    write(tmp_path, {"package.xml": MANIFEST % "p", **files})
+    found = linted(tmp_path, "part.urdf.xacro", select=("MB202",))
+    assert [it.code for it in found] == codes

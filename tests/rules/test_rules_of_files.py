@@ -26,6 +26,7 @@ EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n"
 AMCL = "amcl:\n  ros__parameters:\n    {}\n"
 ARM = "arm_controller:\n  ros__parameters:\n    joints: [{}, right_wheel_joint]\n"
 MANAGER = "moveit_simple_controller_manager:\n  controller_names: [a]\n  a:\n    {}\n"
+MANAGER += "    action_ns: follow_joint_trajectory\n    type: FollowJointTrajectory\n"
 AXES = """\
 Visualization Manager:
   Displays:
@@ -73,7 +74,7 @@ BROKEN = {
     "MoveIt's joint": ("moveit", MANAGER.format("joints: [left_whel_joint]"), "MB854:4:14"),
     "MoveIt's frame": (
         "moveit",
-        MANAGER.format("type: b\n    base_frame_id: base_lnik"),
+        MANAGER.format("joints: [left_wheel_joint]\n    base_frame_id: base_lnik"),
         "MB853:5:20",
     ),
     "RViz's frame": ("rviz", AXES.format("Reference Frame: lidar_lnk"), "MB853:4:24"),

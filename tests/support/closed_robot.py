@@ -133,6 +133,7 @@ collision_monitor:
     scan: {type: scan, topic: scan}
 twist_mux:
   ros__parameters:
+    use_stamped: false
     topics: {nav: {topic: cmd_vel_smoothed, timeout: 0.5, priority: 10}}
 controller_server:
   ros__parameters: {odom_topic: odometry/filtered}

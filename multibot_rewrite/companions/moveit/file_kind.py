@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 import yaml
@@ -13,6 +14,16 @@ from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, line_of
 
 EMPTY = "empty"
+OF_SERVO, PLANNING, SIMPLE = "servo", "planning", "moveit_simple_controller_manager"
+# Below which parameter MoveItConfigsBuilder puts the content of a file; that of others is at the top.
+ABOVE = {
+    "kinematics": "robot_description_kinematics",
+    "joint_limits": "robot_description_planning",
+    OF_SERVO: "moveit_servo",
+}
+_PIPELINE = "_planning"
+# What a file of one pipeline has at its top, whatever it is called.
+_OF_PIPELINE = frozenset(("planning_plugin", "planning_plugins", "request_adapters"))
 _DEPTH = 4
 
 
@@ -43,6 +54,24 @@ def find_kind(document: YamlText) -> FileKind | None:
         f"{document.file}:{line_of(root)}: not a known kind of MoveIt file: it starts with"
         f" {words or 'nothing'}; leave it out, or list a parameter file under params"
     )
+
+
+def pipeline_of(path: str) -> str:
+    """``ompl`` of ``ompl_planning.yaml``; empty for a file that is of no pipeline."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return stem.removesuffix(_PIPELINE) if stem.endswith(_PIPELINE) else ""
+
+
+def parameter_above(kind: FileKind, document: YamlText) -> str:
+    """What stands before the names of a file's parameters: ``ompl.``, or nothing."""
+    keys = {str(key.value) for key, _ in entries(document.root)}
+    above = ABOVE.get(kind.name, "")
+    if kind.name == PLANNING:
+        above = pipeline_of(document.file)
+        above = above if above or keys.isdisjoint(_OF_PIPELINE) else "pipeline"
+    if "controller_names" in keys:
+        above = SIMPLE
+    return f"{above}." if above and above not in keys else ""
 
 
 def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:

@@ -17,8 +17,8 @@ from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.file_kind import find_kind
-from multibot_rewrite.companions.moveit.name_sites import entries, find_names
+from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, find_kind
+from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, find_names
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
@@ -84,10 +84,15 @@ def asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
 MOVE_GROUP, SERVO = "move_group", "servo_node"
 
 
+def node_of(kind: FileKind | None) -> str:
+    """Which node's parameters a file of this kind has."""
+    return SERVO if kind and kind.name == OF_SERVO else MOVE_GROUP
+
+
 def read_moveit(document: YamlText, context: Context) -> NamedFile:
     """The names of a file; raises InputError for one that is not MoveIt's."""
     kind = find_kind(document)
-    node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
+    node = node_of(kind)
     names, others, twice = find_names(document.root, kind.names if kind else {}, context.names)
     return NamedFile(
         MOVEIT,

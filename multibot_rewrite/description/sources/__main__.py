@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Print which fences this system has for xacro files.
 
-``python -m multibot_rewrite.description.sources``
+``python -I -m multibot_rewrite.description.sources``
 """
 
 from __future__ import annotations

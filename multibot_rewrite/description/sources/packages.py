@@ -51,6 +51,16 @@ def package_of(file: str) -> tuple[str, str] | None:
     return _own_package(os.path.dirname(os.path.abspath(file)))
 
 
+@outside
+def is_for_ros_1(file: str) -> bool:
+    """Is a file in a package that catkin builds, and nothing of ROS 2?"""
+    own = _own_package(os.path.dirname(os.path.abspath(file)))
+    if own is None:
+        return False
+    text = _manifest(own[1], 65536)
+    return b"catkin" in text and b"ament" not in text
+
+
 @lru_cache(maxsize=4096)
 def _candidates(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
@@ -127,12 +137,17 @@ def entries(folder: str) -> frozenset[str]:
         return frozenset()
 
 
-def _package_name(folder: str) -> str:
+def _manifest(folder: str, most: int) -> bytes:
+    """The start of a package.xml; empty where it cannot be read."""
     try:
         with open(os.path.join(folder, _MANIFEST), "rb") as file:
-            found = _NAME.search(file.read(8192))
+            return file.read(most)
     except OSError:
-        found = None
+        return b""
+
+
+def _package_name(folder: str) -> str:
+    found = _NAME.search(_manifest(folder, 8192))
     return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
 
 

@@ -19,6 +19,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.moveit.file_kind import SIMPLE
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
@@ -30,7 +31,6 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import (
     PROGRAMS,
     SEMANTIC,
     SERVO_PARAMETERS,
-    SIMPLE,
     parameter_file,
     parameters_of,
 )

@@ -38,7 +38,7 @@ from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import judged_once
-from multibot_rewrite.rules.files.wheels import with_wheels
+from multibot_rewrite.rules.files.wheels import with_description
 
 # The key of a fleet file -> the kind of the files that it names.
 _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA}
@@ -84,8 +84,9 @@ def _numbered(file: NamedFile, numbers: Mapping[str, int]) -> Iterator[Finding]:
 def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion:
     if kind == PARAMS:
         made = _params(plan, group, path)
-        return made._replace(file=with_wheels(made.file, group.robots[0].member.source))
-    return made_for_any(kind, read_file(path), path, group.context, group.facts)
+    else:
+        made = made_for_any(kind, read_file(path), path, group.context, group.facts)
+    return made._replace(file=with_description(made.file, group.robots[0].member.source))
 
 
 def of_fleet(plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]) -> NamedFile:

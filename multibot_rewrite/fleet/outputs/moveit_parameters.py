@@ -19,7 +19,15 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.moveit.file_kind import EMPTY, file_kind
+from multibot_rewrite.companions.moveit.file_kind import (
+    ABOVE,
+    EMPTY,
+    OF_SERVO,
+    PLANNING,
+    SIMPLE,
+    file_kind,
+    pipeline_of,
+)
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
@@ -28,22 +36,15 @@ from multibot_rewrite.spelling.ways import arguments, started
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the stack.
-_MOVE_GROUP, _SERVO = "move_group", "servo"
+_MOVE_GROUP = "move_group"
 PROGRAMS = {
     _MOVE_GROUP: ("moveit_ros_move_group", "move_group"),
     "servo_node": ("moveit_servo", "servo_node"),
 }
-SIMPLE = "moveit_simple_controller_manager"
 _MANAGER = f"{SIMPLE}/MoveItSimpleControllerManager"
-SEMANTIC, SERVO_PARAMETERS = "robot_description_semantic", "moveit_servo"
-# Below which parameter the content of a file is; that of others is at the top.
-_ABOVE = {
-    "kinematics": "robot_description_kinematics",
-    "joint_limits": "robot_description_planning",
-    _SERVO: SERVO_PARAMETERS,
-}
+SEMANTIC, SERVO_PARAMETERS = "robot_description_semantic", ABOVE[OF_SERVO]
 # Files that are none of move_group's.
-_OF_OTHERS = (_SERVO, "initial_positions", EMPTY)
+_OF_OTHERS = (OF_SERVO, "initial_positions", EMPTY)
 _OMPL = "ompl"
 _REQUEST, _RESPONSE = "default_planning_request_adapters", "default_planning_response_adapters"
 _PLANNING = {
@@ -81,7 +82,9 @@ def has_moveit(robot: RewrittenRobot) -> bool:
 def moveit_commands(plan: FleetPlan) -> Iterator[str]:
     """The lines that start move_group and servo_node of the one robot of a plan."""
     (robot,) = plan.robots
-    servo = any(file_kind(yaml_of(it)) == _SERVO for it in robot.spec.companions.get("moveit", ()))
+    servo = any(
+        file_kind(yaml_of(it)) == OF_SERVO for it in robot.spec.companions.get("moveit", ())
+    )
     nodes = PROGRAMS if servo else (_MOVE_GROUP,)
     for it in started(plan.fleet.table) if has_moveit(robot) else ():
         if it.node.node in nodes:
@@ -124,12 +127,12 @@ def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[st
     pipelines: list[str] = []
     for path, text in texts.items():
         data, kind = _plain(load_yaml(text)) or {}, file_kind(read_yaml(text.encode(), path))
-        if kind == "planning" and (name := _pipeline(path)):
+        if kind == PLANNING and (name := pipeline_of(path)):
             pipelines.append(name)
             found.setdefault(name, {}).update(_with_plugins(name, data, release))
         elif kind == "controllers" and "controller_names" in data:
             found |= {"moveit_controller_manager": _MANAGER, SIMPLE: data}
-        elif above := _ABOVE.get(kind, ""):
+        elif above := ABOVE.get(kind, ""):
             found.setdefault(above, {}).update(data.get(above, data))
         elif kind != "initial_positions":
             found.update(data)
@@ -153,16 +156,10 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
         if kind in _OF_OTHERS:
             continue
         # Planners are below the first word of their file: ompl_planning.yaml.
-        name = os.path.basename(path).partition("_")[0] if kind == "planning" else _ABOVE.get(kind)
+        name = os.path.basename(path).partition("_")[0] if kind == PLANNING else ABOVE.get(kind)
         below = found.setdefault(name, {}) if name else found
         below.update(data)
     return found
-
-
-def _pipeline(path: str) -> str:
-    """``ompl`` of ``ompl_planning.yaml``; empty for a file that is of none."""
-    stem = os.path.splitext(os.path.basename(path))[0]
-    return stem.removesuffix("_planning") if stem.endswith("_planning") else ""
 
 
 def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[str, Any]:

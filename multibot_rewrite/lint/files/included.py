@@ -11,7 +11,9 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
+from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rules.settings import Settings
 
@@ -23,10 +25,11 @@ _LITERAL = lazy_compile(r"^[^*.]{4,}.*\*|\*[^*.]{4,}|^[^*]*$")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
-    """Those of the files that a xacro file among them includes, by the known end of its path."""
+    """Those of the files that a xacro file among them, or in their packages, includes, by the known end
+    of its path."""
     files = {real_path(path): path for path in paths}
     ends: dict[str, set[str]] = {}
-    for path in filter(_is_read, files.values()):
+    for path in filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths)))):
         for asked in _asked_for(path):
             ends.setdefault(os.path.basename(asked), set()).add(asked)
     loose = [it for its in ends.values() for it in its if "*" in it]
@@ -36,6 +39,13 @@ def included(paths: Sequence[str]) -> frozenset[str]:
         if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
         or any(fnmatchcase(real, f"*/{asked}") for asked in loose)
     )
+
+
+def _beside(paths: Sequence[str]) -> Iterator[str]:
+    """The other xacro files of the packages of xacro files."""
+    owners = (package_of(path) for path in paths if path.endswith(".xacro"))
+    for folder in dict.fromkeys(own[1] for own in owners if own):
+        yield from descriptions_below(folder)
 
 
 def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
@@ -78,5 +88,7 @@ def set_among(paths: Sequence[str], settings: Settings) -> Settings:
     """The settings with what the others include, the URDFs of SRDFs, and the arguments that xacro
     files know."""
     settings = settings._replace(included=included(paths))
+    if len(paths) == 1:
+        return settings
     known = known_elsewhere(paths) if settings.arguments else None
     return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)

@@ -3,14 +3,22 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
+from multibot_rewrite.description.sources.packages import entries
 
 _NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # What the name of an SRDF has in it.
 SRDF_MARK = ".srdf"
 # The root element is in the first bytes: the whole file need not be read.
 HEAD = 4096
+_ENDINGS = (".urdf", ".xacro")
+# A package's folders, how deep, and how many files of it are looked at.
+_SKIPPED = frozenset(("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds"))
+_DEEP, _MOST = 3, 60
 
 
 @outside
@@ -30,3 +38,19 @@ def files_like(pattern: str) -> tuple[str, ...]:
     from glob import glob  # few descriptions come to this
 
     return tuple(sorted(glob(pattern)))
+
+
+def descriptions_below(folder: str) -> list[str]:
+    """The URDF and xacro files of a package, the first ones of many."""
+    return [path for path, _ in zip(_files(folder, _DEEP), range(_MOST), strict=False)]
+
+
+def _files(folder: str, deep: int) -> Iterator[str]:
+    inner = []
+    for name in sorted(entries(folder)):
+        if name.endswith(_ENDINGS):
+            yield os.path.join(folder, name)
+        elif "." not in name and name not in _SKIPPED:
+            inner.append(os.path.join(folder, name))
+    for it in inner if deep else ():
+        yield from _files(it, deep - 1)

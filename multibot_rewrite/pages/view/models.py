@@ -20,6 +20,8 @@ from multibot_rewrite.description.sources.packages import package_folder
 INSTALL = "the view needs yourdfpy: pip install 'multibot_rewrite[view]'"
 # Of larger meshes the bounding box is shown, or the page would not load.
 MOST_FACES = 200_000
+# A mesh file is read whole.
+MOST_BYTES = 256 * 1024 * 1024
 # A shape for which the file gives no colour: the page gives it the colour of its robot.
 UNCOLOURED: tuple[float, ...] = ()
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
@@ -157,12 +159,15 @@ def load_mesh(path: str) -> Mesh | str:
     import numpy as np
     import trimesh
 
+    name = os.path.basename(path)
     try:
+        if os.path.getsize(path) > MOST_BYTES:
+            return f"{name} is larger than {MOST_BYTES >> 20} MiB"
         made: Any = trimesh.load(path, force="mesh", process=False)
     except Exception as error:  # each format has errors of its own
-        return f"{os.path.basename(path)}: {error or type(error).__name__}"
+        return f"{name}: {str(error) or type(error).__name__}"
     if not len(getattr(made, "faces", ())):
-        return f"{os.path.basename(path)} has no triangles"
+        return f"{name} has no triangles"
     if len(made.faces) > MOST_FACES:
         made = made.bounding_box
     vertices = np.asarray(made.vertices, dtype="<f4").tobytes()

@@ -94,6 +94,18 @@ def simulated(subject: Subject) -> list[tuple[_Element, _Element, Simulator]]:
     ]
 
 
+@memoized
+def commanded(subject: Subject) -> frozenset[str]:
+    """The joints that a simulator commands: by its hardware, or a plugin that drives."""
+    held = (
+        it.get("name", "")
+        for system, _, _ in simulated(subject)
+        for it in system.iterchildren("joint")
+        if it.find("command_interface") is not None
+    )
+    return frozenset((*held, *(text_of(it) for it, _ in driving(subject))))
+
+
 def driving(subject: Subject) -> Iterator[tuple[_Element, _Element]]:
     """The parameters that name a joint which a plugin commands, and the plugin."""
     for plugin in simulator_plugins(subject):

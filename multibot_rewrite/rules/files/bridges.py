@@ -89,7 +89,7 @@ def bridge_key(file: NamedFile) -> Iterator[Remark]:
     "bridge-types-not-converted",
     WARNING,
     what="ros_gz_bridge knows the ROS type and the gz type of a row, and does not convert the one "
-    "into the other.",
+    "into the other. Or a type is nearly one that it knows.",
     why="ros_gz_bridge fails to make this bridge, so the topic is not bridged.",
     fix="Write the type that goes with the other one.",
     bad=a_row().replace("gz.msgs.LaserScan", "gz.msgs.IMU"),
@@ -101,11 +101,25 @@ def not_converted(file: NamedFile) -> Iterator[Remark]:
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
     for node in _rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
-        bare, belongs = gz.rpartition("msgs.")[2], known.get(ros, ())
+        yield from _misspelt(node, ros, gz, known)
+        bare, belongs = _bare(gz), known.get(ros, ())
         others = [it for it, types in known.items() if bare in types]
         if belongs and others and bare not in belongs:
             message = f"{ros} and {gz} are not converted into each other"
             yield remark_at(node, message, f"with {gz} write {' or '.join(others)}")
+
+
+def _misspelt(
+    node: yaml.Node, ros: str, gz: str, known: Mapping[str, list[str]]
+) -> Iterator[Remark]:
+    """Types in other capitals, and gz types of a package that there is not."""
+    alike = next((it for it in known if it.lower() == ros.lower() and it != ros), "")
+    if alike:
+        yield remark_at(node, f"there is no type {ros!r}", f"did you mean {alike!r}?")
+    bare = _bare(gz)
+    whole = any(bare in types for types in known.values())
+    if whole and gz not in (f"gz.msgs.{bare}", f"ignition.msgs.{bare}"):
+        yield remark_at(node, f"there is no gz type {gz!r}", f"write gz.msgs.{bare}")
 
 
 def _of_models(one: str, other: str) -> str:

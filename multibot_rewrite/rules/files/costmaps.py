@@ -18,8 +18,8 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.knowledge.plugin_classes import canonical
 from multibot_rewrite.rules.files.bounds import polygon_of
-from multibot_rewrite.rules.files.declared import Given, Section, sections
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 from multibot_rewrite.rules.subject import Robots
 
 _INFLATION = "nav2_costmap_2d::InflationLayer"

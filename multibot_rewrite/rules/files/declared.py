@@ -4,45 +4,32 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-import yaml
-
-from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
-from multibot_rewrite.companions.params.sections import (
-    ANY,
-    RawSection,
-    controller_types,
-)
-from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.knowledge.declared import (
     DEMANDED,
-    EVERY_NODE,
     READ,
     YAML,
     Declared,
-    declared_by,
     stands_for,
 )
-from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_release
-from multibot_rewrite.rules.files.plugins import RENAMED, plugins_in
+from multibot_rewrite.rules.files.parameter_facts import of_release
+from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = re.compile(
     r"use_sim_time|start_type_description_service|qos_overrides\..*|diagnostic_updater\..*|bond_\w+|type"
     r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|.*\.plugin|enable_parameter_\w+"
-    r"|.*plugin_?\w*|robot_description.*|fallback_controllers|node_options_args|autostart_node|service_\w+"
+    r"|.*plugin_?\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
 )
 _ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
@@ -52,137 +39,22 @@ _SURE = frozenset((YAML, DEMANDED))
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
-class Given(NamedTuple):
-    """A parameter of a section: its dotted name, its key, and its value where rcl reads one."""
-
-    name: str
-    key: yaml.ScalarNode
-    node: yaml.Node
-    value: Value | None
-
-
-class Section(NamedTuple):
-    """The parameters of one node or plugin, each with what declares it, and all that is declared.
-    ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
-
-    title: str
-    node: KnownNode | None
-    given: tuple[Given, ...]
-    facts: tuple[Declared, ...]
-    known: tuple[tuple[Given, tuple[Declared, ...]], ...]
-    whole: Mapping[str, Given]
-    at: str = ""
-
-
-def sections(file: NamedFile) -> tuple[Section, ...]:
-    """The sections of a parameter file whose node is known."""
-    if sections not in file.memo:
-        file.memo[sections] = tuple(_sections(file))
-    found: tuple[Section, ...] = file.memo[sections]
-    return found
-
-
-def _sections(file: NamedFile) -> Iterator[Section]:
-    types = controller_types(RawSection(*it[:3]) for it, _ in file.pages)
-    for it, _ in file.pages:
-        name = it.path.rpartition("/")[2]
-        if file.document is None:
-            return
-        given = tuple(_given(file.document, it.body, ""))
-        if name in ANY or PLACEHOLDER.search(it.path):
-            yield _section(it.path, None, given, declared_by(EVERY_NODE), given)
-            continue
-        type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
-        node = it.node
-        if node is not None and not _is_surely(node, name, type_, given):
-            node = None
-        facts = facts_of_node(node, type_, file.file, file.roots)
-        below, rest = _of_plugins(it.path, given)
-        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), given)
-        yield from below
-
-
-def _section(
-    title: str,
-    node: KnownNode | None,
-    given: tuple[Given, ...],
-    facts: tuple[Declared, ...],
-    whole: Sequence[Given],
-    at: str = "",
-) -> Section:
-    exact: dict[str, list[Declared]] = {}
-    wild: list[tuple[str, Declared]] = []
-    for fact in facts:
-        if "<" in fact.path:
-            wild.append((fact.path.rpartition(".")[2], fact))
-        else:
-            exact.setdefault(fact.path, []).append(fact)
-    known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
-    return Section(title, node, given, facts, known, {it.name: it for it in whole}, at)
-
-
-def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
-    """Those that have the name, each with the last word of its path."""
-    last = name.rpartition(".")[2]
-    return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
-
-
-def _of_plugins(title: str, given: Sequence[Given]) -> tuple[list[Section], tuple[Given, ...]]:
-    """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
-    what an unknown plugin declares."""
-    plugins = plugins_in({it.name: it.value for it in given})
-    of: dict[str, list[Given]] = {}
-    for it in given:
-        parts = it.name.split(".")
-        above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
-        of.setdefault(next((name for name in above if name in plugins), ""), []).append(it)
-    rest, found = of.pop("", []), []
-    for name, its in of.items():
-        class_, facts = plugins[name]
-        own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, given, f"{name}."))
-    return found, tuple(rest)
-
-
-def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
-    """Is it this controller, not another one that is often called the same?"""
-    if not node.facts.types or type_ in node.facts.types:
-        return True
-    words = {it.name.partition(".")[0] for it in given}
-    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
-    return "/" not in type_ and (name == node.name or by_words)
-
-
-def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
-    for key, value in pairs(body):
-        name = f"{above}{key.value}"
-        if isinstance(value, yaml.MappingNode):
-            yield from _given(document, value, f"{name}.")
-        else:
-            yield Given(name, key, value, _value(document, value))
-
-
-def _value(document: YamlText, node: yaml.Node) -> Value | None:
-    try:
-        value = value_of(document, node)
-    except InputError:
-        return None
-    texts = value if isinstance(value, list) else [value]
-    filled = any(isinstance(it, str) and PLACEHOLDER.search(it) for it in texts)
-    return None if filled else value
-
-
 def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     guesses = Guesses()
     for section in sections(file):
-        unknown = [it for it, found in section.known if not found and not _is_known(section, it)]
+        unknown = [
+            it
+            for it, found in section.known
+            if all(map(_is_any_name, found)) and not _is_known(section, it)
+        ]
         if not unknown:
             continue
         facts = [it for it in section.facts if it.how != READ]
         paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
+        there += {name for it in unknown for name in _beside(it, paths)}
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
         for it in unknown if there else ():
@@ -190,6 +62,20 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
+
+
+def _is_any_name(fact: Declared) -> bool:
+    """Is it asked for by whatever name there is?"""
+    return fact.how == READ and fact.path.endswith(">")
+
+
+def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
+    """What may be beside a parameter by a pattern: ``joint_limits.<joint>.max_velocity``."""
+    above = it.name.rpartition(".")[0]
+    for path in paths:
+        pattern, _, last = path.rpartition(".")
+        if "<" in pattern and "<" not in last and stands_for(pattern, above):
+            yield f"{above}.{last}"
 
 
 def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:

@@ -8,30 +8,35 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from typing import TypeGuard
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
+import yaml
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import Value
-from multibot_rewrite.knowledge.declared import DEMANDED, stands_for
-from multibot_rewrite.rules.files.declared import Given, Section, sections
+from multibot_rewrite.knowledge.declared import DEMANDED, Declared
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
 
 _OWN = re.compile(r"nav2_\w+_bt_node")
 
 
 class Demand(NamedTuple):
-    """One check of a given parameter with the words of its arguments; ``source`` says where it is."""
+    """One check of a given parameter with the words of its arguments; ``source`` says where it is, and
+    ``releases`` where not all have it."""
 
     section: Section
     given: Given
     check: str
     words: tuple[str, ...]
     source: str
+    releases: str = ""
 
 
 def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
@@ -41,19 +46,19 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
             facts = [fact for fact in known if fact.how == DEMANDED] if it.value is not None else []
             exact = [fact for fact in facts if fact.path == it.name]
             for fact in of_release(exact or facts, file.context.distro):
-                put = stands_for(fact.path, it.name)
-                for check, text in fact.checks if put or fact.path == it.name else ():
+                for check, text in fact.checks:
                     if check in checks:
-                        words = tuple(put.get(word, word) for word in text.split())
-                        yield Demand(section, it, check, words, fact.source)
+                        words = filled(text, fact.path, it.name)
+                        yield Demand(section, it, check, words, fact.source, fact.releases)
 
 
 def above_others(file: NamedFile) -> Iterator[Remark]:
     """Values above another parameter that is the upper end of the same range."""
-    for it in demands(file, "at_most"):
+    for it in demands(file, "at_most", "not_above"):
         value, other = it.given.value, value_of(it.section, it.words[0])
         # A negative one stands for no limit, or for that of the sensor.
-        if _is_size(value) and _is_size(other) and float(str(value)) > float(str(other)):
+        sizes = it.check == "not_above" or (_is_size(value) and _is_size(other))
+        if sizes and _is_number(value) and _is_number(other) and float(value) > float(other):
             message = (
                 f"{it.section.title}: {it.given.name} is {value}, above {it.words[0]} ({other})"
             )
@@ -61,7 +66,53 @@ def above_others(file: NamedFile) -> Iterator[Remark]:
 
 
 def _is_size(value: Value | None) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and value >= 0
+    return _is_number(value) and value >= 0
+
+
+def _is_number(value: Value | None) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def missing_parameters(file: NamedFile) -> Iterator[Remark]:
+    """What a node asks for and has no default: by itself, in a block, or with another parameter."""
+    for section in sections(file):
+        for fact in of_release(section.facts, file.context.distro):
+            for _, words in (it for it in fact.checks if it[0] == "required"):
+                yield from _required(section, fact, words)
+    for it in demands(file, "needs"):
+        if it.given.value is True and value_of(it.section, it.words[0]) is None:
+            message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
+            yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
+
+
+def _required(section: Section, fact: Declared, words: str) -> Iterator[Remark]:
+    listed = value_of(section, words) if words else None
+    for block, first in _blocks(section, fact.path):
+        _, _, word = block.rpartition(".")
+        name = f"{block}.{fact.path.rpartition('.')[2]}" if block else fact.path
+        there = f"{section.at}{name}" in section.whole
+        if not there and (listed is None or (isinstance(listed, list) and word in listed)):
+            message = f"{section.title}: {name} is missing"
+            yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
+
+
+def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:
+    """Each block of a file that a path is in, with a key; of a path of the node itself one without a
+    name."""
+    above = path.rpartition(".")[0]
+    if "<" not in path:
+        if section.given:
+            yield above, section.given[0].key
+        return
+    found: dict[str, yaml.ScalarNode] = {}
+    pattern = above.split(".")
+    for it in section.given:
+        parts = it.name.split(".")
+        pairs = zip(pattern, parts, strict=False)
+        fits = all(want.startswith("<") or want == got for want, got in pairs)
+        if fits and len(parts) > len(pattern):
+            found.setdefault(".".join(parts[: len(pattern)]), it.key)
+    yield from found.items()
 
 
 def value_of(section: Section, name: str) -> Value | None:
@@ -84,7 +135,7 @@ def value_of(section: Section, name: str) -> Value | None:
     bad=a_section("ekf_filter_node", "world_frame: world"),
     good=a_section("ekf_filter_node", "world_frame: odom"),
     line=3,
-    formats=(PARAMS,),
+    formats=(PARAMS, MOVEIT),
 )
 def contradictions(file: NamedFile) -> Iterator[Remark]:
     """Every demand of one parameter on another that is no order."""
@@ -94,6 +145,7 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
+            level = ERROR if it.check == "instead" and not it.releases else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
 
 
@@ -144,6 +196,33 @@ def _foreign(it: Demand) -> str:
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
 
 
+def _instead(it: Demand) -> str:
+    there = any(name == it.words[0] for name in it.section.whole)
+    return "" if there else f"is not read; the node reads {it.words[0]}"
+
+
+def _is_one(it: Demand) -> str:
+    word, *known = it.words
+    return "" if word in known else f"is for {word!r}; there are {', '.join(known)}"
+
+
+def _together(it: Demand) -> str:
+    word, other = it.words
+    value = it.given.value
+    alone = isinstance(value, list) and word in value and other not in value
+    return f"has {word!r} without {other!r}" if alone else ""
+
+
+def _or_true(it: Demand) -> str:
+    none = it.given.value is False and all(value_of(it.section, at) is not True for at in it.words)
+    return f"is false, and so are {' and '.join(it.words)}: nothing is sent" if none else ""
+
+
+def _alone(it: Demand) -> str:
+    there = it.section.at + it.words[0] in it.section.whole
+    return f"cannot be true with {it.words[0]}" if there and it.given.value is True else ""
+
+
 def _text(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
@@ -154,4 +233,9 @@ _PAIRS: dict[str, Callable[[Demand], str]] = {
     "unlike": _unlike,
     "among": _among,
     "foreign": _foreign,
+    "instead": _instead,
+    "is_one": _is_one,
+    "together": _together,
+    "or_true": _or_true,
+    "alone": _alone,
 }

@@ -18,12 +18,15 @@ from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.description.names import ros_names as description_names
 from multibot_rewrite.rules.files import (
     bridges,
+    chains,
     controllers,
     costmaps,
     declared,
     demands,
     included,
+    joystick,
     keys,
+    limits,
     moveit,
     names,
     plugin_names,
@@ -55,6 +58,9 @@ THEMES = (
     wheels,
     demands,
     costmaps,
+    chains,
+    joystick,
+    limits,
 )
 
 
@@ -82,7 +88,7 @@ SHARED: tuple[Rule, ...] = (
         )
     ),
     shape.not_read._replace(check=_each(declared.not_read, declared.below_unknown_names)),
-    shape.missing._replace(check=plugin_names.without_plugin),
+    shape.missing._replace(check=_each(plugin_names.without_plugin, demands.missing_parameters)),
     values.unreadable_value._replace(
         check=_each(declared.wrong_types, rcl_rules.rejected_values), level=WARNING
     ),

@@ -152,7 +152,8 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
             own = bodies.get(parameter.rpartition(".")[0], {})
             left = [it for it in own if it not in used]
             for word in _words(value) if left and is_in(file, value.place) else ():
-                near = nearest(word, left) if word not in own else ""
+                # A word with a dot has its parameters below several names.
+                near = nearest(word, left) if word.partition(".")[0] not in own else ""
                 if near and near.translate(_DIGITS) != word.translate(_DIGITS):
                     message = f"{node.name} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])

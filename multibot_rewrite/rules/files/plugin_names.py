@@ -15,7 +15,6 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.releases import has_release, releases_with
-from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import MANAGER, RawSection, controller_types
 from multibot_rewrite.companions.yaml_text import pairs
@@ -27,32 +26,29 @@ from multibot_rewrite.knowledge.plugin_classes import (
     packages,
     plugin_bases,
 )
-from multibot_rewrite.rules.files.declared import Given
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import beside
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given
 
 _DWB, _CRITIC = "dwb_critics", "Critic"
 _CRITIC_SCOPES = {
     "dwb_core::TrajectoryCritic": _DWB,
     "mppi::critics::CriticFunction": "mppi::critics",
 }
-_KINEMATICS, _SOLVER = "kinematics::KinematicsBase", "kinematics_solver"
 
 
 def unknown_classes(file: NamedFile) -> Iterator[Remark]:
     """Classes that no package of the release registers, in parameters and kinematics of MoveIt."""
     release = file.context.distro
-    if file.kind == MOVEIT:
-        yield from _solvers(file, release)
-        return
     known = file.known.nodes.values() if file.known else ()
     told = {type_ for node in known for type_ in node.facts.deprecated_types}  # MB869
     for it in demands(file, "class", "classes"):
         for given in [it.given] if it.check == "class" else _plugins(it):
-            if isinstance(given.value, str) and given.value not in told:
+            for name in words_of(given):
                 where = f"{it.section.title}: {given.name}"
-                yield from _of_class(given.node, where, given.value, it.words[0], release)
+                if name not in told:
+                    yield from _of_class(given.node, where, name, it.words[0], release)
     for it in demands(file, "critics"):
         yield from _critics(it)
 
@@ -129,34 +125,30 @@ def _critics(it: Demand) -> Iterator[Remark]:
                 yield remark_at(it.given.node, message, f"did you mean {near}?", ERROR)
 
 
-def _solvers(file: NamedFile, release: str) -> Iterator[Remark]:
-    for group, body in pairs(file.document.root if file.document else None):
-        for key, value in pairs(body):
-            if key.value == _SOLVER and isinstance(value, yaml.ScalarNode):
-                where = f"{_SOLVER} of {group.value}"
-                yield from _of_class(value, where, value.value, _KINEMATICS, release)
-
-
 def without_plugin(file: NamedFile) -> Iterator[Remark]:
     """Words of a list of plugins without NAME.plugin, sources without parameters, controllers without
     a type."""
     for it in demands(file, "classes", "blocks"):
         ids, words = it.words[1:], words_of(it.given)
+        place = (
+            it.words[0] if it.check == "blocks" and it.words else it.given.name.rpartition(".")[0]
+        )
+        above = f"{it.section.at}{place}." if place else it.section.at
         for word in [] if words == [*ids] else words:
-            below = f"{it.section.at}{word}."
+            below = f"{above}{word}."
             found = f"{below}plugin" in it.section.whole or (
                 it.check == "blocks" and any(name.startswith(below) for name in it.section.whole)
             )
             elsewhere = not found and _is_given_beside(file, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
-                yield _without(it, word)
+                yield _without(it, word, below)
     yield from _without_type(file)
 
 
-def _without(it: Demand, word: str) -> Remark:
+def _without(it: Demand, word: str, below: str) -> Remark:
     what, level = ("plugin", ERROR) if it.check == "classes" else ("parameters", WARNING)
     message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
-    name = f"{it.section.at}{word}" + (".plugin" if what == "plugin" else "")
+    name = below + "plugin" if what == "plugin" else below.rstrip(".")
     return remark_at(it.given.node, message, f"add {name}, or take {word} off the list", level)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nav2's plugins in a section of a parameter file, and the parameters that each has below its name.
+"""Plugins of Nav2 and filters of a chain in a section of parameters, and what each has below its name.
 
 Sources: pluginlib loads the class that ``NAME.plugin`` says; dwb_local_planner.cpp
 (resolveCriticClassName) and critic_manager.cpp of nav2_mppi_controller make the classes of critics of
@@ -10,6 +10,7 @@ nav2_rotation_shim_controller.cpp gives its controller its own name, from Lyrica
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.companions.params.rcl_parameters import Value
@@ -25,6 +26,8 @@ LISTED = {
 }
 # Older names that no supported release reads: obstacle_layer.cpp of Foxy and of Galactic.
 RENAMED = {"obstacle_range": "obstacle_max_range", "raytrace_range": "raytrace_max_range"}
+# A part of a filter of filter_chain.hpp (ros/filters), by its number.
+FILTER = re.compile(r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d{0,9}))\.(?P<word>\w+).*")
 _PLUGIN, _PRIMARY = ".plugin", ".primary_controller"
 _CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
 
@@ -35,7 +38,7 @@ def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
     """The name of each plugin of a section -> its class and what it declares: nothing for one that is
     not known, or loads one that is not known."""
     found: dict[str, tuple[str, tuple[Declared, ...]]] = {}
-    for name, class_ in (*_listed(values), *_classes(values)):
+    for name, class_ in (*_listed(values), *_classes(values), *_filters(values)):
         facts = declared_by(class_)
         if class_ == SHIM:
             facts = _with_primary(facts, values, name)
@@ -62,6 +65,13 @@ def _classes(values: Values) -> Iterator[tuple[str, str]]:
             own = _text(values, name + _PRIMARY)
         for critic in _list(values, name + _CRITICS):
             yield f"{name}.{critic}", _critic(own, critic, name, values)
+
+
+def _filters(values: Values) -> Iterator[tuple[str, str]]:
+    """The parameters of each filter of a chain, whose class is in ``filterN.type``."""
+    for path, value in values.items():
+        if isinstance(value, str) and (found := FILTER.fullmatch(path)) and found["word"] == "type":
+            yield f"{found['filter']}.params", value.replace("/", "::")
 
 
 def _with_primary(facts: tuple[Declared, ...], values: Values, name: str) -> tuple[Declared, ...]:

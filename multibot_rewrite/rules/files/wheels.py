@@ -14,7 +14,7 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
@@ -29,20 +29,21 @@ from multibot_rewrite.rules.facts.drives import (
     separation,
     wheel_of,
 )
-from multibot_rewrite.rules.files.declared import Given, Section, sections
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
 CONTROLLER = "diff_drive_controller"
 LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
+_LIMITS = "joint_limits"
 _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
 _Values = Mapping[str, Given]
 
 
-def with_wheels(file: NamedFile, description: Document) -> NamedFile:
-    """The file beside the one description that it is for, which is read where the file has wheels."""
-    if LEFT not in file.text:
+def with_description(file: NamedFile, description: Document) -> NamedFile:
+    """The file beside the one description that it is for, which is read for wheels and limits."""
+    if LEFT not in file.text and not (file.kind == MOVEIT and _LIMITS in file.text):
         return file
     release = file.context.distro
     tree = builtin_tree((), release)

@@ -268,9 +268,19 @@ def _unknown(
     if near:
         yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = _homes(tag)
+        homes = _homes(tag) or _beside(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
+
+
+def _beside(child: _Element, known: Described) -> tuple[str, ...]:
+    """The elements beside it that have such a child."""
+    parent, found = child.getparent(), []
+    for it in parent.iterchildren("*") if parent is not None else ():
+        inner = [described(row.section) for row in known.rows.get(str(it.tag), ()) if row.section]
+        if any(one is not None and child.tag in one.rows for one in inner):
+            found.append(str(it.tag))
+    return tuple(found)
 
 
 @lru_cache

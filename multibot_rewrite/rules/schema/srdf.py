@@ -14,7 +14,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import Robot
-from multibot_rewrite.description.checks.planning_groups import text_of
+from multibot_rewrite.description.checks.planning_groups import is_pinocchios, text_of
 from multibot_rewrite.rules.schema.faults import Fault
 
 # Element -> required attributes, other attributes, children.
@@ -47,9 +47,10 @@ _PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_dis
 def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Fault]:
     """Every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
     yield from _misspelt(root, _TOP, ("name", "version"))
+    pinocchios = is_pinocchios(root)
     for it, path in _elements(root):
         required, others, children = ELEMENTS[path]
-        for attribute in required:
+        for attribute in ("name",) if path == "group_state" and pinocchios else required:
             if attribute not in it.attrib:
                 message = f"<{it.tag}> has no {attribute}"
                 yield Fault("missing", it, None, message, f"add {attribute}")

@@ -9,7 +9,14 @@ import pytest
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.pages.view import models
-from multibot_rewrite.pages.view.models import Mesh, Model, find_mesh, load_mesh, load_model
+from multibot_rewrite.pages.view.models import (
+    MOST_BYTES,
+    Mesh,
+    Model,
+    find_mesh,
+    load_mesh,
+    load_model,
+)
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 CORNERS = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -187,3 +194,9 @@ def test_what_is_no_mesh_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(models, "MOST_FACES", 0)
     box = load_mesh(path)
     assert isinstance(box, Mesh) and len(box.faces) == 12 * 12
+
+
+def test_a_mesh_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "a.stl").open("wb") as file:
+        file.truncate(MOST_BYTES + 1)
+    assert load_mesh(str(tmp_path / "a.stl")) == "a.stl is larger than 256 MiB"

@@ -26,6 +26,8 @@ def linted(text: str, folder: Path, code: str) -> list[tuple[int, str]]:
         ("sources: [frnt], others: [front], front: {a: 1}", ""),
         ("sources: [front1], front2: {a: 1}", ""),
         ("sources: [frnt], more: {front: {a: 1}}", ""),
+        # A name with a dot has its parameters below two names.
+        ("file: front_a.pcd, front_a.pcd: {a: 1}, front_b.pcd: {a: 1}", ""),
     ],
 )
 def test_a_listed_name_without_parameters(rest: str, meant: str, tmp_path: Path) -> None:

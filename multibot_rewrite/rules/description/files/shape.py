@@ -8,7 +8,7 @@ from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.files.libraries import (
     misspelt_hardware,
@@ -35,7 +35,7 @@ from multibot_rewrite.rules.subject import Subject
     "release.",
     bad='<link name="a"><inertail/></link>',
     good='<link name="a"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
-    formats=(URDF, SRDF, PARAMS),
+    formats=(URDF, SRDF, PARAMS, MOVEIT),
 )
 def misspelt(subject: Subject) -> Iterator[Problem]:
     """Elements, attributes, parameters; what a plugin or <hardware> loads; interfaces."""
@@ -100,7 +100,7 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
     good='<link name="a">\n'
     '  <visual><geometry><cylinder radius="1" length="1"/></geometry></visual>\n'
     "</link>\n",
-    formats=(URDF, SRDF, PARAMS),
+    formats=(URDF, SRDF, PARAMS, MOVEIT),
 )
 def missing(subject: Subject) -> Iterator[Problem]:
     """By what each reader requires."""

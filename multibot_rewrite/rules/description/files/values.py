@@ -46,7 +46,7 @@ def _imu(inside: str) -> str:
     "needs a point.",
     bad='<link name="a"><visual><geometry><sphere radius="0,5"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><sphere radius="5e-1"/></geometry></visual></link>',
-    formats=(URDF, SRDF, PARAMS),
+    formats=(URDF, SRDF, PARAMS, MOVEIT),
 )
 def unreadable_value(subject: Subject) -> Iterator[Problem]:
     """All but those with a substitution: MB105 reports them."""
@@ -93,7 +93,7 @@ unknown_word = rule(
     "kilograms and radians.",
     bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
-    formats=(URDF, PARAMS),
+    formats=(URDF, PARAMS, MOVEIT),
 )
 def out_of_range(subject: Subject) -> Iterator[Problem]:
     """By what each reader takes, and what a sensor needs to see anything; MB120 has what is misread."""

@@ -12,6 +12,8 @@ from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
 _SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
+# The same without a host, which libcurl takes (RFC 8089).
+_SHORT = "file:/"
 # A letter and a colon is a drive of Windows.
 _MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
 MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>\n'
@@ -40,6 +42,8 @@ def _read(element: _Element, name: str) -> Used:
     scheme = _SCHEME.match(name)
     if scheme:
         return Used(element, name, scheme[1].lower(), name[scheme.end() :])
+    if name.lower().startswith(_SHORT):
+        return Used(element, name, "file", name[len(_SHORT) - 1 :])
     return Used(element, name, "file" if _MACHINE.match(name) else "", name)
 
 

@@ -106,7 +106,10 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     moving = any(it.type != "fixed" for it in robot.joints)
     if not (massless and chosen) and not (unweighed and moving):
         return
-    simulated = chosen or subject.elements.every("sensor") or simulator_plugins(subject)
+    # Hardware of ros2_control has sensors, too.
+    every = subject.elements.every("sensor")
+    sensors = any(next(it.iterancestors("ros2_control"), None) is None for it in every)
+    simulated = chosen or sensors or simulator_plugins(subject)
     what = "no link has an <inertial>" if unweighed else "no link has a mass"
     message = f"{what}: the robot cannot be simulated"
     yield Problem(subject.document.root, message, level=ERROR if simulated else "")

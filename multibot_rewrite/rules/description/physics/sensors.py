@@ -20,6 +20,13 @@ from multibot_rewrite.rules.description.examples import a_joint, a_link, block
 from multibot_rewrite.rules.description.physics.shared import a_rover
 from multibot_rewrite.rules.facts.memo import link_poses
 from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors
+from multibot_rewrite.rules.facts.simulators import (
+    CLASSIC,
+    GAZEBO,
+    library_of,
+    simulated,
+    simulator_plugins,
+)
 from multibot_rewrite.rules.facts.support import ground_of
 from multibot_rewrite.rules.subject import Subject
 
@@ -274,3 +281,39 @@ def _way_out(sensor: Sensor) -> float:
             along = turned(inverse(own.matrix), turned(sensor.pose.matrix, X))
             found.append(way_out(shape, start, along))
     return max(found)
+
+
+_FOR_GAZEBO = '<gazebo><plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/></gazebo>'
+
+
+def _in_gazebo(type_: str) -> str:
+    sensor = block('<gazebo reference="a">', f'<sensor name="scan" type="{type_}"/>')
+    return a_link("a") + _FOR_GAZEBO + sensor
+
+
+@rule(
+    "MB637",
+    "lidar-without-rays",
+    WARNING,
+    what="A description for Gazebo has a lidar of a type that only Gazebo Classic simulates: ray or "
+    "lidar.",
+    why="gz-sim makes no such sensor ('Sensor type LIDAR not supported yet', SdfEntityCreator.cc): it "
+    "has no topic, and nothing sees an obstacle.",
+    fix="Write gpu_lidar, and load the system Sensors in the world.",
+    bad=_in_gazebo("ray"),
+    good=_in_gazebo("gpu_lidar"),
+    line=3,
+)
+def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
+    """Lidars beside what only Gazebo loads, where nothing is for Gazebo Classic."""
+    libraries = {library_of(it) for it in simulator_plugins(subject)}
+    hardware = {simulator.name for _, _, simulator in simulated(subject)}
+    gazebo = GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
+    classic = CLASSIC.name in hardware or any(it.startswith(_CLASSICS) for it in libraries)
+    for it in sensors(subject) if gazebo and not classic else ():
+        if it.type in _RAYS and it.element.find("plugin") is None:
+            message = f"Gazebo simulates no sensor of type {it.type!r}"
+            yield Problem(it.element, message, "type", "write gpu_lidar")
+
+
+_RAYS, _GAZEBOS, _CLASSICS = ("ray", "lidar"), ("gz-sim-", "gz_ros2_control"), "gazebo_"

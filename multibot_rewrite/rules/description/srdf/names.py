@@ -4,15 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.description.checks.links_and_joints import Robot
-from multibot_rewrite.description.checks.planning_groups import text_of
+from multibot_rewrite.description.checks.planning_groups import FREE_FLYER, text_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.rules.description.references.lookup import undeclared
-from multibot_rewrite.rules.description.srdf.shared import ARM, VIRTUAL, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import (
+    ARM,
+    VIRTUAL,
+    level_of,
+    srdf_rule,
+    undeclared_for_moveit,
+)
 from multibot_rewrite.rules.subject import Subject
 
 
@@ -46,9 +51,10 @@ other_robot = srdf_rule(
     options={"urdf": "r.urdf"},
     bad=f'<robot name="other">{ARM}</robot>',
     good=ARM,
-)(partial(undeclared, "MB802"))
+)(undeclared_for_moveit("MB802"))
 
-srdf_link = srdf_rule(
+
+@srdf_rule(
     "MB803",
     "srdf-link",
     ERROR,
@@ -58,9 +64,14 @@ srdf_link = srdf_rule(
     fix="Correct the name.",
     bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
     good='<group name="arm"><joint name="j"/><link name="b"/></group>',
-)(partial(undeclared, "MB803"))
+)
+def srdf_link(subject: Subject) -> Iterator[Problem]:
+    """Of Pinocchio, which reads none of these, a warning."""
+    level = level_of(subject)
+    yield from (it._replace(level=level) for it in undeclared("MB803", subject))
 
-srdf_joint = srdf_rule(
+
+@srdf_rule(
     "MB804",
     "srdf-joint",
     ERROR,
@@ -71,7 +82,16 @@ srdf_joint = srdf_rule(
     bad=ARM + '<passive_joint name="jj"/>',
     good=ARM + '<passive_joint name="j"/>',
     line=2,
-)(partial(undeclared, "MB804"))
+)
+def srdf_joint(subject: Subject) -> Iterator[Problem]:
+    """All but the free flyer in a state for Pinocchio, which leaves the others out: a warning."""
+    level = level_of(subject)
+    yield from (
+        it._replace(level=level)
+        for it in undeclared("MB804", subject)
+        if it.element.tag != "joint" or text_of(it.element) != FREE_FLYER
+    )
+
 
 srdf_group = srdf_rule(
     "MB805",
@@ -84,7 +104,7 @@ srdf_group = srdf_rule(
     bad=ARM + '<group name="all"><group name="amr"/></group>',
     good=ARM + '<group name="all"><group name="arm"/></group>',
     line=2,
-)(partial(undeclared, "MB805"))
+)(undeclared_for_moveit("MB805"))
 
 
 @srdf_rule(

@@ -3,9 +3,15 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable, Iterator
+from functools import partial, wraps
 
+from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import SRDF, rule
+from multibot_rewrite.description.checks.planning_groups import is_pinocchios
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.description.references.lookup import undeclared
+from multibot_rewrite.rules.subject import Subject
 
 SHOWN = 5
 # The robot of the examples.
@@ -21,3 +27,31 @@ VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="world" child_link="{}
 APART = '<disable_collisions link1="a" link2="b" reason="Adjacent"/>\n'
 # A rule about an SRDF: its examples have the URDF above beside them.
 srdf_rule = partial(rule, formats=(SRDF,), beside=BESIDE)
+
+
+def of_moveit(
+    check: Callable[[Subject], Iterator[Problem]],
+) -> Callable[[Subject], Iterator[Problem]]:
+    """A check of what MoveIt alone reads: an SRDF for Pinocchio is left alone."""
+
+    @wraps(check)
+    def found(subject: Subject) -> Iterator[Problem]:
+        if not is_pinocchios(subject.document.root):
+            yield from check(subject)
+
+    return found
+
+
+def level_of(subject: Subject) -> str:
+    """How bad a name is that the URDF does not have, where it is no error: Pinocchio leaves a joint
+    of a state out and reads no group."""
+    return WARNING if is_pinocchios(subject.document.root) else ""
+
+
+def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
+    """The names of a rule that nothing declares, in an SRDF for MoveIt."""
+
+    def check(subject: Subject) -> Iterator[Problem]:
+        return undeclared(code, subject)
+
+    return of_moveit(check)

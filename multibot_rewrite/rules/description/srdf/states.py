@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.planning_groups import (
     text_of,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.srdf.shared import ARM, STATE, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import ARM, STATE, of_moveit, srdf_rule
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
@@ -38,6 +38,7 @@ ROUNDING = 1e-4
     good=STATE.format("") + '<group_state name="up" group="arm"/>',
     line=3,
 )
+@of_moveit
 def duplicate_state(subject: Subject) -> Iterator[Problem]:
     """Every state but the first of its name."""
     seen = set()
@@ -61,6 +62,7 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     good=STATE.format('<joint name="j" value="0"/>'),
     line=2,
 )
+@of_moveit
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     """Joints of states that exist and are not in the group, of which all groups are known."""
     robot = subject.beside
@@ -157,6 +159,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
     bad='<group name="arm"/>',
     good=ARM,
 )
+@of_moveit
 def empty_group(subject: Subject) -> Iterator[Problem]:
     """Groups with nothing in them."""
     for it in subject.document.root.iterchildren("group"):

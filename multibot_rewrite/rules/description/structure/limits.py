@@ -24,6 +24,7 @@ from multibot_rewrite.rules.description.structure.shared import (
     one_joint,
 )
 from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.simulators import commanded
 from multibot_rewrite.rules.schema.versions import KNOWN, version_of
 from multibot_rewrite.rules.subject import Subject
 
@@ -121,9 +122,10 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     "MB515",
     "zero-limit",
     NOTE,
-    what="The greatest effort or velocity of a joint that moves is 0.",
+    what="The greatest effort or velocity of a joint that moves is 0. It is a warning for the effort "
+    "of a joint that a simulator commands.",
     why="ros2_control's joint limits use the 0 as it is: no velocity is allowed; MoveIt treats a "
-    "velocity of 0 as no limit.",
+    "velocity of 0 as no limit. Gazebo has no force for the joint: the arm falls, the wheel stands.",
     fix="Write what the motor can do.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="0" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
@@ -138,7 +140,8 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
         if zero and not _cannot_move(joint, limit):
             verb = "are" if zero[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
-            yield Problem(limit, message, zero[0])
+            weak = zero[0] == "effort" and joint.name in commanded(subject)
+            yield Problem(limit, message, zero[0], level=WARNING if weak else "")
 
 
 @rule(

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The commands of joy_teleop: what the node raises an exception for.
+
+Source: ros-teleop/teleop_tools 99d16d74c joy_teleop/joy_teleop/joy_teleop.py (JoyTeleopCommand,
+JoyTeleopTopicCommand, ``get_interface_type``, ``get_parent_member``, JoyTeleop.__init__).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, sections
+
+_NODE = "joy_teleop"
+# Type of a command -> the middle of its interface's type, what names it, and what starts it.
+_TYPES = {
+    "topic": ("msg", "topic_name", ("deadman_buttons", "deadman_axes", "deadman_axes_negative")),
+    "service": ("srv", "service_name", ("buttons", "axes", "axes_negative")),
+    "action": ("action", "action_name", ("buttons", "axes", "axes_negative")),
+}
+_MAPPINGS, _VALUE = "axis_mappings", "message_value"
+_INPUTS = ("axis", "button", "value")
+# The first fields of messages that are driven with.
+_FIELDS = {
+    "geometry_msgs/msg/Twist": ("linear", "angular"),
+    "geometry_msgs/msg/TwistStamped": ("header", "twist"),
+}
+_Values = Mapping[str, Given]
+
+
+def _command(buttons: str) -> str:
+    return (
+        "joy_teleop:\n"
+        "  ros__parameters:\n"
+        "    halt:\n"
+        f"      type: topic\n{buttons}"
+        "      interface_type: std_msgs/msg/Bool\n"
+        "      topic_name: halt\n"
+        "      message_value: {data: {value: true}}\n"
+    )
+
+
+@rule(
+    "MB897",
+    "joystick-command",
+    ERROR,
+    what="A command of joy_teleop is not whole: no known type, no type of its interface, no name, "
+    "nothing that starts it, neither or both of message_value and axis_mappings, an axis without scale "
+    "or offset, or a field that its message does not have.",
+    why="joy_teleop raises an exception for it and ends; none of its commands works.",
+    fix="Add what is missing, or correct it.",
+    bad=_command(""),
+    good=_command("      deadman_buttons: [4]\n"),
+    line=4,
+    formats=(PARAMS,),
+)
+def broken_commands(file: NamedFile) -> Iterator[Remark]:
+    """Of each command, at its first parameter."""
+    for section in sections(file):
+        if section.node is None or section.node.name != _NODE:
+            continue
+        commands: dict[str, dict[str, Given]] = {}
+        for it in section.given:
+            name, dot, rest = it.name.partition(".")
+            if dot and name != "qos_overrides":
+                commands.setdefault(name, {})[rest] = it
+        for name, values in commands.items():
+            first = next(iter(values.values()))
+            for words, hint in _faults(values):
+                yield remark_at(first.key, f"{section.title}: command {name!r} {words}", hint)
+
+
+def _faults(values: _Values) -> Iterator[tuple[str, str]]:
+    type_ = _text(values, "type")
+    if type_ not in _TYPES:
+        said = f"is of type {type_!r}" if type_ else "has no type"
+        yield said, f"write one of {', '.join(_TYPES)}"
+        return
+    middle, named, starts = _TYPES[type_]
+    for word in (it for it in ("interface_type", named) if it not in values):
+        yield f"has no {word}", f"add {word}"
+    kind = _text(values, "interface_type")
+    parts = kind.split("/")
+    if kind and (len(parts) != 3 or parts[1] != middle):
+        yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
+    if not any(_is_filled(values, it) for it in starts):
+        yield "is started by nothing", f"add {starts[0]}, or {' or '.join(starts[1:])}"
+    if type_ == "topic":
+        yield from _of_topic(values, kind)
+
+
+def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
+    mapped, fixed = (
+        any(it.startswith(f"{name}.") for it in values) for name in (_MAPPINGS, _VALUE)
+    )
+    if mapped == fixed:
+        both = f"both {_VALUE} and {_MAPPINGS}" if mapped else f"neither {_VALUE} nor {_MAPPINGS}"
+        yield f"has {both}", "give it one of the two"
+    below = [it.removeprefix(f"{_MAPPINGS}.") for it in values if it.startswith(f"{_MAPPINGS}.")]
+    for field in dict.fromkeys(it.rpartition(".")[0] for it in below):
+        words = {it.rpartition(".")[2] for it in below if it.rpartition(".")[0] == field}
+        if words.isdisjoint(_INPUTS):
+            yield f"has no axis, button or value for {field}", "add one of them"
+        missing = [it for it in ("scale", "offset") if it not in words] if "axis" in words else []
+        if missing:
+            yield (
+                f"has no {' and no '.join(missing)} for {field}",
+                "add scale and offset of the axis",
+            )
+        known = _FIELDS.get(kind, ())
+        if known and field.strip("-").partition("-")[0] not in known:
+            yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "see the message"
+
+
+def _text(values: _Values, name: str) -> str:
+    value = values[name].value if name in values else None
+    return value if isinstance(value, str) else ""
+
+
+def _is_filled(values: _Values, name: str) -> bool:
+    return name in values and values[name].value not in (None, [])

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Limits and groups of MoveIt's files against the descriptions and the SRDF of their package.
+
+Source: moveit2 2.12.4 robot_model_loader.cpp (a limit of the file takes the place of the URDF's),
+kinematics_plugin_loader.cpp and ompl_interface.cpp (both ask by the groups of the SRDF).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.nearest import did_you_mean
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.description.checks.links_and_joints import Joint
+from multibot_rewrite.description.checks.numbers import value_of
+from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.rules.description.structure.shared import BOUNDED
+from multibot_rewrite.rules.files.records import Remark, remark, remark_at
+from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.subject import Robots
+
+_LIMIT = re.compile(
+    r"robot_description_planning\.joint_limits\.(?P<joint>.+)\.(?P<what>max_velocity|m(?:ax|in)_position)"
+)
+# What a file says -> the attribute of the URDF's <limit>, and on which side of it is too far.
+_OF_URDF = {
+    "max_velocity": ("velocity", 1),
+    "max_position": ("upper", 1),
+    "min_position": ("lower", -1),
+}
+_ROUNDED = 1e-3
+_SRDF = ".srdf"
+_GROUP = re.compile(rb"<group\s[^>]*?name\s*=\s*[\"']([^\"']*)[\"']")
+_ARM = """\
+<robot name="arm">
+  <link name="base"/><link name="upper"/>
+  <joint name="lift" type="revolute">
+    <parent link="base"/><child link="upper"/><limit lower="-1" upper="1" effort="9" velocity="2"/>
+  </joint>
+</robot>
+"""
+_BESIDE = {
+    "package.xml": "<package><name>arm</name></package>",
+    "urdf/rover.urdf": _ARM,
+    "arm.srdf": '<robot name="arm"><group name="arm"><joint name="lift"/></group></robot>',
+}
+
+
+def _limits(velocity: str) -> str:
+    return f"joint_limits:\n  lift: {{has_velocity_limits: true, max_velocity: {velocity}}}\n"
+
+
+@rule(
+    "MB898",
+    "limits-beyond-the-joint",
+    WARNING,
+    what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in the "
+    "package's description.",
+    why="MoveIt takes the limits of the file in place of the URDF's. It plans what the hardware or "
+    "ros2_control does not take: the controller is behind, and aborts the trajectory.",
+    fix="Write the limits of the description, or narrower ones.",
+    bad=_limits("3.0"),
+    good=_limits("1.5"),
+    line=2,
+    formats=(MOVEIT,),
+    beside=_BESIDE,
+)
+def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
+    """What no description of the package with this joint allows."""
+    robots: Robots | None = file.memo.get(Robots)
+    for section in sections(file) if robots else ():
+        for it in section.given:
+            found = _LIMIT.fullmatch(it.name)
+            if found is None or not _is_asked(section, it, found["what"]):
+                continue
+            joints = [
+                subject.robot.joint[found["joint"]]
+                for subject in (robots.subjects if robots else ())
+                if found["joint"] in subject.robot.joint
+            ]
+            limits = [_beyond(joint, found["what"], it.value) for joint in joints]
+            if limits and all(limit is not None for limit in limits):
+                message = f"{found['what']} of {found['joint']} is {it.value}"
+                hint = "MoveIt plans beyond what the joint takes"
+                yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
+
+
+def _is_asked(section: Section, it: Given, what: str) -> bool:
+    """Positions count wherever they are, a velocity where it is switched on."""
+    flag = section.whole.get(it.name.removesuffix(what) + "has_velocity_limits")
+    return what != "max_velocity" or (flag is not None and flag.value is True)
+
+
+def _beyond(joint: Joint, what: str, value: object) -> float | None:
+    """The limit of a joint that a value is beyond; None where it is not, or has no limit."""
+    attribute, side = _OF_URDF[what]
+    limit = joint.parts.get("limit")
+    own = value_of(limit, attribute) if limit is not None else None
+    if own is None or isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    # 0 is what exporters write for a velocity that they do not know.
+    free = own <= 0 if attribute == "velocity" else joint.type not in BOUNDED
+    return own if not free and side * (value - own) > _ROUNDED * max(1.0, abs(own)) else None
+
+
+def _solver(group: str) -> str:
+    return f"{group}:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n"
+
+
+@rule(
+    "MB899",
+    "group-not-in-srdf",
+    WARNING,
+    what="A file names a planning group that no SRDF of its folder has.",
+    why="MoveIt asks for the solver, planners and limits of a group by its name in the SRDF: the group "
+    "that is there has none ('No kinematics solver instantiated'), and servo_node does not start.",
+    fix="Name a group of the SRDF.",
+    bad=_solver("manipulator"),
+    good=_solver("arm"),
+    line=1,
+    formats=(MOVEIT, PARAMS),
+    beside=_BESIDE,
+)
+def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
+    """Nothing where an SRDF makes names of its groups when it is expanded."""
+    sites = [it for it in file.names if it.kind == "group" and it.is_sure]
+    # A build that has the SRDF knows its groups, and says it as of any name.
+    told = file.is_certain and bool(file.declared.get("group"))
+    asked = bool(sites) and not told and not is_for_ros_1(file.file)
+    groups = _groups(file.file) if asked else frozenset()
+    for it in sites if groups else ():
+        if it.text and it.text not in groups and it.text.isidentifier():
+            message = f"no SRDF beside it has a group {it.text!r}"
+            yield remark(it, message, did_you_mean(it.text, groups) or f"there is {min(groups)}")
+
+
+def _groups(file: str) -> frozenset[str]:
+    folder = os.path.dirname(os.path.abspath(file))
+    found: set[str] = set()
+    for name in sorted(it for it in entries(folder) if _SRDF in it):
+        data = read_file(os.path.join(folder, name))
+        names = {it[1].decode("utf-8", "replace") for it in _GROUP.finditer(data)}
+        # A group that a macro makes may have any name.
+        if any("$" in it for it in names) or b"xacro:" in data.partition(b">")[2]:
+            return frozenset()
+        found |= names
+    return frozenset(found)

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a file sets for each node and plugin, beside what declares it: of a parameter file, and of a
+file of MoveIt as the parameters that it becomes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import yaml
+
+from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.kinds import MOVEIT
+from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
+from multibot_rewrite.companions.moveit.rewrite import node_of
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
+from multibot_rewrite.companions.params.sections import (
+    ANY,
+    RawSection,
+    controller_types,
+)
+from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.description.sources.packages import is_for_ros_1
+from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
+from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
+from multibot_rewrite.rules.files.parameter_facts import facts_of_node
+from multibot_rewrite.rules.files.plugins import plugins_in
+
+ASKED = "asked"
+
+
+class Given(NamedTuple):
+    """A parameter of a section: its dotted name, its key, and its value where rcl reads one."""
+
+    name: str
+    key: yaml.ScalarNode
+    node: yaml.Node
+    value: Value | None
+
+
+class Section(NamedTuple):
+    """The parameters of one node or plugin, each with what declares it, and all that is declared.
+    ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
+
+    title: str
+    node: KnownNode | None
+    given: tuple[Given, ...]
+    facts: tuple[Declared, ...]
+    known: tuple[tuple[Given, tuple[Declared, ...]], ...]
+    whole: Mapping[str, Given]
+    at: str = ""
+
+
+def sections(file: NamedFile) -> tuple[Section, ...]:
+    """The sections of a parameter file, or the parameters of a file of MoveIt."""
+    if sections not in file.memo:
+        read = _of_moveit if file.kind == MOVEIT else _sections
+        file.memo[sections] = tuple(read(file))
+    found: tuple[Section, ...] = file.memo[sections]
+    return found
+
+
+def _sections(file: NamedFile) -> Iterator[Section]:
+    types = controller_types(RawSection(*it[:3]) for it, _ in file.pages)
+    for it, _ in file.pages:
+        name = it.path.rpartition("/")[2]
+        if file.document is None:
+            return
+        given = tuple(_given(file.document, it.body, ""))
+        if name in ANY or PLACEHOLDER.search(it.path):
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
+            continue
+        type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
+        node = it.node
+        if node is not None and not _is_surely(node, name, type_, given):
+            node = None
+        facts = facts_of_node(node, type_, file.file, file.roots)
+        whole = _by_name(given)
+        below, rest = _of_plugins(it.path, given, whole)
+        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
+        yield from below
+
+
+def _of_moveit(file: NamedFile) -> Iterator[Section]:
+    kind = find_kind(file.document) if file.document else None
+    if file.document is None or kind is None or is_for_ros_1(file.file):
+        return
+    node = built_in_nodes(file.context.distro).nodes[node_of(kind)]
+    above = parameter_above(kind, file.document)
+    root = file.document.root
+    given = tuple(_given(file.document, root, above)) if root is not None else ()
+    facts = facts_of_node(node, "", file.file, file.roots)
+    yield _section(node.name, node, given, facts, _by_name(given))
+
+
+def _by_name(given: Sequence[Given]) -> Mapping[str, Given]:
+    return {it.name: it for it in given}
+
+
+def _section(
+    title: str,
+    node: KnownNode | None,
+    given: tuple[Given, ...],
+    facts: tuple[Declared, ...],
+    whole: Mapping[str, Given],
+    at: str = "",
+) -> Section:
+    exact: dict[str, list[Declared]] = {}
+    wild: list[tuple[str, Declared]] = []
+    for fact in facts:
+        if "<" in fact.path:
+            wild.append((fact.path.rpartition(".")[2], fact))
+        else:
+            exact.setdefault(fact.path, []).append(fact)
+    known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
+    return Section(title, node, given, facts, tuple(_asked(known, whole, at)), whole, at)
+
+
+def _asked(
+    known: Sequence[tuple[Given, tuple[Declared, ...]]], whole: Mapping[str, Given], at: str
+) -> Iterator[tuple[Given, tuple[Declared, ...]]]:
+    """Without what is not read with the value of another parameter."""
+    for it, facts in known:
+        yield it, tuple(fact for fact in facts if _is_read(fact, it.name, whole, at))
+
+
+def _is_read(fact: Declared, name: str, whole: Mapping[str, Given], at: str) -> bool:
+    for check, text in fact.checks if ASKED in fact.bounds else ():
+        if check == ASKED:
+            other, value = filled(text, fact.path, name)
+            given = whole.get(at + other)
+            if given is None or str(given.value).lower() != value:
+                return False
+    return True
+
+
+def filled(text: str, path: str, name: str) -> tuple[str, ...]:
+    """The words of a check's arguments, with what the words in brackets of a path are in a name."""
+    words = text.split()
+    for word, part in (stands_for(path, name) if "<" in text else {}).items():
+        words = [it.replace(word, part) for it in words]
+    return tuple(words)
+
+
+def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
+    """Those that have the name, each with the last word of its path."""
+    last = name.rpartition(".")[2]
+    return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
+
+
+def _of_plugins(
+    title: str, given: Sequence[Given], whole: Mapping[str, Given]
+) -> tuple[list[Section], tuple[Given, ...]]:
+    """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
+    what an unknown plugin declares."""
+    plugins = plugins_in({it.name: it.value for it in given})
+    of: dict[str, list[Given]] = {}
+    for it in given:
+        parts = it.name.split(".")
+        above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
+        of.setdefault(next((name for name in above if name in plugins), ""), []).append(it)
+    rest, found = of.pop("", []), []
+    for name, its in of.items():
+        class_, facts = plugins[name]
+        own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
+        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, whole, f"{name}."))
+    return found, tuple(rest)
+
+
+def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
+    """Is it this controller, not another one that is often called the same?"""
+    if not node.facts.types or type_ in node.facts.types:
+        return True
+    words = {it.name.partition(".")[0] for it in given}
+    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
+    return "/" not in type_ and (name == node.name or by_words)
+
+
+def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
+    for key, value in pairs(body):
+        name = f"{above}{key.value}"
+        if isinstance(value, yaml.MappingNode):
+            yield from _given(document, value, f"{name}.")
+        else:
+            yield Given(name, key, value, _value(document, value))
+
+
+def _value(document: YamlText, node: yaml.Node) -> Value | None:
+    try:
+        value = value_of(document, node)
+    except InputError:
+        return None
+    texts = value if isinstance(value, list) else [value]
+    filled = any(isinstance(it, str) and PLACEHOLDER.search(it) for it in texts)
+    return None if filled else value

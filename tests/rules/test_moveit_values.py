@@ -1,0 +1,194 @@
+"""Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.rules.settings import Settings
+
+ARM = """\
+<robot name="arm">
+  <link name="base"/><link name="upper"/><link name="hand"/>
+  <joint name="lift" type="revolute">
+    <parent link="base"/><child link="upper"/><limit lower="-1" upper="1" effort="9" velocity="2"/>
+  </joint>
+  <joint name="turn" type="continuous"><parent link="upper"/><child link="hand"/></joint>
+</robot>
+"""
+SRDF = '<robot name="arm"><group name="arm"><joint name="lift"/></group>{}</robot>'
+PACKAGE = "<package><name>arm</name><buildtool_depend>{}</buildtool_depend></package>"
+
+
+def linted(
+    folder: Path, name: str, text: str, select: Iterable[str], release: str = "jazzy"
+) -> list[tuple[str, str]]:
+    files = {
+        "package.xml": PACKAGE.format("ament_cmake"),
+        "arm.urdf": ARM,
+        "arm.srdf": SRDF.format(""),
+    }
+    for file, content in {**files, name: text}.items():
+        if not (folder / file).exists() or file == name:
+            (folder / file).write_text(content)
+    settings = Settings(select=tuple(select), distro=release)
+    found = lint_files([str(folder / name)], settings, jobs=1)
+    return [(it.code, it.level) for it in found]
+
+
+def limits(joint: str, values: str) -> str:
+    return f"joint_limits:\n  {joint}: {{{values}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("joint", "values", "expected"),
+    [
+        ("lift", "has_velocity_limits: true, max_velocity: 1", [("MB120", ERROR)]),
+        ("lift", "has_velocity_limits: false, max_velocity: 1", []),
+        ("lift", "max_velocity: 9.0", []),
+        ("lift", "has_velocity_limits: true, max_velocity: 9.0", [("MB898", WARNING)]),
+        ("lift", "max_position: 0.5, min_position: -0.5", []),
+        ("lift", "max_position: 1.5", [("MB898", WARNING)]),
+        ("lift", "min_position: -1.5", [("MB898", WARNING)]),
+        ("lift", "max_position: -0.5, min_position: 0.5", [("MB125", WARNING)]),
+        ("lift", "has_jerk_limits: true", [("MB115", ERROR)]),
+        ("$(arg prefix)a", "has_velocity_limits: true, max_velocity: 1", [("MB120", ERROR)]),
+        # A continuous joint has no range, and the URDF no velocity for it.
+        ("turn", "has_velocity_limits: true, max_velocity: 99.0, max_position: 9.0", []),
+    ],
+)
+def test_limits_of_a_joint(
+    joint: str, values: str, expected: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    codes = ("MB115", "MB120", "MB125", "MB898")
+    assert linted(tmp_path, "joint_limits.yaml", limits(joint, values), codes) == expected
+
+
+def test_a_package_of_ros_1_is_not_judged_by_ros_2(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(PACKAGE.format("catkin"))
+    text = limits("lift", "has_velocity_limits: true, max_velocity: 1")
+    assert linted(tmp_path, "joint_limits.yaml", text, ("MB120", "MB899")) == []
+
+
+@pytest.mark.parametrize(
+    ("release", "text", "expected"),
+    [
+        ("jazzy", "planning_plugin: ompl_interface/OMPLPlanner\n", [("MB894", WARNING)]),
+        ("humble", "planning_plugin: ompl_interface/OMPLPlanner\n", []),
+        ("jazzy", "planning_plugins: [ompl_interface/OMPLPlanner]\n", []),
+        ("jazzy", "planning_plugins: [ompl_interface/OMPLPlaner]\n", [("MB124", ERROR)]),
+        (
+            "jazzy",
+            "request_adapters: chomp/OptimizerAdapter\n",
+            [("MB120", WARNING), ("MB124", WARNING)],
+        ),
+        ("humble", "request_adapters: chomp/OptimizerAdapter\n", []),
+    ],
+)
+def test_a_pipeline_by_release(
+    release: str, text: str, expected: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    codes = ("MB120", "MB124", "MB894")
+    # The pipeline is in the name of one file, and in the launch file for another.
+    for name in ("ompl_planning.yaml", "pipeline.yaml"):
+        assert linted(tmp_path, name, text, codes, release) == expected
+
+
+@pytest.mark.parametrize(
+    ("srdf", "expected"),
+    [
+        (SRDF.format(""), [("MB899", WARNING)]),
+        (SRDF.format('<group name="hand"><link name="hand"/></group>'), []),
+        # Groups that a macro makes may have any name.
+        (SRDF.format('<group name="${prefix}hand"/>'), []),
+        (SRDF.format('<xacro:hand name="hand"/>'), []),
+    ],
+)
+def test_a_group_that_no_srdf_has(
+    srdf: str, expected: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    (tmp_path / "arm.srdf").write_text(srdf)
+    text = "hand:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n"
+    assert linted(tmp_path, "kinematics.yaml", text, ("MB899",)) == expected
+
+
+FILTER = "name: {}, type: laser_filters/{}"
+
+
+@pytest.mark.parametrize(
+    ("filters", "expected"),
+    [
+        ({"filter1": FILTER.format("a", "InterpolationFilter")}, []),
+        ({"filter2": FILTER.format("a", "InterpolationFilter")}, [("MB896", WARNING)]),
+        ({"filter1": "type: laser_filters/InterpolationFilter"}, [("MB896", ERROR)]),
+        (
+            {f"filter{it}": FILTER.format("a", "InterpolationFilter") for it in (1, 2)},
+            [("MB896", ERROR)],
+        ),
+        # A number without an end is no filter's.
+        ({"filter1" + "0" * 900: FILTER.format("a", "InterpolationFilter")}, []),
+    ],
+)
+def test_a_chain_of_filters(
+    filters: dict[str, str], expected: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    lines = "".join(f"    {name}: {{{body}}}\n" for name, body in filters.items())
+    text = f"scan_to_scan_filter_chain:\n  ros__parameters:\n{lines}"
+    assert linted(tmp_path, "filters.yaml", text, ("MB896",)) == expected
+
+
+COMMAND = "type: topic, interface_type: std_msgs/msg/Bool, topic_name: a, deadman_buttons: [1]"
+
+
+@pytest.mark.parametrize(
+    ("command", "count"),
+    [
+        (f"{COMMAND}, message_value: {{data: {{value: true}}}}", 0),
+        (COMMAND, 1),
+        (
+            f"{COMMAND}, message_value: {{data: {{value: true}}}}, axis_mappings: {{a: {{axis: 1}}}}",
+            2,
+        ),
+        (f"{COMMAND}, axis_mappings: {{data: {{}}}}", 1),
+        ("type: action, interface_type: a/action/B, action_name: a, buttons: [1]", 0),
+        ("type: action, interface_type: a/msg/B, buttons: []", 3),
+        ("interface_type: a/msg/B", 1),
+    ],
+)
+def test_a_command_of_a_joystick(command: str, count: int, tmp_path: Path) -> None:
+    text = f"joy_teleop:\n  ros__parameters:\n    use_sim_time: true\n    go: {{{command}}}\n"
+    assert linted(tmp_path, "joy.yaml", text, ("MB897",)) == [("MB897", ERROR)] * count
+
+
+ROTOR = '<rotor_params><joint name="{}" mass="1" gear_ratio="9"/></rotor_params>'
+STATE = '<group_state name="home"{}><joint name="{}" value="0"/></group_state>'
+
+
+@pytest.mark.parametrize(
+    ("rest", "expected"),
+    [
+        (STATE.format(' group="arm"', "lift"), []),
+        (STATE.format(' group="rest"', "lift"), [("MB805", ERROR)]),
+        # Pinocchio takes no group from a state, and calls its free flyer root_joint.
+        (STATE.format("", "lift"), []),
+        (STATE.format(' group="rest"', "root_joint"), []),
+        (STATE.format(' group="arm"', "lost"), [("MB804", ERROR)]),
+        (STATE.format("", "lost"), [("MB804", WARNING)]),
+        (
+            STATE.format("", "lift") + '<group name="all"><link name="lost"/></group>',
+            [("MB803", WARNING)],
+        ),
+        ('<rotor_params><joint name="lift" mass="1" gear_ratio="9"/></rotor_params>', []),
+        (
+            '<rotor_params><joint name="lost" mass="1" gear_ratio="9"/></rotor_params>',
+            [("MB804", WARNING)],
+        ),
+    ],
+)
+def test_an_srdf_of_pinocchio(rest: str, expected: list[tuple[str, str]], tmp_path: Path) -> None:
+    codes = ("MB115", "MB803", "MB804", "MB805", "MB812", "MB901")
+    assert linted(tmp_path, "arm.srdf", SRDF.format(rest), codes) == expected
