@@ -15,6 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.active import ADDRESS, FILE, RELATIVE
 from multibot_rewrite.description.readback.nodes import (
+    ACTION,
     SERVICE,
     TOPIC,
     TRANSFORMS,
@@ -93,7 +94,7 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
             # Where each robot has a tf topic of its own, frames may be the same.
             at_run_time = naming.layout.at_run_time and it.tag == "link"
             shared = at_run_time or not naming.layout.frames or bare in naming.shared_frames
-        elif it.kind in (TOPIC, SERVICE):
+        elif it.kind in (TOPIC, SERVICE, ACTION):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
         elif it.kind == TRANSFORMS:
@@ -108,7 +109,7 @@ def code_of(name: RuntimeName) -> str:
     """The rule that a shared name is about."""
     if name.of_controllers:
         return NOT_TAKEN
-    if name.kind == SERVICE:
+    if name.kind in (SERVICE, ACTION):
         return TWO_SERVERS
     if name.kind in TOPIC_KINDS:
         from multibot_rewrite.system.words import is_order  # nothing is shared in most files

@@ -28,7 +28,7 @@ from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
-TOPIC, SERVICE = "topic", "service"
+TOPIC, SERVICE, ACTION = "topic", "service", "action"
 # What a plugin sends that no rule reaches, on the one topic that all have: frames keep robots apart.
 TRANSFORMS = "transforms on"
 TF_TOPICS = ("/tf", "/tf_static")
