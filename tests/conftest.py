@@ -57,14 +57,16 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
 FEW = 4
+# So many at most are in the usual run.
+MANY = 20
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
 
-    Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. Of
-    those with ``sample(m)`` the first of every m are in the usual run.
+    Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. In
+    the usual run are up to MANY, of those with ``sample(m)`` the first of every m.
     """
     names = [item.nodeid.partition("[")[0] for item in items]
     rows, seen = Counter(names), Counter[str]()
@@ -73,7 +75,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         left_out = at % -(-rows[name] // (1 if sample else FEW))
         if left_out and not any(map(item.get_closest_marker, ("slow", "live", "deep"))):
             item.add_marker("more")
-        if left_out and sample and at % sample.args[0]:
+        usual = sample.args[0] if sample else -(-rows[name] // MANY)
+        if left_out and at % usual:
             item.add_marker("deep")
         if any(map(item.get_closest_marker, ("deep", "more"))):
             item.add_marker("slow")

@@ -18,7 +18,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.description.reports.survey import MentionPlace, Survey, Tally, add, survey
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 

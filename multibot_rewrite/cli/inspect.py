@@ -26,7 +26,7 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     load_vocabulary,
 )
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 

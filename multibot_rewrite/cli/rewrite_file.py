@@ -12,7 +12,8 @@ from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import check_unread, deliver, input_name, is_stopped, tell
 from multibot_rewrite.cli.usage import rewriting
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
-from multibot_rewrite.description.sources.read import Source, read_whole
+from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_files
 
 WORDS = {

@@ -23,7 +23,7 @@ from vendor_arm_pages import text_of
 from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet

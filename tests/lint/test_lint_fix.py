@@ -83,7 +83,7 @@ def test_marks_and_line_ends_around_it_stay(data: bytes) -> None:
     assert fixed.removeprefix(BOM).count(b"\r") == data.count(b"\r") - (1 if b"\r" in data else 0)
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_files_of_the_corpus(corpus: dict[str, Path]) -> None:
     # Most of what is fixed are prefixes that nothing uses.
     likely = {name: path for name, path in corpus.items() if b" xmlns:" in path.read_bytes()}

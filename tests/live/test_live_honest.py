@@ -100,6 +100,7 @@ def elsewhere(folder: Path) -> Done:
         return check(plan, 86)
 
 
+@pytest.mark.deep
 def test_the_participants_beyond_32_are_not_called_missing(looks: tuple[Done, Done]) -> None:
     done, _ = looks
     assert_inconclusive(done)

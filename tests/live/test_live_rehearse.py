@@ -72,6 +72,7 @@ def rehearsed(folder: Path, tf2: dict[str, str]) -> Done:
     return {name: it.result() for name, it in made.items()}
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_layout_holds(layout: str, rehearsed: Done, folder: Path) -> None:
     assert_it_holds(rehearsed[layout], layout, folder / layout)

@@ -34,6 +34,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.deep
 def test_the_page_works_as_written(tmp_path: Path, environment: dict[str, str]) -> None:
     folder = tmp_path / "work"
     guides.copy_repository(folder / "multibot_rewrite")

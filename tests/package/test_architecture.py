@@ -51,7 +51,7 @@ def test_paths_in_the_rest_of_the_page_are_there() -> None:
     assert [it for it in paths if not (any(PACKAGE.glob(it)) or any(ROOT.glob(it)))] == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_figures_are_those_of_today() -> None:
     """Else: ``python benchmarks/house.py --write``."""
     line = [sys.executable, "benchmarks/house.py"]

@@ -71,6 +71,7 @@ def disagreements(paths: Iterable[Path], folder: Path) -> dict[str, dict[str, se
     return wrong
 
 
+@pytest.mark.deep
 def test_five_judges_agree(corpus: dict[str, Path], tmp_path: Path) -> None:
     with_plugins = [it for it in corpus.values() if b"<plugin" in it.read_bytes()]
     assert len(with_plugins[::EVERY]) > 10

@@ -65,7 +65,7 @@ def test_every_finding_says_what_it_is_about() -> None:
             assert it.message and not it.message.startswith(" "), it
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize("name", NAMED)
 def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) -> None:
@@ -91,7 +91,7 @@ def test_with_its_plan_it_is_the_same_or_what_the_plan_has_and_is_not_there(faul
     assert fault.code in found.codes or lost, found
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BUILT)
 def test_a_build_reads_it_back(name: str) -> None:
@@ -115,7 +115,7 @@ def test_there_are_faults_enough_and_no_need_without_a_fault() -> None:
     assert NAMED.keys() >= {*MORE_NEEDS, *BUILT}
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("at", range(0, len(FAULTS), 40))
 def test_a_bag_that_is_written_is_the_recording(at: int, tmp_path: Path) -> None:

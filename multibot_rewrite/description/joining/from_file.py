@@ -20,7 +20,7 @@ from multibot_rewrite.description.joining.join import Given, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.sources.read import JOIN, SourceText, read_file, read_whole
+from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
@@ -55,7 +55,7 @@ def parts_of(path: str) -> tuple[Part, ...]:
 def read_joined(path: str, trust: bool) -> SourceText:
     """The joined description of a file, without comments of the join; raises as ``join_texts``."""
     parts = parts_of(path)
-    texts = [read_whole(it.description, it.xacro_args, trust) for it in parts]
+    texts = [read_alone(it.description, it.xacro_args, trust) for it in parts]
     given = [
         Given(it, _without_banner(text), text.file) for it, text in zip(parts, texts, strict=True)
     ]

@@ -65,9 +65,9 @@ def has_xacro(data: bytes) -> bool:
     return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 
-def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """The bytes of a source with what is known of the files that were read; ``trust`` lets a xacro file
-    do anything."""
+def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
+    """The bytes of a source that is no list of parts, with what is known of the files that were read;
+    ``trust`` lets a xacro file do anything."""
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
@@ -84,10 +84,6 @@ def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         data, texts = expand_whole(path, xacro_args, reach=TRUSTED if trust else BOUNDED)
         known = known_arguments(texts.values()) if xacro_args else KnownArguments()
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
-    if path.endswith(JOIN) and not xacro_args:
-        from multibot_rewrite.description.joining.from_file import read_joined
-
-        return read_joined(path, trust)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
     return SourceText(read_model(path), path, (path,))

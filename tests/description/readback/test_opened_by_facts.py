@@ -28,8 +28,8 @@ def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Op
     return set(opened(one.data, "robot1", known)), set(opened(other.data, "robot2", known))
 
 
+@pytest.mark.deep
 @pytest.mark.sample(4)
-@pytest.mark.slow
 @pytest.mark.parametrize("part", range(4))
 def test_no_robots_meet_that_are_proved(part: int) -> None:
     if not FACTS.is_dir() or not corpus_files():

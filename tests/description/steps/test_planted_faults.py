@@ -83,7 +83,7 @@ def test_a_wrong_plan_of_a_case_is_refused(case: Case) -> None:
     assert proved_plans(template(case)) == []
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.parametrize(
     "part", [0, *(pytest.param(it, marks=pytest.mark.deep) for it in range(1, 60))]
 )
