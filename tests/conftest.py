@@ -98,8 +98,8 @@ LIVE_FILES = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """With ``-n 3`` the tests of a file stay together, and all files with nodes: two of them at once
-    would meet in a domain. They wait most of the time, so three are right for two cores."""
+    """With ``-n 2`` the tests of a file stay together, and all files with nodes: two of them at once
+    would meet in a domain."""
     from xdist.scheduler import LoadFileScheduling
 
     class Scheduling(LoadFileScheduling):
