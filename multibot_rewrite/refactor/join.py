@@ -71,10 +71,11 @@ def join(
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
     """
-    wrong = next((it for it in parts if not isinstance(it, Part)), None)
+    given = tuple(parts)
+    wrong = next((it for it in given if not isinstance(it, Part)), None)
     if wrong is not None:
         raise UsageError(f"join(): parts has a {type(wrong).__name__}; write Part('arm.urdf')")
-    given, tree = tuple(parts), builtin_tree(tuple(vocabulary), release_here(distro))
+    tree = builtin_tree(tuple(vocabulary), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
     made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
