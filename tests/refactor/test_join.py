@@ -435,3 +435,18 @@ def test_parts_may_come_one_by_one() -> None:
     made = join(it for it in parts)
     assert made == join(parts)
     assert b'<link name="h_palm"/>' in made.data
+
+
+def test_two_materials_that_got_the_prefix_lose_it_again() -> None:
+    def robot(name: str, link: str, red: str, blue: str) -> bytes:
+        colours = "".join(
+            f'<material name="{it}"><color rgba="{rgba}"/></material>'
+            for it, rgba in (("red", red), ("blue", blue))
+        )
+        return f'<robot name="{name}">{colours}<link name="{link}"/></robot>'.encode()
+
+    arm = robot("arm", "base", "1 0 0 1", "0 0 1 1")
+    hand = robot("hand", "palm", "0.5 0 0 1", "0 0 0.5 1")
+    made = join([Part(arm), Part(hand, "base", prefix="h_", name="hand")])
+    assert all(f'<material name="h_{it}">'.encode() in made.data for it in ("red", "blue"))
+    assert split(made.data)["hand"] == hand
