@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The stub nodes of a rehearsal: ``python -m multibot_rewrite.live.stub_nodes``, a child.
 
-Its order is a list of stub nodes. Once all are in the graph it sends which types replace others.
+Its order is a list of stub nodes. Once all are in the graph it sends which types replace others, the
+ends of topics that the nodes have, and the frames that they send.
 """
 
 from __future__ import annotations
@@ -43,22 +44,23 @@ Publish = Callable[[], None]
 
 
 class _Stubs(NamedTuple):
-    """What the stub nodes of one process share; ``replaced`` grows."""
+    """What the stub nodes of one process share; ``replaced`` and ``frames`` grow."""
 
     session: ros.Session
     replaced: dict[str, str]
+    frames: set[str]
 
 
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Run the stub nodes until ``stop``; returns the exit code."""
     with ros.opened() as session:
-        stubs = _Stubs(session, {})
+        stubs = _Stubs(session, {}, set())
         publishers = [
             publish
             for number, stub in enumerate(from_order(json.loads(order)))
             for publish in _create_node(stubs, stub, number)
         ]
-        send(json.dumps(stubs.replaced).encode())
+        send(json.dumps((stubs.replaced, ros.topic_ends(session), sorted(stubs.frames))).encode())
         while not stop.wait(PUBLISH_SECONDS):
             for publish in publishers:
                 publish()
@@ -105,7 +107,7 @@ def _create_endpoint(
         stubs.replaced.update({endpoint.type: substitute} if endpoint.type else {})
         type_ = _installed(substitute)
     if endpoint.kind == TOPIC and endpoint.role == PUBLISHES:
-        yield from _create_publisher(node, type_, endpoint, edges)
+        yield from _create_publisher(stubs, node, type_, endpoint, edges)
     else:
         _CREATORS[endpoint.kind == ACTION, endpoint.role](node, type_, endpoint.name)
 
@@ -125,13 +127,15 @@ _CREATORS: dict[tuple[bool, str], Callable[[Any, Any, str], object]] = {
 
 
 def _create_publisher(
-    node: Any, type_: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
+    stubs: _Stubs, node: Any, type_: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
 ) -> Iterator[Publish]:
     static = endpoint.name.rpartition("/")[2] == STATIC
     publisher = ros.publish(node, type_, endpoint.name, static)
-    messages = _messages(type_, [edge for edge in edges if edge.static == static])
+    own = [edge for edge in edges if edge.static == static]
+    messages = _messages(type_, own)
     if endpoint.type != TF or not messages:
         return
+    stubs.frames.update(edge.child for edge in own)
     if static:
         _publish(publisher, messages)
     else:

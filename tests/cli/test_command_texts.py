@@ -29,6 +29,7 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.live import staged
 from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.system.records import (
@@ -298,11 +299,11 @@ def test_the_stage_of_a_rehearsal_is_this_machine_alone(monkeypatch: pytest.Monk
     for name in away:
         monkeypatch.setenv(name, "x")
     monkeypatch.setenv("KEPT", "y")
-    monkeypatch.setattr(rehearse.os, "getpid", lambda: 1234)
-    found = rehearse.stage(None)
+    monkeypatch.setattr(staged.os, "getpid", lambda: 1234)
+    found = staged.stage(None)
     assert (found["ROS_DOMAIN_ID"], found["ROS_AUTOMATIC_DISCOVERY_RANGE"]) == ("35", "LOCALHOST")
     assert found["KEPT"] == "y" and not {*away} & found.keys()
-    assert rehearse.stage(7)["ROS_DOMAIN_ID"] == "7" and rehearse.stage(0)["ROS_DOMAIN_ID"] == "0"
+    assert staged.stage(7)["ROS_DOMAIN_ID"] == "7" and staged.stage(0)["ROS_DOMAIN_ID"] == "0"
 
 
 def test_what_stubs_do_not_send_is_not_kept() -> None:

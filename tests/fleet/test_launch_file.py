@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -20,10 +18,8 @@ from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.live.rehearsal import split_over_processes, to_order, with_substitutes
-from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
-from multibot_rewrite.producers.ros.request import Request, to_text
+from multibot_rewrite.live.rehearsal import with_substitutes
+from multibot_rewrite.live.staged import stage, staged
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.spelling.plan_file import read_plan
 
@@ -400,14 +396,6 @@ def test_what_is_started_is_as_planned(kind: str, layout: str, tmp_path: Path) -
     fleet = load_fleet(tmp_path / "fleet.yaml")
     told, _ = launched(out / "fleet.launch.py", tmp_path, "rviz:=false", programs=programs(out))
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
-    environ, replaced = stage(None), {}
-    with ExitStack() as stack:
-        children = [
-            stack.enter_context(running(RUN_STUBS, to_text(to_order(nodes)), environ))
-            for nodes in split_over_processes(list(nodes_of(told, fleet)))
-        ]
-        for child in children:
-            replaced |= json.loads(child.next_message() or b"{}")
-        graph = observe(Request(40.0, substitutes=True), environ)
+    graph, replaced = staged(nodes_of(told, fleet), stage(None), 40.0)
     assert doubts(graph) == ()
     assert [it.message for it in check(with_substitutes(plan, replaced), graph)] == []

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 
 import pytest
 from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.cli import rehearse
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
@@ -19,6 +19,7 @@ from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live import staged
 from multibot_rewrite.live.rehearsal import (
     PROCESSES,
     StubEndpoint,
@@ -31,9 +32,7 @@ from multibot_rewrite.live.rehearsal import (
     to_order,
     with_substitutes,
 )
-from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
@@ -241,19 +240,23 @@ def _without_endpoints(graph: System) -> System:
         (lambda full: full._replace(nodes=(), ends=(), edges=()), 2),
         (_without_endpoints, 2),
         (lambda full: full._replace(edges=full.edges[1:]), 2),
-        # What is seen and is wrong does not go away.
-        (lambda _: _graph("MG320.json"), 1),
+        # One end of many, of which no rule would speak.
+        (lambda full: full._replace(ends=full.ends[:-1]), 2),
+        # What a node has besides is no reason to doubt a look.
+        (lambda full: full._replace(ends=(*full.ends, full.ends[0]._replace(name="/other"))), 1),
     ],
 )
-def test_a_look_that_only_lacks_something_is_taken_again(
+def test_a_look_without_all_that_the_stubs_have_is_taken_again(
     first: Callable[[System], System], looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = _graph("healthy.json")
-    plan = read_plan((FIXTURES / "graphs" / "plan.yaml").read_bytes(), "plan.yaml")
+    ends = frozenset((end.node, end.name) for end in full.ends)
+    started = staged.Started({"a": "b"}, ends, frozenset(edge.child for edge in full.edges))
     seen = [full, first(full)]
-    monkeypatch.setattr(rehearse, "observe", lambda *_: seen.pop())
-    graph = rehearse._look(Request(1.0), {}, plan)
-    assert len(seen) == 2 - looks
+    monkeypatch.setattr(staged, "observe", lambda *_: seen.pop())
+    monkeypatch.setattr(staged, "_started", lambda *_: nullcontext(started))
+    graph, replaced = staged.staged([], {}, 1.0)
+    assert (len(seen), replaced) == (2 - looks, {"a": "b"})
     assert graph == (full if looks == 2 else first(full))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.cli.rehearse import stage
+from multibot_rewrite.live.staged import stage
 from multibot_rewrite.producers.ros import observe
 from multibot_rewrite.producers.ros.participants import participants_at, participants_here, ports_in
 

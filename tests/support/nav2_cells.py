@@ -28,11 +28,11 @@ from multibot_rewrite import load_fleet
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.cli.rehearse import stage
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.live.rehearsal import with_substitutes
+from multibot_rewrite.live.staged import stage
 from multibot_rewrite.producers.ros.child import ask, observe, running
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import check

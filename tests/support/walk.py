@@ -17,7 +17,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,10 +24,7 @@ from launched_programs import launched
 from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.cli.rehearse import stage
-from multibot_rewrite.live.rehearsal import split_over_processes, to_order
-from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
-from multibot_rewrite.producers.ros.request import Request, to_text
+from multibot_rewrite.live.staged import stage, staged
 from multibot_rewrite.system.json import to_json
 
 REPOSITORY = "nav2_minimal_turtlebot_simulation"
@@ -152,15 +148,8 @@ def _seen(told: list[dict[str, Any]], folder: Path) -> bytes:
     Messages that are not installed here are replaced by others, and have their names again here.
     """
     fleet, environ = load_fleet(folder / "fleet.yaml"), stage(None)
-    replaced: dict[str, str] = {}
-    with ExitStack() as stack:
-        children = [
-            stack.enter_context(running(RUN_STUBS, to_text(to_order(nodes)), environ))
-            for nodes in split_over_processes(list(nodes_of(told, fleet)))
-        ]
-        for child in children:
-            replaced |= json.loads(child.next_message() or b"{}")
-        seen = to_json(observe(Request(40.0, substitutes=True), environ))
+    graph, replaced = staged(nodes_of(told, fleet), environ, 40.0)
+    seen = to_json(graph)
     for real, other in replaced.items():
         seen = seen.replace(json.dumps(other).encode(), json.dumps(real).encode())
     return seen
