@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
@@ -28,6 +28,8 @@ from multibot_rewrite.spelling.table_formats import FORMS
 from multibot_rewrite.system import environment
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
+FLEET = str(ROOT / "examples" / "launch_tutorial" / "fleet.yaml")
+PARAMS = str(ROOT / "examples" / "namespace_and_prefix" / "nav2_params.yaml")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
 EVERY = {"-q", "--quiet", "-v", "--verbose", "--color", "--version", "-h", "--help"}
 OUTPUT = {"-o", "--output"}
@@ -163,8 +165,9 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
         ("urdf-postfix a b --separator lnk=_", "'link'"),
         ("multibot help chek", "did you mean 'check'?"),
-        ("multibot plan fleet.yaml --layout L1", "leave out --layout"),
-        ("multibot plan fleet.yaml robot1", "leave out ROBOT"),
+        (f"multibot plan {FLEET} --layout L1", "leave out --layout"),
+        (f"multibot plan {FLEET} robot1", "leave out ROBOT"),
+        (f"multibot plan {PARAMS} robot1", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot check p --watch --format json", "leave out --select, --ignore and --format"),
         (f"urdf-postfix {ROVER} r1 --format json", "name a file for the result with -o"),
         (f"multibot plan {ROVER} r1 --format sarif", "name a file for the result with -o"),

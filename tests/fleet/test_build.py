@@ -718,7 +718,7 @@ def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture
             pytest.skip("no right to mount read-only here")
         assert build(out.parent) == 2
         said = capsys.readouterr().err.splitlines()[-1]
-        assert "cannot be written: Read-only file system" in said
+        assert f"multibot: {out}: cannot be written: Read-only file system" in said
         assert held(out) == before
     finally:
         subprocess.run(["umount", str(out)], check=True)

@@ -193,7 +193,7 @@ BUILD = Command(
 PLAN = Command(
     "plan",
     "plan",
-    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
     "Write the ROS graph that a fleet should have, or its rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
@@ -230,11 +230,12 @@ PLAN = Command(
 REHEARSE = Command(
     "rehearse",
     "rehearse",
-    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
     "Try a fleet's plan on a real ROS graph, without any robot.",
     (
+        Example("multibot rehearse fleet.yaml", "are all names as planned?"),
+        Example("multibot rehearse fleet.yaml --report report.html", "a page with the ROS graph"),
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2"),
-        Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html"),
         Example(
             "multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules all",
             "which names would collide?",
