@@ -66,6 +66,18 @@ def build(folder: Path, *more: str) -> int:
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), "--quiet", *more])
 
 
+def limited(arguments: list[str], limit: Callable[[], None]) -> subprocess.CompletedProcess[str]:
+    """Run behind a limit. Python cuts compiled modules there, too, and keeps them for all others."""
+    return subprocess.run(
+        arguments,
+        preexec_fn=limit,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+    )
+
+
 def renamed(folder: Path, old: str = "robot2", new: str = "robot3") -> None:
     fleet = folder / "fleet.yaml"
     fleet.write_text(fleet.read_text().replace(old, new))
@@ -360,7 +372,7 @@ def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Pa
     assert (deep / MANIFEST).exists()
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (1000, 1000))
     again = [*COMMAND, str(path), "-o", str(tmp_path / "z" / "out")]
-    made = subprocess.run(again, preexec_fn=limit, capture_output=True, text=True, check=False)
+    made = limited(again, limit)
     assert made.returncode == 2
     assert not (tmp_path / "z").exists()
 
@@ -395,7 +407,7 @@ def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     renamed(out.parent)
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (room, room))
     arguments = [*COMMAND, str(out.parent / "fleet.yaml"), "-o", str(out)]
-    made = subprocess.run(arguments, preexec_fn=limit, capture_output=True, text=True, check=False)
+    made = limited(arguments, limit)
     assert made.returncode == 2, made.stderr
     reason = "File too large" if room else "No usable temporary directory"
     assert f"cannot be written: {reason}" in made.stderr.splitlines()[-1]

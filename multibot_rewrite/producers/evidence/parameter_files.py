@@ -17,7 +17,7 @@ import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
@@ -179,6 +179,6 @@ def _node(
     place = controller.type.place if controller else named[0].place
     manager = controller.manager if controller else ""
     unknown = bool(type_) and type_ not in known.types
-    like = nearest(type_, known.types) if unknown else ""
+    like = nearest(type_, known.types, SLIP) if unknown else ""
     node = found.name if found else ""
     return GivenNode(name, node, type_, values, place, manager, unknown, like)
