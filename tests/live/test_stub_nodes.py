@@ -68,6 +68,9 @@ class Ros:
     def _row(self, node: str, kind: str) -> Any:
         return lambda type_, name, *_: self.rows.append((node, kind, name, type_))
 
+    def topic_ends(self, session: Any) -> list[tuple[str, str]]:
+        return []
+
     def message_class(self, type_: str) -> tuple[Any, str]:
         if type_ in self.absent:
             return None, "not installed"
@@ -104,7 +107,7 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int
     order = json.dumps(to_order(stubs))
     assert stub_nodes.main(order, Stop(), told.append) == 0
     stub_nodes._installed.cache_clear()
-    return [("replaced", json.loads(told[0])), *ros.rows]
+    return [("replaced", json.loads(told[0])[0]), *ros.rows]
 
 
 def stub(*endpoints: StubEndpoint, edges: Any = ()) -> StubNode:
