@@ -21,7 +21,7 @@ else:
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 # What only extras bring, and where it is imported: here, or in a child process.
-HERE = ("yourdfpy", "rosbags", "rosbags.rosbag2", "zenoh")
+HERE = ("trimesh", "rosbags", "rosbags.rosbag2", "zenoh")
 IN_CHILDREN = ("rclpy", "zenoh")
 FLEET = str(ROOT / "examples" / "namespace_and_prefix" / "fleet.yaml")
 PLAN = str(FIXTURES / "graphs" / "plan.yaml")
@@ -82,7 +82,7 @@ def test_every_extra_that_is_asked_for_is_there() -> None:
 
 
 def test_the_exit_code_is_in_the_help() -> None:
-    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "yourdfpy"}
+    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "trimesh"}
     for (name, *_), extra in NEEDS:
         (said,) = re.findall(r"\b4 ([^;.]*)", str(COMMANDS[name].exit_codes))
         assert words[extra] in said, name

@@ -307,7 +307,7 @@ VIEW = Command(
         FINDINGS,
         GENERAL,
     ),
-    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy or rosbags",
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no trimesh or rosbags",
     more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )

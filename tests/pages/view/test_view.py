@@ -168,10 +168,10 @@ def test_mistakes_are_one_line(
     assert file.read_text() == ROBOT
 
 
-def test_without_yourdfpy_it_says_what_to_install(
+def test_without_trimesh_it_says_what_to_install(
     file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "yourdfpy", None)
+    monkeypatch.setitem(sys.modules, "trimesh", None)
     assert main(["view", str(file), "-o", str(file.parent / "view.html")]) == 4
     assert "pip install 'multibot_rewrite[view]'" in capsys.readouterr().err
 
