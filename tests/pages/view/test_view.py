@@ -176,6 +176,13 @@ def test_without_trimesh_it_says_what_to_install(
     assert "pip install 'multibot_rewrite[view]'" in capsys.readouterr().err
 
 
+def test_what_is_read_is_told_mesh_by_mesh(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+    monkeypatch.setattr("multibot_rewrite.cli.view.status", lambda: told.append)
+    page(file.parent, file)
+    assert told == [f"1 of 1 mesh file: {file.parent / 'part.stl'}", ""]
+
+
 def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(models, "MOST_FACES", 0)
     (mesh,) = page(file.parent, file)["meshes"]
