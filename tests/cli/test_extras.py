@@ -42,7 +42,7 @@ NEEDS = [
     (("check", "--bag", "."), "bags"),
     (("view", FLEET, "-o", "view.html"), "view"),
 ]
-LARGEST = 70_000_000
+LARGEST, LARGEST_VIEW = 70_000_000, 110_000_000
 
 
 @pytest.fixture
@@ -123,3 +123,14 @@ def test_what_pip_installs_is_small() -> None:
     assert not seen.keys() & {"numpy", "scipy", "trimesh", "yourdfpy", "rclpy"}
     files = (it for it in (ROOT / "multibot_rewrite").rglob("*") if it.is_file())
     assert sum(map(size, seen.values())) + sum(it.stat().st_size for it in files) < LARGEST
+
+
+@pytest.mark.more
+def test_the_view_brings_little() -> None:
+    """What reads meshes, without what trimesh can do besides."""
+    pytest.importorskip("trimesh", reason="no trimesh: pip install '.[view]'")
+    seen: dict[str, Distribution] = {}
+    for line in PROJECT["optional-dependencies"]["view"]:
+        brought(re.findall(r"^[\w.-]+", line)[0], seen)
+    assert "scipy" not in seen
+    assert 50_000_000 < sum(map(size, seen.values())) < LARGEST_VIEW
