@@ -181,6 +181,12 @@ def test_a_mistake_is_one_line_with_a_hint(
     assert hint in err
 
 
+def test_a_person_can_read_the_options_of_all_commands() -> None:
+    every = [it for command in (*COMMANDS.values(), *PROGRAMS) for it in command.groups]
+    shown = {it.names[-1] for group in every for it in group.options if it.shown}
+    assert len({it for it in shown if it.startswith("-")}) <= 60
+
+
 def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
     from multibot_rewrite.base.naming import make_naming
 

@@ -174,12 +174,14 @@ BUILD = Command(
             ),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
-            choice(
-                "--shape",
-                "VENDOR",
-                SHAPES,
-                "write files as the launch files of a vendor take them, and the commands that start"
-                " these (docs/fleet-file.md); default: that of the fleet file",
+            rare(
+                choice(
+                    "--shape",
+                    "VENDOR",
+                    SHAPES,
+                    "write files as the launch files of a vendor take them, and the commands that"
+                    " start these (docs/fleet-file.md); default: that of the fleet file",
+                )
             ),
         ),
         FINDINGS,
