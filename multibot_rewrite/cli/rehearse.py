@@ -30,12 +30,11 @@ def run(options: argparse.Namespace) -> int:
     edges, added = _edges(made)
     nodes = [*stub_nodes(made.table, edges, _left_out(options)), *bridge_stub(plan.topics)]
     environ = stage(options.domain)
-    where = f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}"
-    with shown(f"{where} start, and are looked for"):
+    note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
+    with shown("they start, and are looked for"):
         seen, replaced = staged(nodes, environ, options.timeout or live.LOOK_SECONDS)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
-    note(options, where)
     graph, plan = _without_places(seen), with_substitutes(plan, replaced)
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
