@@ -154,12 +154,12 @@ def _controllers(
         # A renamed one is called controller_manager_robot1, for example.
         if MANAGER not in last and section.name not in managers:
             continue
-        # What is for every node is for the manager, too.
-        own = [
+        # What is for every node is for the manager, too; those of MoveIt are below a name there.
+        for_all = [
             it for it in sections if not it.name and re.fullmatch(it.pattern, f"/{section.name}")
         ]
-        every = (*own, section)
-        for name, given in (pair for it in every for pair in it.values.items()):
+        shared = (pair for it in for_all for pair in it.values.items() if pair[0].count(".") == 1)
+        for name, given in (*shared, *section.values.items()):
             if name.endswith(TYPE):
                 controller = name.removesuffix(TYPE)
                 full = f"{above}/{controller}" if above else controller
