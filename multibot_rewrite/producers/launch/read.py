@@ -13,6 +13,7 @@ from multibot_rewrite.producers.launch.commands import faults, read_commands
 from multibot_rewrite.producers.launch.describe import (
     Visit,
     failure,
+    missing_module,
     missing_package,
     not_installed,
 )
@@ -23,6 +24,7 @@ from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_r
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import add_empty, add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
+from multibot_rewrite.producers.launch.unknown_modules import add_unknown
 from multibot_rewrite.producers.launch.visit import visit_all
 from multibot_rewrite.system.records import Place
 
@@ -51,10 +53,14 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
             graph = _visited(_included(order), order)
             break
         except (Exception, SystemExit) as error:
-            name = missing_package(error)
+            package, module = missing_package(error), missing_module(error)
+            name = package or module
             if not name or name in missing:
                 raise UnreadableError(failure(error)) from error
-            add_empty(name, folder)
+            if package:
+                add_empty(package, folder)
+            else:
+                add_unknown(module)
             missing.append(name)
     files = (*graph.files, *descriptions_in(reads))
     return graph._replace(notes=(*graph.notes, *_not_there(order, missing)), files=files)
