@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from multibot_rewrite.version import __version__ as __version__
 
+# For checkers of types, as typing has it: Ctrl-C is not quiet before the command begins, and to import
+# typing takes longer than all else until then.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.base.model import (

@@ -87,6 +87,9 @@ class ToolNode(NamedTuple):
 
 # How the names of tf2's listener nodes start; the rest is an address.
 LISTENER = "transform_listener_impl_"
+# How the name of a node ends that another one makes for its clients: nav2_behavior_tree
+# bt_action_server_impl.hpp.
+CLIENT = "_rclcpp_node"
 TOOLS = (
     ToolNode("_*", False, "rcl: a name with _ in front is hidden"),
     ToolNode("_ros2cli_*", True, "ros2cli node/__init__.py NODE_NAME_PREFIX"),
@@ -98,7 +101,7 @@ TOOLS = (
     ToolNode(
         "static_transform_publisher_*", False, "tf2_ros static_transform_broadcaster_node.cpp"
     ),
-    ToolNode("*_rclcpp_node", True, "nav2_util simple_action_server, costmap clients"),
+    ToolNode(f"*{CLIENT}", True, "nav2_util simple_action_server, costmap clients"),
     ToolNode("*_service_client", False, "nav2_util lifecycle_service_client.cpp"),
     ToolNode("rqt*", True, "rqt_gui_py ros_py_plugin_provider.py"),
     ToolNode("rviz*", True, "rviz2 main.cpp"),

@@ -25,20 +25,20 @@ class FileKind(NamedTuple):
     use: str
 
 
-_IN_FLEET = "name it under {} in a fleet file, or give it to urdf-lint"
+_IN_FLEET = "rewrite it with urdf-postfix, or name it in a fleet file, {}"
 _MADE = "use multibot init, which makes a fleet file of it"
 KINDS: Mapping[str, FileKind] = {
     URDF: FileKind("a description", _MADE),
     XACRO: FileKind("a description", _MADE),
     SDF: FileKind("a description", _MADE),
-    SRDF: FileKind("an SRDF", "name it under srdf: in a fleet file, or give it to urdf-lint"),
-    WORLD: FileKind("a world of Gazebo", "name it under world: in a fleet file"),
-    PARAMS: FileKind("a parameter file", _IN_FLEET.format("params:")),
-    RVIZ: FileKind("a config of RViz", _IN_FLEET.format("rviz:")),
-    BRIDGE: FileKind("a file of ros_gz_bridge", _IN_FLEET.format("bridge:")),
-    MOVEIT: FileKind("a file of MoveIt", _IN_FLEET.format("moveit:")),
-    TREE: FileKind("a behavior tree", _IN_FLEET.format("behavior_trees:")),
-    LUA: FileKind("a Lua file of Cartographer", _IN_FLEET.format("lua:")),
+    SRDF: FileKind("an SRDF", _IN_FLEET.format("srdf: FILE")),
+    WORLD: FileKind("a world of Gazebo", "name it in a fleet file, simulator_world: FILE"),
+    PARAMS: FileKind("a parameter file", _IN_FLEET.format("companions: {params: FILE}")),
+    RVIZ: FileKind("a config of RViz", _IN_FLEET.format("companions: {rviz: FILE}")),
+    BRIDGE: FileKind("a file of ros_gz_bridge", _IN_FLEET.format("companions: {bridge: FILE}")),
+    MOVEIT: FileKind("a file of MoveIt", _IN_FLEET.format("companions: {moveit: FILE}")),
+    TREE: FileKind("a behavior tree", _IN_FLEET.format("companions: {behavior_trees: FILE}")),
+    LUA: FileKind("a Lua file of Cartographer", _IN_FLEET.format("companions: {lua: FILE}")),
     FLEET: FileKind("a fleet file", "use multibot build, plan or view"),
     PLAN: FileKind("a plan", "use multibot check"),
     SNAPSHOT: FileKind("a snapshot", "use multibot check --snapshot"),

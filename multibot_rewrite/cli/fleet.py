@@ -71,10 +71,9 @@ def _from_file(options: argparse.Namespace) -> Fleet:
     )
     from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
-    given = given_options(options, OF_FLEET_FILE)
-    if given:
-        raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
     file = read_fleet(options.input, options.distro or "", os.environ)
+    if given := given_options(options, OF_FLEET_FILE):
+        raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
     if options.output:
         check_target(options.output, input_files(file))
     return closed_plan(plan_fleet(file, trust=options.trust))

@@ -226,7 +226,10 @@ def _one_by_one(
     path, data = note
     full = os.path.join(folder, path)
     with _put_back(full):
-        write_all([(full, data)])
+        try:
+            write_all([(full, data)])
+        except UsageError as error:  # its name means nothing to the user
+            raise UsageError(str(error).replace(full, folder)) from None
         write_all(((os.path.join(folder, it), data) for it, data in write.items()))
     for it in (*remove, path):
         with suppress(FileNotFoundError), explained(os.path.join(folder, it)):

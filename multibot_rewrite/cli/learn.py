@@ -7,6 +7,7 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import plural
@@ -14,7 +15,7 @@ from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.node_library import FILE, NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
@@ -45,7 +46,10 @@ def run(options: argparse.Namespace) -> int:
     if as_nodl:
         remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
     else:
-        deliver(options, to_yaml(learned, options.stack, library).encode())
+        line = schema_line(
+            "multibot_rewrite.knowledge", FILE, os.path.dirname(options.output or "")
+        )
+        deliver(options, f"{line}\n{to_yaml(learned, options.stack, library)}".encode())
     for remark in remarks:
         note(options, f"note: {remark}")
     shape = "NoDL" if as_nodl else f"stack {options.stack}"

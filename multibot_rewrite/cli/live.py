@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import note
+from multibot_rewrite.cli.output import note, shown
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
@@ -67,13 +67,14 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
         return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
     asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
-    if options.zenoh:
-        from multibot_rewrite.producers.zenoh.observe import look
+    with shown(f"looking at the graph, for {asked.timeout:g} s at most"):
+        if options.zenoh:
+            from multibot_rewrite.producers.zenoh.observe import look
 
-        return look(asked, _router(options))
-    from multibot_rewrite.producers.ros.child import observe
+            return look(asked, _router(options))
+        from multibot_rewrite.producers.ros.child import observe
 
-    return observe(asked, environ(options.domain))
+        return observe(asked, environ(options.domain))
 
 
 def with_states(

@@ -9,6 +9,7 @@ import os
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import TextIO, TypeVar
 
 from multibot_rewrite.base.model import UsageError
@@ -124,6 +125,17 @@ def status() -> Callable[[str], None]:
         screen.flush()
 
     return show
+
+
+@contextmanager
+def shown(text: str) -> Iterator[None]:
+    """``status`` with one line as long as the block runs."""
+    show = status()
+    show(text)
+    try:
+        yield
+    finally:
+        show("")
 
 
 def print_bytes(data: bytes) -> None:

@@ -137,6 +137,8 @@ def _names(group: OptionGroup) -> list[str]:
         for it in group.options
         if it.shown
     ]
+    if not words:
+        return []
     lines = wrapped(f"{title}: {' '.join(words)}", COLUMNS - 2).split("\n")
     return [lines[0], *(f"  {it}" for it in lines[1:])]
 

@@ -10,7 +10,7 @@ from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
-from multibot_rewrite.cli.output import note, write_files
+from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.live.rehearsal import bridge_stub, stub_nodes, with_substitutes
@@ -30,10 +30,11 @@ def run(options: argparse.Namespace) -> int:
     edges, added = _edges(made)
     nodes = [*stub_nodes(made.table, edges, _left_out(options)), *bridge_stub(plan.topics)]
     environ = stage(options.domain)
+    note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
+    with shown("they start, and are looked for"):
+        seen, replaced = staged(nodes, environ, options.timeout or live.LOOK_SECONDS)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
-    note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
-    seen, replaced = staged(nodes, environ, options.timeout or live.LOOK_SECONDS)
     graph, plan = _without_places(seen), with_substitutes(plan, replaced)
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])

@@ -11,7 +11,7 @@ from typing import Any
 
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
-from multibot_rewrite.cli.output import deliver, note
+from multibot_rewrite.cli.output import deliver, note, status
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.heard import moved
 from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
-from multibot_rewrite.pages.view.scene import ViewedRobot, scene_of
+from multibot_rewrite.pages.view.scene import Scene, ViewedRobot, scene_of
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     plan = _plan(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
     scene = scene_of(plan, _graph(options))
-    meshes = meshes_of(scene)
+    meshes = _meshes(scene)
     page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
     for it in _notes(scene.robots, meshes):
         note(options, f"note: {it}")
@@ -89,11 +89,19 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
         plan = _fleet(options, file) if file else _plan(options)
         scene = scene_of(plan, graph)
         return to_frame(
-            scene, meshes_of(scene), title_of(scene.robots, plan.fleet.naming.layout.name)
+            scene, _meshes(scene), title_of(scene.robots, plan.fleet.naming.layout.name)
         )
     except MultibotError as error:
         note(options, f"note: the report does not show the robots in 3D: {error}")
         return None
+
+
+def _meshes(scene: Scene) -> Meshes:
+    show = status()
+    try:
+        return meshes_of(scene, show)
+    finally:
+        show("")
 
 
 def _fleet_file(path: str) -> str:

@@ -36,7 +36,12 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
 )
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
-from multibot_rewrite.fleet.outputs.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
+from multibot_rewrite.fleet.outputs.rviz_outputs import (
+    rviz_commands,
+    rviz_files,
+    rviz_outputs,
+    usual_windows,
+)
 from multibot_rewrite.fleet.outputs.shape_outputs import copied
 from multibot_rewrite.fleet.outputs.world_file import world_file
 from multibot_rewrite.fleet.outputs.yarp_files import yarp_files
@@ -88,22 +93,24 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
                 *_descriptions(plan, plan.file.installed or folder),
                 *made,
                 *rviz_files(configs),
-                *commands_file(plan, each, rviz_commands(plan, configs)),
             ]
         )
         findings += _of_robots(plan)
         gaps = gaps_of(plan, fleet, made)
         findings += gaps
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
+        planned = _portable_plan(plan, fleet)
+        opened = configs or usual_windows(plan, planned)
         kept, told = sorted_out(
             [
                 *in_style(plan, files),
                 *cell_outputs(plan, files),
                 *yarp_files(plan.robots),
                 *world_file(plan),
+                *rviz_files([] if configs else opened),
+                *commands_file(plan, each, rviz_commands(plan, opened)),
             ]
         )
-        planned = _portable_plan(plan, fleet)
         tables = _tables(plan, fleet, planned)
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
@@ -179,8 +186,8 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
     yield OutputFile(PLAN, to_yaml(planned).encode())
     if plan.file.sros2:
         yield OutputFile(POLICY, to_policy(planned, possible(fleet)).encode())
-    if plan.file.foxglove:
-        yield OutputFile(FOXGLOVE, to_layout(planned).encode())
+    if layout := to_layout(planned):
+        yield OutputFile(FOXGLOVE, layout.encode())
     if plan.file.zenoh:
         made = configurations(planned, plan.file.zenoh)
         yield from (OutputFile(f"{ZENOH}/{name}", data) for name, data in made)

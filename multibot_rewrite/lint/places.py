@@ -46,7 +46,7 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         rule.code,
         level_of(subject.settings, rule.code, problem.level or rule.level),
         " ".join(problem.message.split()),
-        problem.hint,
+        problem.hint or rule.advice,
         it.file,
         line,
         column,

@@ -15,7 +15,8 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from typing import Any
 
-from multibot_rewrite.base.conventions import LISTENER
+from multibot_rewrite.base.conventions import CLIENT, LISTENER
+from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.rehearsal import (
     TF,
@@ -72,14 +73,21 @@ def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish
     node = ros.add_node(stubs.session, stub.name, arguments=stub.arguments)
     helpers: dict[str, Any] = {}
     for endpoint in stub.endpoints:
-        if endpoint.helper and endpoint.by not in helpers:
-            name = f"{LISTENER}{os.getpid():x}{number:04x}"
-            if endpoint.by:
-                name = node.get_name() + endpoint.by.replace("*", f"{os.getpid()}{number}")
+        called = _helper(endpoint) if endpoint.helper else ""
+        if called and called not in helpers:
+            made = called.replace("*", f"{os.getpid():x}{number:04x}")
+            name = made if called.startswith(LISTENER) else node.get_name() + made
             arguments = stub.process_arguments
-            helpers[endpoint.by] = ros.add_node(stubs.session, name, arguments=arguments)
-        owner = helpers[endpoint.by] if endpoint.helper else node
+            helpers[called] = ros.add_node(stubs.session, name, arguments=arguments)
+        owner = helpers.get(called, node)
         yield from _create_endpoint(stubs, owner, _named(node, endpoint), stub.edges)
+
+
+def _helper(endpoint: StubEndpoint) -> str:
+    """How the helper node of an endpoint is called: as tf2's listener, or behind its node's name."""
+    if endpoint.name.strip("/") in TF_TOPICS:
+        return endpoint.by or f"{LISTENER}*"
+    return endpoint.by or CLIENT
 
 
 def _named(node: Any, endpoint: StubEndpoint) -> StubEndpoint:

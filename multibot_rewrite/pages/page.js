@@ -22,7 +22,7 @@ function filter() {
     if (text && found && kept.size < 60) reveal(group);
   }
   const shown = rows.filter((row) => !row.hidden).length;
-  bar.querySelector("output").textContent = rows.length ? `${shown} of ${rows.length} findings` : "";
+  bar.querySelector("output").textContent = rows.length ? `${shown} of ${rows.length} rows` : "";
 }
 
 // Dims what neither has the text nor is connected to it; returns the parts that have it.

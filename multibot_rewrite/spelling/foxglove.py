@@ -12,21 +12,14 @@ transforms into one tree (``Renderer.ts``, TF_DATATYPES). Teleop sends Twist alo
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.system.records import (
-    PUBLISHES,
-    SUBSCRIBES,
-    TOPIC,
-    Robot,
-    System,
-    nodes_by_robot,
-)
+from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
+from multibot_rewrite.system.records import PUBLISHES, System
 
 # What a 3D panel shows, and what an Image panel does.
 _SHOWN = {
@@ -35,7 +28,7 @@ _SHOWN = {
     *("visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"),
 }
 _IMAGE, _CAMERA = "sensor_msgs/msg/Image", "camera_info"
-_TWIST, _DESCRIPTION = "geometry_msgs/msg/Twist", "robot_description"
+_TWIST = "geometry_msgs/msg/Twist"
 # Topics that a click in a 3D panel sends to, by their last word.
 _CLICKED = {
     "poseTopic": "goal_pose",
@@ -53,14 +46,18 @@ class _Tab(NamedTuple):
 
 
 def to_layout(plan: System) -> str:
-    """The layout as JSON; UsageError where the frames of two robots have the same names."""
+    """The layout as JSON; empty where the frames of two robots have the same names."""
     layout = next(it for it in LAYOUTS if plan.layout in (it.name, it.short))
     if not layout.frames and len(plan.robots) > 1:
-        raise UsageError(
-            f"layout {layout.name}: the frames of all robots have the same names, and Foxglove reads"
-            " every tf topic into one tree; take frames-per-robot or both"
-        )
-    tabs = [_Tab("all robots", _all(plan)), *(_Tab(it.name, _own(plan, it)) for it in plan.robots)]
+        return ""
+    robots, shared = shown_by_robot(plan)
+    sent = {it.name for it in plan.ends if it.role == PUBLISHES}
+    prefixed = layout.at_run_time
+    every = _scene(robots, shared, world_of_plan(plan), prefixed)
+    tabs = [
+        _Tab("all robots", {"3D!all": every}),
+        *(_Tab(it.robot.name, _own(it, shared, sent, prefixed)) for it in robots),
+    ]
     config: dict[str, Any] = {name: own for tab in tabs for name, own in tab.panels.items()}
     shown = [{"title": it.title, "layout": _mosaic(list(it.panels))} for it in tabs]
     config["Tab!robots"] = {"activeTabIdx": 0, "tabs": shown}
@@ -79,63 +76,45 @@ def _mosaic(panels: Sequence[str]) -> Any:
     return {"direction": "row", "first": first, "second": side, "splitPercentage": 70}
 
 
-def _all(plan: System) -> Panels:
-    return {"3D!all": _scene(plan, plan.robots, _world(plan))}
-
-
-def _world(plan: System) -> str:
-    """The frame of all robots in which they stand, else the first robot's first."""
-    shared = plan.shared_frames
-    parents = [it.parent for it in plan.edges if it.parent in shared]
-    usual = [it for it in WORLD_FRAMES if it in shared]
-    own = (it for robot in plan.robots for it in robot.frames)
-    return next(iter([*parents, *usual]), "") or next(own, "")
-
-
-def _own(plan: System, robot: Robot) -> Panels:
+def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
     """The robot in 3D, its images, and buttons that drive it."""
-    bodies = [it for it in robot.frames if any(body in it for body in BODY_FRAMES)]
-    frame = next(iter(bodies or robot.frames), "")
-    panels: dict[str, Mapping[str, Any]] = {
-        f"3D!{robot.name}": _scene(plan, [robot], frame),
-    }
-    for at, topic in enumerate(sorted(_topics(plan, [robot], PUBLISHES, {_IMAGE}))):
+    name, frames = shown.robot.name, shown.robot.frames
+    bodies = [it for it in frames if any(body in it for body in BODY_FRAMES)]
+    frame = next(iter(bodies or frames), "")
+    panels: dict[str, Mapping[str, Any]] = {f"3D!{name}": _scene([shown], shared, frame, prefixed)}
+    for at, topic in enumerate(sorted(shown.of_type({_IMAGE}))):
         camera = f"{topic.rpartition('/')[0]}/{_CAMERA}"
-        shown = {"imageTopic": topic, "calibrationTopic": camera}
-        panels[f"Image!{robot.name}_{at}"] = {"imageMode": shown}
-    for topic in _drives(plan, robot):
-        panels[f"Teleop!{robot.name}"] = {"topic": topic, "publishRate": 10}
+        settings = {"imageTopic": topic, "calibrationTopic": camera}
+        panels[f"Image!{name}_{at}"] = {"imageMode": settings}
+    for topic in _drives(shown, sent):
+        panels[f"Teleop!{name}"] = {"topic": topic, "publishRate": 10}
     return panels
 
 
-def _drives(plan: System, robot: Robot) -> list[str]:
+def _drives(shown: Shown, sent: set[str]) -> list[str]:
     """The topic of speeds that the robot reads and no planned node sends."""
-    sent = {it.name for it in plan.ends if it.role == PUBLISHES}
-    read = set(_topics(plan, [robot], SUBSCRIBES, {_TWIST})) - sent
+    read = {name for name, type_ in shown.read.items() if type_ == _TWIST} - sent
     return sorted(read, key=lambda it: (it.count("/"), it))[:1]
 
 
-def _scene(plan: System, robots: Sequence[Robot], frame: str) -> dict[str, Any]:
-    shown = [*_topics(plan, robots, PUBLISHES, _SHOWN), *_shared(plan)]
-    read = [*_topics(plan, robots, SUBSCRIBES, None)]
+def _scene(robots: Sequence[Shown], shared: Shown, frame: str, prefixed: bool) -> dict[str, Any]:
+    topics = {it for one in (*robots, shared) for it in one.of_type(_SHOWN)}
     clicked = {
-        key: next((it for it in read if it.rpartition("/")[2].startswith(word)), f"/{word}")
+        key: next(filter(None, (it.clicked(word) for it in robots)), f"/{word}")
         for key, word in _CLICKED.items()
     }
     return {
         "followTf": frame,
         "followMode": "follow-pose",
-        "topics": {it: {"visible": True} for it in sorted(shown)},
-        "layers": {it.name: _model(plan, it) for it in robots},
+        "topics": {it: {"visible": True} for it in sorted(topics)},
+        "layers": {it.robot.name: _model(it, prefixed) for it in robots},
         "publish": {"type": "pose", **clicked},
     }
 
 
-def _model(plan: System, robot: Robot) -> dict[str, Any]:
+def _model(shown: Shown, prefixed: bool) -> dict[str, Any]:
     """The robot's description, from its topic."""
-    sent = _topics(plan, [robot], PUBLISHES, {"std_msgs/msg/String"})
-    topic = next((it for it in sent if _DESCRIPTION in it), f"/{robot.name}/{_DESCRIPTION}")
-    bare = next(it for it in LAYOUTS if plan.layout in (it.name, it.short)).at_run_time
+    robot = shown.robot
     word = robot.tag or robot.name
     return {
         "layerId": "foxglove.Urdf",
@@ -143,38 +122,6 @@ def _model(plan: System, robot: Robot) -> dict[str, Any]:
         "label": robot.name,
         "visible": True,
         "sourceType": "topic",
-        "topic": topic,
-        "framePrefix": next(iter(robot.frames), "")[: len(word) + 1] if bare else "",
+        "topic": shown.description,
+        "framePrefix": next(iter(robot.frames), "")[: len(word) + 1] if prefixed else "",
     }
-
-
-def _topics(
-    plan: System, robots: Iterable[Robot], role: str, types: set[str] | None
-) -> Iterator[str]:
-    """Topics of the robots' nodes and bridges in a role, of some types or of any, each once."""
-    every, robots = nodes_by_robot(plan), list(robots)
-    nodes = {it for robot in robots for it in every[robot.name]}
-    ends = [
-        (it.name, it.type)
-        for it in plan.ends
-        if it.kind == TOPIC and it.role == role and it.node in nodes
-    ]
-    bridged = [
-        (it.name, it.type)
-        for it in plan.topics
-        if role in it.bridge and any(_is_of(it.name, robot) for robot in robots)
-    ]
-    found = (name for name, type_ in (*ends, *bridged) if types is None or type_ in types)
-    yield from dict.fromkeys(found)
-
-
-def _is_of(topic: str, robot: Robot) -> bool:
-    """Is a bridged topic one of the robot: in its namespace, or with its name at the end?"""
-    return topic.startswith(f"/{robot.name}/") or topic.endswith(f"/{robot.tag or robot.name}")
-
-
-def _shared(plan: System) -> list[str]:
-    """What nodes for all robots show, as the map."""
-    nodes = nodes_by_robot(plan)[""]
-    ends = (it for it in plan.ends if it.role == PUBLISHES and it.node in nodes)
-    return [it.name for it in ends if it.type in _SHOWN]

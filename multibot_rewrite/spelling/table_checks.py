@@ -29,7 +29,7 @@ UNREACHABLE_NAME = declare(
     what="No remap rule reaches a name that all robots would share: the node makes it at run time, or "
     "it is not a ROS name.",
     why="The nodes of all robots use the one name: data of two robots is mixed.",
-    fix="Set the parameter in the hint for each robot, or change the node.",
+    fix="Give each robot its own value of the parameter that makes the name, or change the node.",
     bad="""\
 nodes:
   camera_driver:

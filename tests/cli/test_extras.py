@@ -21,7 +21,7 @@ else:
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 # What only extras bring, and where it is imported: here, or in a child process.
-HERE = ("yourdfpy", "rosbags", "rosbags.rosbag2", "zenoh")
+HERE = ("trimesh", "rosbags", "rosbags.rosbag2", "zenoh")
 IN_CHILDREN = ("rclpy", "zenoh")
 FLEET = str(ROOT / "examples" / "namespace_and_prefix" / "fleet.yaml")
 PLAN = str(FIXTURES / "graphs" / "plan.yaml")
@@ -42,7 +42,7 @@ NEEDS = [
     (("check", "--bag", "."), "bags"),
     (("view", FLEET, "-o", "view.html"), "view"),
 ]
-LARGEST = 70_000_000
+LARGEST, LARGEST_VIEW = 70_000_000, 110_000_000
 
 
 @pytest.fixture
@@ -67,7 +67,8 @@ def test_a_missing_extra_is_one_line_with_what_installs_it(
 ) -> None:
     assert main(list(words)) == 4
     said = capsys.readouterr()
-    (line,) = said.err.splitlines()
+    line, *before = reversed(said.err.splitlines())
+    assert all("nodes in domain" in it for it in before) and len(before) <= (words[0] == "rehearse")
     assert f"pip install 'multibot_rewrite[{extra}]'" in line
     assert (said.out, [it.name for it in bare.iterdir()]) == ("", ["none"])
 
@@ -82,7 +83,7 @@ def test_every_extra_that_is_asked_for_is_there() -> None:
 
 
 def test_the_exit_code_is_in_the_help() -> None:
-    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "yourdfpy"}
+    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "trimesh"}
     for (name, *_), extra in NEEDS:
         (said,) = re.findall(r"\b4 ([^;.]*)", str(COMMANDS[name].exit_codes))
         assert words[extra] in said, name
@@ -123,3 +124,14 @@ def test_what_pip_installs_is_small() -> None:
     assert not seen.keys() & {"numpy", "scipy", "trimesh", "yourdfpy", "rclpy"}
     files = (it for it in (ROOT / "multibot_rewrite").rglob("*") if it.is_file())
     assert sum(map(size, seen.values())) + sum(it.stat().st_size for it in files) < LARGEST
+
+
+@pytest.mark.more
+def test_the_view_brings_little() -> None:
+    """What reads meshes, without what trimesh can do besides."""
+    pytest.importorskip("trimesh", reason="no trimesh: pip install '.[view]'")
+    seen: dict[str, Distribution] = {}
+    for line in PROJECT["optional-dependencies"]["view"]:
+        brought(re.findall(r"^[\w.-]+", line)[0], seen)
+    assert "scipy" not in seen
+    assert 50_000_000 < sum(map(size, seen.values())) < LARGEST_VIEW

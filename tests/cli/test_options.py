@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
@@ -28,6 +28,8 @@ from multibot_rewrite.spelling.table_formats import FORMS
 from multibot_rewrite.system import environment
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
+FLEET = str(ROOT / "examples" / "launch_tutorial" / "fleet.yaml")
+PARAMS = str(ROOT / "examples" / "namespace_and_prefix" / "nav2_params.yaml")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
 EVERY = {"-q", "--quiet", "-v", "--verbose", "--color", "--version", "-h", "--help"}
 OUTPUT = {"-o", "--output"}
@@ -163,8 +165,9 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
         ("urdf-postfix a b --separator lnk=_", "'link'"),
         ("multibot help chek", "did you mean 'check'?"),
-        ("multibot plan fleet.yaml --layout L1", "leave out --layout"),
-        ("multibot plan fleet.yaml robot1", "leave out ROBOT"),
+        (f"multibot plan {FLEET} --layout L1", "leave out --layout"),
+        (f"multibot plan {FLEET} robot1", "leave out ROBOT"),
+        (f"multibot plan {PARAMS} robot1", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot check p --watch --format json", "leave out --select, --ignore and --format"),
         (f"urdf-postfix {ROVER} r1 --format json", "name a file for the result with -o"),
         (f"multibot plan {ROVER} r1 --format sarif", "name a file for the result with -o"),
@@ -176,6 +179,12 @@ def test_a_mistake_is_one_line_with_a_hint(
     code, out, err = said(capsys, *line.split())
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert hint in err
+
+
+def test_a_person_can_read_the_options_of_all_commands() -> None:
+    every = [it for command in (*COMMANDS.values(), *PROGRAMS) for it in command.groups]
+    shown = {it.names[-1] for group in every for it in group.options if it.shown}
+    assert len({it for it in shown if it.startswith("-")}) <= 60
 
 
 def test_an_unknown_layout_is_refused_by_the_library_too() -> None:

@@ -372,6 +372,19 @@ def test_what_decides_on_colour(
     )
 
 
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_wait_is_a_line_on_a_terminal_that_goes_again(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = Screen(terminal)
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setenv("TERM", "xterm")
+    with pytest.raises(KeyboardInterrupt), output.shown("looking\nfor it"):
+        assert screen.getvalue() == "\r\033[Klooking\\nfor it" * terminal
+        raise KeyboardInterrupt
+    assert screen.getvalue().endswith("\r\033[K" * terminal)
+
+
 def test_a_diff_is_one_that_patch_reads() -> None:
     made = output.diff(b"a\nb\nc", b"a\nB\nc", "old\nname", "new é")
     assert (

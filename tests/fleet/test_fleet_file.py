@@ -142,6 +142,14 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: a, description: rover.urdf, pose: {yow: 1}}\n",
         "2: robots[0].pose: unknown key 'yow'; did you mean 'yaw'?",
     ),
+    "companion-at-the-top": (
+        f"params: nav2.yaml\n{ONE}",
+        "1: unknown key 'params'; write companions: {params: ...}",
+    ),
+    "companion-in-other-words": (
+        f"rviz_config: a.rviz\n{ONE}",
+        "1: unknown key 'rviz_config'; write companions: {rviz: ...}",
+    ),
     "key-that-is-a-number": (f"1: 2\n{ONE}", "1: unknown key 1; known are include, layout"),
     "key-that-is-a-list": (f"[1]: 2\n{ONE}", "1: found unhashable key; write plain keys"),
     "two-of-a-name": (
@@ -307,7 +315,7 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "srdf-of-yaml": (
         "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
-        "@params.yaml: a parameter file; name it under params:",
+        "@params.yaml: a parameter file; rewrite it with urdf-postfix, or name it in",
     ),
     "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: not "),
     "bridge-of-params": (

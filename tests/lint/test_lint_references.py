@@ -191,7 +191,11 @@ def test_frames(tmp_path: Path, frame: str, codes: list[str]) -> None:
 def test_the_hint_is_the_name_that_was_meant(tmp_path: Path, name: str, near: str) -> None:
     (it,) = lint(tmp_path, ROBOT + BLOCK.format(name, ""))
     assert it.code == "MB202"
-    assert it.hint == (f"did you mean {near!r}?" if near else "")
+    assert it.hint == (
+        f"did you mean {near!r}?"
+        if near
+        else "correct the name, declare the link, or delete the block"
+    )
 
 
 def test_the_attribute_at_fault_is_the_place(tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ MODULES = {
 # Modules that the package goes without, or that no key of rosdep is for.
 UNASKED = {
     *("tomli", "tomllib", "tree_sitter", "tree_sitter_cpp", "zenoh", "rosbags"),
-    *("yourdfpy", "trimesh", "numpy"),  # the extra view
+    *("trimesh", "numpy"),  # the extra view
 }
 # What the tests import before anything else.
 OF_TESTS = {

@@ -52,8 +52,8 @@ AGAIN = "multibot rehearse examples/"
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
     if line.startswith(page_commands.LIVE) and not page_commands.has_ros():
         pytest.skip("no rclpy: pip install '.[ros]'")
-    if line.startswith("multibot view") and not find_spec("yourdfpy"):
-        pytest.skip("no yourdfpy: pip install '.[view]'")
+    if line.startswith("multibot view") and not find_spec("trimesh"):
+        pytest.skip("no trimesh: pip install '.[view]'")
     reader = readers_folder(tmp_path)
     for one in (FIRST, line) if "rovers.yaml" in line and line != FIRST else (line,):
         done = reader.run(one)

@@ -43,7 +43,7 @@ HEAVY = (
     "rosbags",
     "launch",
     "launch_ros",
-    "yourdfpy",
+    "trimesh",
     "xacro",
     "tree_sitter",
     "tree_sitter_cpp",

@@ -9,13 +9,11 @@ from typing import Any
 import pytest
 from paths import ROBOTS
 
-from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.foxglove import to_layout
 from multibot_rewrite.system.records import Robot, System
 
 ROVERS = """\
-foxglove: true
 layout: {layout}
 affix: prefix
 stack: nav2
@@ -69,8 +67,7 @@ def test_links_without_a_prefix_get_that_of_the_robot(tmp_path: Path) -> None:
     assert [it["framePrefix"] for it in layers.values()] == ["robot1/", "robot2/"]
 
 
-def test_frames_of_one_name_are_refused() -> None:
+def test_frames_of_one_name_give_no_layout() -> None:
     robots = tuple(Robot(it, ("odom", "base_link"), f"/{it}/tf") for it in ("robot1", "robot2"))
-    with pytest.raises(UsageError, match="take frames-per-robot or both"):
-        to_layout(System(layout="tf-per-robot", robots=robots))
+    assert not to_layout(System(layout="tf-per-robot", robots=robots))
     assert to_layout(System(layout="tf-per-robot", robots=robots[:1]))

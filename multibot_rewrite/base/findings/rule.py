@@ -44,7 +44,19 @@ class Rule(NamedTuple):
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
         """A finding of this rule; ``place`` are the other fields of ``Finding``."""
-        return Finding(self.code, place.pop("level", self.level), message, hint, **place)
+        level = place.pop("level", self.level)
+        return Finding(self.code, level, message, hint or self.advice, **place)
+
+    @property
+    def advice(self) -> str:
+        """What to do in few words: the first sentence of ``fix``, as a hint is written.
+
+        Empty where that sentence says to do nothing, or what the hint of each finding has.
+        """
+        first = self.fix.partition(". ")[0].removesuffix(".")
+        if first.startswith("Nothing") or "the hint" in first:
+            return ""
+        return first[:1].lower() + first[1:]
 
 
 def declare(

@@ -94,11 +94,12 @@ def with_members(
     findings: Iterable[Finding], names: Mapping[str, str]
 ) -> list[tuple[Finding, list[Finding]]]:
     """As ``grouped``, each with the findings that it stands for."""
+    order = {robot: at for at, robot in enumerate(names.values())}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:
         robot = it.robot or _only_robot(it, names)
         groups.setdefault(_without(it, robot, names), []).append((robot, it))
-    return [(_first(members), [it for _, it in members]) for members in groups.values()]
+    return [(_first(members, order), [it for _, it in members]) for members in groups.values()]
 
 
 def _only_robot(finding: Finding, names: Mapping[str, str]) -> str:
@@ -135,9 +136,10 @@ def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
     return re.compile(rf"(?<![A-Za-z0-9])(?:{inner})(?![A-Za-z0-9])")
 
 
-def _first(members: list[tuple[str, Finding]]) -> Finding:
+def _first(members: list[tuple[str, Finding]], order: Mapping[str, int]) -> Finding:
+    """The first finding; the others' robots are in the order of the fleet, robot2 before robot10."""
     (robot, first), *more = members
     # What is grouped already keeps its robots.
     met = [*first.others, *(name for it, found in more for name in (it, *found.others))]
     others = dict.fromkeys(name for name in met if name and name != robot)
-    return first._replace(others=tuple(others))
+    return first._replace(others=tuple(sorted(others, key=lambda it: order.get(it, len(order)))))

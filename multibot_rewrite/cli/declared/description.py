@@ -163,11 +163,13 @@ LINT = Command(
                 several("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
                 value("--baseline", metavar="FILE", about="report only findings not in FILE"),
                 path_option("--write-baseline", "write today's findings, for --baseline"),
-                value(
-                    "--jobs",
-                    metavar="N",
-                    about="processes; default: one for each processor",
-                    type=values.count,
+                rare(
+                    value(
+                        "--jobs",
+                        metavar="N",
+                        about="processes; default: one for each processor",
+                        type=values.count,
+                    )
                 ),
                 rare(
                     switch("--no-cache", about="lint what did not change since the last time, too")

@@ -174,12 +174,14 @@ BUILD = Command(
             ),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
-            choice(
-                "--shape",
-                "VENDOR",
-                SHAPES,
-                "write files as the launch files of a vendor take them, and the commands that start"
-                " these (docs/fleet-file.md); default: that of the fleet file",
+            rare(
+                choice(
+                    "--shape",
+                    "VENDOR",
+                    SHAPES,
+                    "write files as the launch files of a vendor take them, and the commands that"
+                    " start these (docs/fleet-file.md); default: that of the fleet file",
+                )
             ),
         ),
         FINDINGS,
@@ -193,7 +195,7 @@ BUILD = Command(
 PLAN = Command(
     "plan",
     "plan",
-    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
     "Write the ROS graph that a fleet should have, or its rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
@@ -230,11 +232,12 @@ PLAN = Command(
 REHEARSE = Command(
     "rehearse",
     "rehearse",
-    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
     "Try a fleet's plan on a real ROS graph, without any robot.",
     (
+        Example("multibot rehearse fleet.yaml", "are all names as planned?"),
+        Example("multibot rehearse fleet.yaml --report report.html", "a page with the ROS graph"),
         Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2"),
-        Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html"),
         Example(
             "multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules all",
             "which names would collide?",
@@ -306,7 +309,7 @@ VIEW = Command(
         FINDINGS,
         GENERAL,
     ),
-    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no yourdfpy or rosbags",
+    "0 done; 1 the description is refused; 2 wrong use or unreadable input; 4 no trimesh or rosbags",
     more="It needs pip install 'multibot_rewrite[view]'. Meshes are put into the page.",
     fail_on=ERROR,
 )

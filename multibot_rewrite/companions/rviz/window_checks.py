@@ -194,7 +194,10 @@ def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
                 "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
             )
             if one.flag == ABSOLUTE:
-                hint = "its topics are absolute: remap them in an rviz2 for one robot"
+                hint = (
+                    "its topics are absolute: delete it here, and open it in an rviz2 that has a rule"
+                    " for each of them, one for each robot"
+                )
             yield found_at(config.document, one.node, LEFT_OUT, message, hint)
 
 

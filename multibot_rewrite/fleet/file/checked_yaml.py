@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 import yaml
@@ -28,6 +28,8 @@ TYPES = {
     "boolean": "true or false",
 }
 SHOWN = 60
+# The key under which a fleet file names the files beside a description.
+BELOW = "companions"
 
 
 class CheckedYaml(NamedTuple):
@@ -93,7 +95,7 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
 def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
     if is_valid(data, schema, schema["$defs"]):
         return
-    found = [it for error in _errors(data, schema) for it in _faults(error, lines)]
+    found = [it for error in _errors(data, schema) for it in _faults(error, lines, schema)]
     if not found:
         return
     (line, words), *others = dict.fromkeys(sorted(found, key=lambda it: it[0]))
@@ -101,7 +103,9 @@ def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Pa
     raise InputError(f"{file}:{line}: {words}{also}")
 
 
-def _faults(error: Any, lines: Mapping[Path, int]) -> Iterator[tuple[int, str]]:
+def _faults(
+    error: Any, lines: Mapping[Path, int], schema: Mapping[str, Any]
+) -> Iterator[tuple[int, str]]:
     """The lines of an error, and it in words."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
@@ -110,8 +114,9 @@ def _faults(error: Any, lines: Mapping[Path, int]) -> Iterator[tuple[int, str]]:
         yield line, f"{where}{_in_words(error)}"
         return
     known = error.schema["properties"]
+    below = schema["$defs"].get(BELOW, {}).get("properties", ()) if BELOW in known else ()
     for key in (it for it in error.instance if it not in known):
-        words = f"{where}unknown key {_shown(key)}; {_known(key, known)}"
+        words = f"{where}unknown key {_shown(key)}; {_known(key, known, below)}"
         yield lines.get((*path, key), line), words
 
 
@@ -163,10 +168,15 @@ def _where(path: Path) -> str:
     return f"{text}: " if text else ""
 
 
-def _known(word: object, known: Iterable[object]) -> str:
-    """What to write instead of an unknown word: the nearest known one, else all of them."""
+def _known(word: object, known: Iterable[object], below: Collection[str] = ()) -> str:
+    """What to write instead of an unknown word: the nearest known one, else all of them.
+
+    ``below`` are words that are known one step down, in ``BELOW``.
+    """
     words = [str(it) for it in known]
-    other = other_words.KEYS.get(str(word), "")
+    other = other_words.KEYS.get(str(word), str(word))
     if other in words:
         return f"use {other!r}"
+    if other in below:
+        return f"write {BELOW}: {{{other}: ...}}"
     return did_you_mean_one_of(str(word), words) or f"known are {', '.join(words)}"

@@ -110,8 +110,7 @@ class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
-    ``sros2`` asks for a policy, ``foxglove`` for a layout,
-    ``params_style`` says how parameter files are written,
+    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
     ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations.
     ``installed`` is where the results are when they are used, empty for where
@@ -130,7 +129,6 @@ class FleetFile(NamedTuple):
     files: tuple[str, ...] = ()
     shared_nodes: tuple[str, ...] = ()
     sros2: bool = False
-    foxglove: bool = False
     params_style: str = ""
     relayed: bool = False
     cell: Cell | None = None
@@ -174,7 +172,6 @@ def read_fleet(
         files,
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
         data.get("sros2", False),
-        data.get("foxglove", False),
         data.get("params_style", ""),
         data.get("relayed", False),
         cell_of(read, naming),

@@ -11,6 +11,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.bridged import bridged_window
+from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
@@ -28,8 +29,11 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.system.records import System
 
 RVIZ = "rviz2"
+# What stands for the config of a fleet that names none: a path of no file.
+USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
@@ -69,6 +73,12 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
 
 
+def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
+    """The windows of a fleet that names no config of RViz."""
+    made = windows_of_plan(planned, plan.file.relayed)
+    return [RvizOutput(USUAL, made, ())] if plan.robots else []
+
+
 def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
     """The windows of a fleet with the names of their files, or with ``each`` one for each robot.
 
@@ -105,9 +115,8 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
     """The files of the windows, and what was found."""
     for source, windows, findings in configs:
         yield from findings
-        yield from (
-            OutputFile(window_path(it, source), it.text.encode(), (source,)) for it in windows
-        )
+        read = () if source == USUAL else (source,)
+        yield from (OutputFile(window_path(it, source), it.text.encode(), read) for it in windows)
 
 
 def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from importlib.resources import files
 from typing import Any
 
+from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA
@@ -32,15 +32,8 @@ def text_of(it: Proposal, folder: str, name: str) -> str:
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 
 
-def _schema(folder: str) -> str:
-    """For editors: relative where this package is installed below the fleet file's folder."""
-    path = str(files(FLEET_PACKAGE) / SCHEMA)
-    below = os.path.relpath(path, folder)
-    return path if below.startswith(os.pardir) else below
-
-
 def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
-    yield f"# yaml-language-server: $schema={_schema(folder)}"
+    yield schema_line(FLEET_PACKAGE, SCHEMA, folder)
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"

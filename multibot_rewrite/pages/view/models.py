@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rewritten description -> links with shapes, and joints. The only import of yourdfpy and trimesh.
+"""What the view draws of a robot: links with shapes, joints, meshes. The only import of trimesh.
 
 Meshes are looked for as ROS does: package://, file://, and paths beside the description.
 """
 
 from __future__ import annotations
 
-import io
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from multibot_rewrite.base.model import InputError, Unusable
+from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.poses import Pose
 from multibot_rewrite.description.sources.packages import package_folder
 
-INSTALL = "the view needs yourdfpy: pip install 'multibot_rewrite[view]'"
+INSTALL = "the view needs trimesh: pip install 'multibot_rewrite[view]'"
 # Of larger meshes the bounding box is shown, or the page would not load.
 MOST_FACES = 200_000
 # A mesh file is read whole.
@@ -71,54 +71,6 @@ class Mesh(NamedTuple):
     colours: bytes = b""
 
 
-def load_model(data: bytes, source: str) -> Model:
-    """The model of a URDF; ``source`` is the file it was made from.
-
-    Raises Unusable without yourdfpy, InputError for what it cannot read.
-    """
-    yourdfpy = _yourdfpy()
-    try:
-        robot = yourdfpy.URDF.load(
-            io.BytesIO(data), build_scene_graph=False, load_meshes=False
-        ).robot
-    except Exception as error:  # yourdfpy has no error of its own
-        raise InputError(f"{source}: yourdfpy cannot read it: {error}") from None
-    colours = {it.name: _rgba(it) for it in robot.materials if it.color is not None}
-    links = {it.name: tuple(_shapes(it, colours, source)) for it in robot.links}
-    return Model(links, tuple(_joint(it) for it in robot.joints))
-
-
-def _yourdfpy() -> Any:
-    try:
-        import yourdfpy
-    except ImportError:
-        raise Unusable(INSTALL) from None
-    return yourdfpy
-
-
-def _rgba(material: Any) -> tuple[float, ...]:
-    return tuple(float(it) for it in material.color.rgba)
-
-
-def _shapes(link: Any, colours: dict[str, tuple[float, ...]], source: str) -> Iterator[Shape]:
-    for visual in link.visuals:
-        material = visual.material
-        colour = UNCOLOURED
-        if material is not None:
-            colour = _rgba(material) if material.color else colours.get(material.name, UNCOLOURED)
-        pose = _matrix(visual.origin)
-        it = visual.geometry
-        if it.box is not None:
-            yield Shape("box", tuple(map(float, it.box.size)), pose, colour)
-        elif it.cylinder is not None:
-            size = float(it.cylinder.radius), float(it.cylinder.length)
-            yield Shape("cylinder", size, pose, colour)
-        elif it.sphere is not None:
-            yield Shape("sphere", (float(it.sphere.radius),), pose, colour)
-        elif it.mesh is not None:
-            yield mesh_shape(it.mesh.filename, _scale(it.mesh), pose, colour, source)
-
-
 def mesh_shape(
     name: str, scale: tuple[float, ...], pose: Matrix, colour: tuple[float, ...], source: str
 ) -> Shape:
@@ -127,11 +79,6 @@ def mesh_shape(
     if path:
         return Shape("mesh", scale, pose, colour, path)
     return Shape("box", (0.1, 0.1, 0.1), pose, colour, "", f"{name} is not found")
-
-
-def _scale(mesh: Any) -> tuple[float, ...]:
-    scale = mesh.scale if mesh.scale is not None else 1.0
-    return (float(scale),) * 3 if isinstance(scale, float) else tuple(map(float, scale))
 
 
 def find_mesh(name: str, source: str) -> str:
@@ -149,9 +96,11 @@ def find_mesh(name: str, source: str) -> str:
 
 
 def prepare_meshes() -> None:
-    """Load the reader once, for the workers that are forked from this process."""
-    with suppress(ImportError):  # the view says what to install
+    """Load the reader once, for the workers that are forked from this process; raises Unusable."""
+    try:
         import_module("trimesh")
+    except ImportError:
+        raise Unusable(INSTALL) from None
 
 
 def load_mesh(path: str) -> Mesh | str:
@@ -186,28 +135,10 @@ def _colours(mesh: Any) -> bytes:
     return b""
 
 
-def _matrix(origin: Any) -> Matrix:
-    if origin is None:
-        return ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
-    return [[round(float(it), 9) for it in row] for row in origin]
-
-
-def _joint(it: Any) -> Joint:
-    turning = it.type in ("revolute", "continuous")
-    moving = turning or it.type == "prismatic"
-    lower = upper = 0.0
-    if it.type == "continuous":
-        lower, upper = -3.1416, 3.1416
-    elif moving and it.limit is not None:
-        lower, upper = float(it.limit.lower or 0), float(it.limit.upper or 0)
-    axis = tuple(map(float, it.axis)) if it.axis is not None else (1.0, 0.0, 0.0)
-    mimic = None
-    if it.mimic is not None:
-        factor = 1.0 if it.mimic.multiplier is None else float(it.mimic.multiplier)
-        mimic = it.mimic.joint, factor, float(it.mimic.offset or 0)
-    return Joint(
-        it.name, it.type, it.parent, it.child, _matrix(it.origin), axis, lower, upper, mimic
-    )
+def matrix_of(pose: Pose) -> Matrix:
+    """The four rows of a pose."""
+    rows = zip(pose.matrix, pose.at, strict=True)
+    return [*([*(round(it, 9) for it in row), round(at, 9)] for row, at in rows), [0, 0, 0, 1]]
 
 
 def three() -> str:
@@ -217,10 +148,9 @@ def three() -> str:
     """
     import zipfile
 
-    try:
-        import trimesh
-    except ImportError:
-        raise Unusable(INSTALL) from None
+    prepare_meshes()
+    import trimesh
+
     path = os.path.join(os.path.dirname(trimesh.__file__), "resources", "templates", "viewer.zip")
     with zipfile.ZipFile(path) as archive:
         text = archive.read("viewer.html.template").decode()

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -23,9 +23,9 @@ MESH_SECONDS = 10.0
 Meshes = Mapping[str, Mesh | str]
 
 
-def meshes_of(scene: Scene) -> Meshes:
+def meshes_of(scene: Scene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
     """The meshes of all robots, each read once, by a worker with bounds: a small file may stand for
-    more than memory holds, or take for ever."""
+    more than memory holds, or take for ever. ``tell`` is told which one is read."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -38,7 +38,11 @@ def meshes_of(scene: Scene) -> Meshes:
         return f"{path}: reading it takes more than {MESH_SECONDS:g} s, or too much memory"
 
     with worker_pool(within, paths, lost, min(2, len(paths))) as workers:
-        return dict(zip(paths, workers.results(), strict=True))
+        found = {}
+        for path, mesh in zip(paths, workers.results(), strict=True):
+            found[path] = mesh
+            tell(f"{len(found)} of {plural(len(paths), 'mesh file')}: {path}")
+        return found
 
 
 def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:

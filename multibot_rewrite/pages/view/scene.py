@@ -16,8 +16,9 @@ from multibot_rewrite.fleet.file.fleet_file import Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees, placed
-from multibot_rewrite.pages.view.models import Model, load_model
+from multibot_rewrite.pages.view.models import Model
 from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
+from multibot_rewrite.pages.view.urdf_model import load_urdf
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -71,7 +72,7 @@ class Scene(NamedTuple):
 
 
 def scene_of(plan: FleetPlan, graph: System | None = None) -> Scene:
-    """The robots; raises as ``load_model`` and ``load_sdf``."""
+    """The robots; raises as ``load_sdf``."""
     changes = {sources: _changes(plan, sources) for sources in plan.jobs}
     robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
     if graph is None:
@@ -117,7 +118,7 @@ def _of(changes: Iterable[Change], graph: bool) -> Iterator[Change]:
 
 def _model(it: RewrittenRobot) -> Model:
     root, source = it.member.described.document.root, os.path.abspath(it.spec.description)
-    return load_sdf(root, source) if root.tag == "sdf" else load_model(it.description, source)
+    return (load_sdf if root.tag == "sdf" else load_urdf)(root, source)
 
 
 def _plugins(document: Document) -> Iterator[Plugin]:

@@ -18,7 +18,15 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import HERE, Pose, minus, placed, sdf_pose
 from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, turned
-from multibot_rewrite.pages.view.models import UNCOLOURED, Joint, Matrix, Model, Shape, mesh_shape
+from multibot_rewrite.pages.view.models import (
+    UNCOLOURED,
+    Joint,
+    Matrix,
+    Model,
+    Shape,
+    matrix_of,
+    mesh_shape,
+)
 
 MODEL = "__model__"
 _FRAMES = ("link", "joint", "frame", "model")
@@ -168,7 +176,7 @@ def _joint(frames: _Frames, ends: _Ends, at: dict[str, Pose]) -> Joint:
         turn = frames.pose(it.within(within)).matrix
         axis = turned(inverse(at[ends.child].matrix), turned(turn, axis))
     kind = it.element.get("type", "")
-    pose = _matrix(_relative(at[ends.parent], at[ends.child]))
+    pose = matrix_of(_relative(at[ends.parent], at[ends.child]))
     return Joint(*ends[:1], kind, *ends[1:], pose, axis, *_limits(it, kind), None)
 
 
@@ -189,12 +197,7 @@ def _relative(above: Pose, below: Pose) -> Pose:
 
 def _fixed(link: str, pose: Pose) -> Joint:
     """Where a link that no joint moves is."""
-    return Joint(f"{link} in {MODEL}", "fixed", MODEL, link, _matrix(pose), (1, 0, 0), 0, 0, None)
-
-
-def _matrix(pose: Pose) -> Matrix:
-    rows = zip(pose.matrix, pose.at, strict=True)
-    return [*([*(round(it, 9) for it in row), round(at, 9)] for row, at in rows), [0, 0, 0, 1]]
+    return Joint(f"{link} in {MODEL}", "fixed", MODEL, link, matrix_of(pose), (1, 0, 0), 0, 0, None)
 
 
 def _shapes(link: _Named, frames: _Frames, at: Pose) -> Iterator[Shape]:
@@ -202,7 +205,7 @@ def _shapes(link: _Named, frames: _Frames, at: Pose) -> Iterator[Shape]:
         written = visual.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
         base = frames.pose(link.within(relative) if relative else link.name)
-        pose = _matrix(_relative(at, placed(base, _pose(written))))
+        pose = matrix_of(_relative(at, placed(base, _pose(written))))
         colour = numbers(visual.findtext("material/diffuse") or "") or ()
         colour = colour if len(colour) == 4 else (*colour, 1.0) if len(colour) == 3 else UNCOLOURED
         for it in visual.iterfind("geometry/*"):

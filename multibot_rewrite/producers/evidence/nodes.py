@@ -248,7 +248,7 @@ def _of_another_release(
 
 def _guess(controller: GivenNode) -> str:
     """What a controller of an unknown type claims, if its parameters have their usual names."""
-    names = [it.name for it in claims_of(GUESSED, controller)]
+    names = list(dict.fromkeys(it.name for it in claims_of(GUESSED, controller)))
     if not names:
         return ""
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""

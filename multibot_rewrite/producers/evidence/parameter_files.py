@@ -17,7 +17,7 @@ import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
@@ -154,12 +154,12 @@ def _controllers(
         # A renamed one is called controller_manager_robot1, for example.
         if MANAGER not in last and section.name not in managers:
             continue
-        # What is for every node is for the manager, too.
-        own = [
+        # What is for every node is for the manager, too; those of MoveIt are below a name there.
+        for_all = [
             it for it in sections if not it.name and re.fullmatch(it.pattern, f"/{section.name}")
         ]
-        every = (*own, section)
-        for name, given in (pair for it in every for pair in it.values.items()):
+        shared = (pair for it in for_all for pair in it.values.items() if pair[0].count(".") == 1)
+        for name, given in (*shared, *section.values.items()):
             if name.endswith(TYPE):
                 controller = name.removesuffix(TYPE)
                 full = f"{above}/{controller}" if above else controller
@@ -189,6 +189,6 @@ def _node(
     place = controller.type.place if controller else named[0].place
     manager = controller.manager if controller else ""
     unknown = bool(type_) and type_ not in known.types
-    like = nearest(type_, known.types) if unknown else ""
+    like = nearest(type_, known.types, SLIP) if unknown else ""
     node = found.name if found else ""
     return GivenNode(name, node, type_, values, place, manager, unknown, like)

@@ -17,7 +17,6 @@ complete -c multibot -n '__fish_seen_subcommand_from build' -s o -l output -r -d
 complete -c multibot -n '__fish_seen_subcommand_from build' -l undo -d 'remove the files that the last build wrote'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l check -d 'list what is stale, write nothing'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l force -d 'overwrite files that no build made'
-complete -c multibot -n '__fish_seen_subcommand_from build' -l shape -r -f -a 'clearpath husarion nav2 turtlebot4' -d 'write files as the launch files of a vendor take them, and the commands that start these (docs/fleet-file.md)'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l select -r -d 'only these codes, or codes that begin so: MB2,MG102'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l ignore -r -d 'not these'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l fail-on -r -f -a 'error warning note' -d 'the lowest level that makes the exit code 1: error (default'

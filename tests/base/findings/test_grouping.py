@@ -27,6 +27,8 @@ def test_twenty_robots_with_one_fault_are_one_finding() -> None:
     (one,) = grouped([lost(robot) for robot in ROBOTS], NAMES)
     assert (one.robot, one.others) == ("robot1", tuple(ROBOTS[1:]))
     assert same_for(one) == "; the same for robot2 and 18 more"
+    # A check has them by the names of nodes: robot10 before robot2.
+    assert grouped([lost(robot) for robot in sorted(ROBOTS)], NAMES) == [one]
 
 
 def test_what_is_grouped_already_keeps_its_robots() -> None:

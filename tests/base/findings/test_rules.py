@@ -39,7 +39,9 @@ def test_the_examples_of_a_rule_for_which_a_fleet_is_built(code: str, tmp_path: 
 
 def judge_examples(rule: Rule, tmp_path: Path) -> None:
     (finding,) = found(rule, rule.bad, tmp_path)
+    # What is found, and what to do.
     assert finding.message
+    assert finding.hint
     assert bool(finding.edits) == bool(rule.fixed)
     (tmp_path / "good").mkdir()
     assert found(rule, rule.good, tmp_path / "good") == []

@@ -5,9 +5,11 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
+from lxml import etree
+from paths import ROBOTS, ROOT
 
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.pages.view import models
 from multibot_rewrite.pages.view.models import (
     MOST_BYTES,
@@ -15,8 +17,8 @@ from multibot_rewrite.pages.view.models import (
     Model,
     find_mesh,
     load_mesh,
-    load_model,
 )
+from multibot_rewrite.pages.view.urdf_model import load_urdf
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 CORNERS = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -39,7 +41,7 @@ COLOURS = "".join(f"property uchar {it}\n" for it in ("red", "green", "blue"))
 
 
 def load(inner: str) -> Model:
-    return load_model(f'<robot name="r">{inner}</robot>'.encode(), "/nowhere/r.urdf")
+    return load_urdf(etree.fromstring(f'<robot name="r">{inner}</robot>'), "/nowhere/r.urdf")
 
 
 def shapes(geometry: str, more: str = "") -> list[tuple[object, ...]]:
@@ -82,7 +84,7 @@ def test_a_mesh_has_its_scale(scale: str, size: tuple[float, ...], tmp_path: Pat
     (tmp_path / "a.stl").write_bytes(b"")
     geometry = f'<geometry><mesh filename="a.stl" {scale}/></geometry>'
     text = f'<robot name="r"><link name="a"><visual>{geometry}</visual></link></robot>'
-    (shape,) = load_model(text.encode(), str(tmp_path / "r.urdf")).links["a"]
+    (shape,) = load_urdf(etree.fromstring(text), str(tmp_path / "r.urdf")).links["a"]
     assert (shape.kind, shape.size, shape.mesh) == ("mesh", size, str(tmp_path / "a.stl"))
 
 
@@ -119,9 +121,30 @@ def test_a_joint_follows_another(words: str, mimic: tuple[object, ...]) -> None:
     assert [row[3] for row in joint.pose] == [1, 2, 3, 1]
 
 
-def test_what_is_no_urdf_is_said() -> None:
-    with pytest.raises(InputError, match=r"^a\.urdf: yourdfpy cannot read it: "):
-        load_model(b"<robot", "a.urdf")
+@pytest.mark.more
+@pytest.mark.parametrize(
+    "path", [*sorted(ROBOTS.glob("*.urdf")), *sorted(ROOT.glob("examples/*/*.urdf"))], ids=str
+)
+def test_a_robot_is_as_yourdfpy_reads_it(path: Path) -> None:
+    """Where each joint is, what it turns about and how far, and what each link looks like."""
+    yourdfpy = pytest.importorskip("yourdfpy")
+    off = {"build_scene_graph": False, "load_meshes": False}
+    robot = yourdfpy.URDF.load(str(path), **off).robot
+    model = load_urdf(etree.parse(path).getroot(), str(path))
+    joints = {it.name: it for it in model.joints}
+    assert joints.keys() == {it.name for it in robot.joints}
+    for it in robot.joints:
+        own, moves = joints[it.name], it.type in ("revolute", "prismatic")
+        assert (own.type, own.parent, own.child) == (it.type, it.parent, it.child)
+        assert np.allclose(own.pose, np.eye(4) if it.origin is None else it.origin)
+        assert np.allclose(own.axis, (1, 0, 0) if it.axis is None else it.axis)
+        limits = (it.limit.lower, it.limit.upper) if moves else (own.lower, own.upper)
+        assert (own.lower, own.upper) == limits
+        assert (own.mimic or ("",))[0] == (it.mimic.joint if it.mimic else "")
+    for link in robot.links:
+        assert len(model.links[link.name]) == len(link.visuals)
+        for shape, visual in zip(model.links[link.name], link.visuals, strict=True):
+            assert np.allclose(shape.pose, np.eye(4) if visual.origin is None else visual.origin)
 
 
 def test_meshes_are_looked_for_as_ros_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

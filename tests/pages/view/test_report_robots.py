@@ -13,7 +13,7 @@ from paths import ROBOTS
 
 from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.pages.view import models, scene
+from multibot_rewrite.pages.view import models, page, scene
 from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.json import to_json
 
@@ -83,7 +83,7 @@ def test_a_report_is_written_where_robots_cannot_be_shown(
     def missing() -> object:
         raise Unusable(models.INSTALL)
 
-    monkeypatch.setattr(models, "_yourdfpy", missing)
+    monkeypatch.setattr(page, "prepare_meshes", missing)
     assert "<iframe" not in report(files, "fleet")
     told = capsys.readouterr().err
     assert "the report does not show the robots in 3D" in told and "[view]" in told
@@ -93,5 +93,5 @@ def test_a_report_is_written_where_robots_cannot_be_shown(
 def test_a_check_without_a_report_loads_no_model(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(scene, "load_model", lambda *_: pytest.fail("loaded"))
+    monkeypatch.setattr(scene, "load_urdf", lambda *_: pytest.fail("loaded"))
     main(["check", files["fleet"], "--snapshot", files["graph"]])

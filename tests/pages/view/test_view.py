@@ -168,12 +168,19 @@ def test_mistakes_are_one_line(
     assert file.read_text() == ROBOT
 
 
-def test_without_yourdfpy_it_says_what_to_install(
+def test_without_trimesh_it_says_what_to_install(
     file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "yourdfpy", None)
+    monkeypatch.setitem(sys.modules, "trimesh", None)
     assert main(["view", str(file), "-o", str(file.parent / "view.html")]) == 4
     assert "pip install 'multibot_rewrite[view]'" in capsys.readouterr().err
+
+
+def test_what_is_read_is_told_mesh_by_mesh(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+    monkeypatch.setattr("multibot_rewrite.cli.view.status", lambda: told.append)
+    page(file.parent, file)
+    assert told == [f"1 of 1 mesh file: {file.parent / 'part.stl'}", ""]
 
 
 def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

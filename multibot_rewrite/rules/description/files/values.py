@@ -89,8 +89,7 @@ unknown_word = rule(
     "sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
     "the model ('greater than the maximum allowed value'), a plugin divides by it, and "
     "generate_parameter_library rejects it: the controller is not loaded.",
-    fix="Write a number inside of the range: the greatest absolute value of a limit, metres, "
-    "kilograms and radians.",
+    fix="Write a number that its reader takes, in metres, kilograms and radians.",
     bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
     formats=(URDF, PARAMS, MOVEIT),

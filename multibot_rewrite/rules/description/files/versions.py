@@ -182,7 +182,9 @@ def version_of_release(subject: Subject) -> Iterator[Problem]:
     if root.tag == "robot" and declared in KNOWN and declared > reads:
         reader = reader_of(subject.settings.distro, URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
-        yield Problem(root, message, "version", f"it reads {reads}", _lowered(subject))
+        edits = _lowered(subject)
+        more = "; --fix does it" if edits else " and what that version has"
+        yield Problem(root, message, "version", f"write version {reads}{more}", edits)
 
 
 @rule(

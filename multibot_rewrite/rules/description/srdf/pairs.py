@@ -116,7 +116,12 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
             ):
                 reported.add(name)
                 message = f"{name!r} has no collision geometry"
-                yield Problem(it, message, attribute, "the pair has no effect")
+                yield Problem(
+                    it,
+                    message,
+                    attribute,
+                    "delete the line, it has no effect; or add <collision> to the link",
+                )
 
 
 @srdf_rule(

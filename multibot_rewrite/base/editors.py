@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What editors read in a file that a command begins for its user."""
+
+from __future__ import annotations
+
+import os
+from importlib.resources import files
+
+
+def schema_line(package: str, name: str, folder: str) -> str:
+    """The comment by which yaml-language-server (VS Code, Vim, Emacs) finds a schema of this package:
+    relative where it is installed below ``folder``, in which the file will be."""
+    path = str(files(package) / name)
+    below = os.path.relpath(path, folder or os.curdir)
+    return f"# yaml-language-server: $schema={path if below.startswith(os.pardir) else below}"

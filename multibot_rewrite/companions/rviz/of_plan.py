@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The RViz configs that follow from a plan, for a fleet that has none of its own: each robot's
+description, its sensors, maps and paths in the robot's colour, and tools for its goal and pose.
+
+Sources: classes and properties ``rviz.yaml``; a map is latched (nav2_map_server map_server.cpp), so is
+a description (robot_state_publisher.cpp); drivers send scans and clouds best effort (REP 2003).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from multibot_rewrite.base.naming import LAYOUTS, TF_TOPICS
+from multibot_rewrite.companions.rviz.colours import palette
+from multibot_rewrite.companions.rviz.rewrite import RvizText
+from multibot_rewrite.companions.yaml_text import quoted
+from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
+from multibot_rewrite.system.records import Robot, System
+
+# The display of a type.
+_DISPLAYS = {
+    "sensor_msgs/msg/LaserScan": "LaserScan",
+    "sensor_msgs/msg/PointCloud2": "PointCloud2",
+    "sensor_msgs/msg/Range": "Range",
+    "nav_msgs/msg/OccupancyGrid": "Map",
+    "nav_msgs/msg/Path": "Path",
+    "geometry_msgs/msg/PolygonStamped": "Polygon",
+    "geometry_msgs/msg/PoseArray": "PoseArray",
+    "visualization_msgs/msg/Marker": "Marker",
+    "visualization_msgs/msg/MarkerArray": "MarkerArray",
+}
+_BEST_EFFORT = {"Reliability Policy": "Best Effort"}
+_LATCHED = {"Durability Policy": "Transient Local"}
+_QOS = {"LaserScan": _BEST_EFFORT, "PointCloud2": _BEST_EFFORT, "Map": _LATCHED}
+# Those with a colour; some take it only without one for each point.
+_FLAT = ("LaserScan", "PointCloud2")
+_COLOURED = (*_FLAT, "Range", "Path", "Polygon", "PoseArray")
+# Costmaps hide the map below them, and each other.
+_MAP = "map"
+_TOOLS = {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
+
+
+def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
+    """One config for all robots; one for each robot, with its namespace and tf topic, where each
+    sends its transforms on a topic of its own and they are not ``relayed`` to ``/tf``."""
+    layout = next(it for it in LAYOUTS if plan.layout in (it.name, it.short))
+    robots, shared = shown_by_robot(plan)
+    lines = [_group(it, at, layout.at_run_time) for at, it in enumerate(robots)]
+    if len({it.tf_topic for it in plan.robots}) == 1 or (relayed and layout.frames):
+        own = [*_displays(shared, ""), *lines]
+        return (RvizText("", _text(own, robots, world_of_plan(plan))),)
+    return tuple(
+        RvizText(
+            it.robot.name,
+            _text([*_displays(shared, ""), group], [it], _root(plan, it.robot)),
+            remaps=_tf_topics(it.robot),
+        )
+        for it, group in zip(robots, lines, strict=True)
+    )
+
+
+def _tf_topics(robot: Robot) -> tuple[tuple[str, str], ...]:
+    tf, static = TF_TOPICS
+    return ((f"/{tf}", robot.tf_topic), (f"/{static}", robot.tf_topic.replace(tf, static)))
+
+
+def _root(plan: System, robot: Robot) -> str:
+    """The frame that the robot's frames hang on."""
+    own = {*robot.frames, *robot.other_frames}
+    parents = (it.parent for it in plan.edges if it.child in own)
+    return next(parents, next(iter(robot.frames), ""))
+
+
+def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
+    """The displays of a robot, in its colour."""
+    robot = shown.robot
+    model = {
+        **_display("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
+        "Description Source": "Topic",
+        "TF Prefix": (robot.tag or robot.name) if prefixed else "",
+    }
+    model["Description Topic"] = model.pop("Topic")
+    colour = "; ".join(map(str, palette(at)))
+    displays = [model, *_displays(shown, colour)]
+    return {
+        "Class": "rviz_common/Group",
+        "Name": robot.name,
+        "Enabled": True,
+        "Displays": displays,
+    }
+
+
+def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
+    for topic in sorted(shown.of_type(_DISPLAYS)):
+        kind = _DISPLAYS[shown.sent[topic]]
+        enabled = kind != "Map" or shown.is_called(topic, _MAP)
+        made = _display(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
+        if colour and kind in _COLOURED:
+            made |= {"Color": colour}
+        if colour and kind in _FLAT:
+            made |= {"Color Transformer": "FlatColor"}
+        yield made
+
+
+def _display(kind: str, name: str, topic: dict[str, str], enabled: bool) -> dict[str, Any]:
+    kind = f"rviz_default_plugins/{kind}"
+    return {"Class": kind, "Name": name, "Enabled": enabled, "Topic": topic}
+
+
+def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: str) -> str:
+    clicked = [
+        {"Class": f"rviz_default_plugins/{kind}", "Topic": {"Value": topic}}
+        for it in robots
+        for kind, word in _TOOLS.items()
+        if (topic := it.clicked(word))
+    ]
+    usual = [{"Class": f"rviz_default_plugins/{it}"} for it in ("MoveCamera", "Select")]
+    first = [_plain("Grid"), _plain("TF")]
+    config = {
+        "Panels": [{"Class": "rviz_common/Displays", "Name": "Displays"}],
+        "Visualization Manager": {
+            "Class": "",
+            "Displays": [*first, *displays],
+            "Global Options": {"Fixed Frame": frame},
+            "Tools": [*usual, *clicked],
+            "Views": {"Current": {"Class": "rviz_default_plugins/Orbit", "Distance": 10}},
+        },
+    }
+    return "".join(f"{line}\n" for line in _lines(config))
+
+
+def _plain(kind: str) -> dict[str, Any]:
+    return {"Class": f"rviz_default_plugins/{kind}", "Name": kind, "Enabled": True}
+
+
+def _lines(value: Any) -> Iterator[str]:
+    """A mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
+    for key, there in value.items():
+        if isinstance(there, dict):
+            yield f"{key}:"
+            yield from (f"  {it}" for it in _lines(there))
+        elif isinstance(there, list):
+            yield f"{key}:" if there else f"{key}: []"
+            for one in there:
+                first, *rest = _lines(one)
+                yield from (f"  - {first}", *(f"    {it}" for it in rest))
+        else:
+            text = str(there).lower() if isinstance(there, bool | int) else quoted(there)
+            yield f"{key}: {text}"
