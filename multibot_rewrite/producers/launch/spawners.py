@@ -51,7 +51,11 @@ class _Parser(argparse.ArgumentParser):
 
 def is_spawner(node: LaunchedNode) -> bool:
     """Does it load controllers and end?"""
-    return f"{node.package}/{node.executable}" == SPAWNER
+    return _is_spawner(f"{node.package}/{node.executable}")
+
+
+def _is_spawner(program: str) -> bool:
+    return program.removesuffix(".py") == SPAWNER
 
 
 def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tuple[LaunchNote, ...]]:
@@ -74,7 +78,7 @@ def active(spawned: Mapping[str, Spawned]) -> set[str]:
 def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
     """The files with parameters of controllers that a program (``package/executable``) gets with these
     arguments; none if it is no spawner."""
-    if program != SPAWNER:
+    if not _is_spawner(program):
         return ()
     try:
         every = [it.param_file for it in _each(words)]
