@@ -64,6 +64,10 @@ def _of_many(name: str, given: list[Any], value: Any) -> str:
         return "" if every else f"{words} {first} in each place"
     if name == "bounds" and _is_number(value) and len(given) == 2:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
+    if name == "unique" and isinstance(value, list) and len(set(value)) < len(value):
+        return "without one twice"
+    if name == "some" and isinstance(value, list) and True not in value:
+        return "true in one place or more"
     if name == "not_empty" and value in ("", []):
         return "not empty"
     if name == "not_empty" and isinstance(value, list) and "" in value:
@@ -112,8 +116,12 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
     except ValueError:
         return None
     points = read if isinstance(read, list) else []
-    whole = all(isinstance(it, list) and len(it) == 2 and all(map(_is_number, it)) for it in points)
-    return [(float(x), float(y)) for x, y in points] if whole else None
+    if not all(isinstance(it, list) and len(it) == 2 for it in points):
+        return None
+    try:
+        return [(float(x), float(y)) for x, y in points]
+    except (TypeError, ValueError):
+        return None
 
 
 _EACH = ("lower_bounds", "upper_bounds")
