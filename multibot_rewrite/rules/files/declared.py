@@ -12,6 +12,7 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value
+from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.knowledge.declared import (
     DEMANDED,
     READ,
@@ -47,7 +48,9 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
         unknown = [
             it
             for it, found in section.known
-            if all(map(_is_any_name, found)) and not _is_known(section, it)
+            if all(map(_is_any_name, found))
+            and not _is_known(section, it)
+            and PARAMETERS not in it.name.split(".")
         ]
         if not unknown:
             continue
@@ -75,7 +78,8 @@ def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
     above = it.name.rpartition(".")[0]
     for path in paths:
         pattern, _, last = path.rpartition(".")
-        if "<" in pattern and "<" not in last and stands_for(pattern, above):
+        stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
+        if stand and all("." not in word for word in stand.values()):
             yield f"{above}.{last}"
 
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.named_file import NamedFile
@@ -66,6 +66,11 @@ def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
         if key.value != PARAMETERS and _NEARLY.fullmatch(str(key.value)):
             message = f"{key.value!r} is no {PARAMETERS}: no node gets what is below it"
             yield remark_at(key, message, f"write {PARAMETERS}, with two underscores", ERROR)
+    for section, _ in file.pages:
+        for key in _keys(section.body, _DEEP):
+            if key.value == PARAMETERS:
+                message = f"a section below the {PARAMETERS} of {section.path}: no node reads it"
+                yield remark_at(key, message, "move it out, to where that section begins", WARNING)
 
 
 def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
