@@ -438,7 +438,7 @@ def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
         ("fixed_size", "[6]", [1.0], "with a size of 6"),
         ("size_gt", "[0]", ["a"], ""),
         ("size_lt", "[2]", ["a", "b"], "with a size below 2"),
-        ("unique", "", ["a", "a"], ""),
+        ("unique", "", ["a", "a"], "without one twice"),
         ("acme::even", "[2]", 3, ""),
     ],
 )

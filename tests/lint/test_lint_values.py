@@ -15,7 +15,12 @@ ODD = faults("oddities")
 # What only a note tells: a value that is the default, parameters of another release.
 QUIET = {
     *("initial_pose_not_used", "q_jtc_integer", "q_stamped_in_jazzy"),
-    *("q_topic_for_frame", "q_control_plugin_name", "q_root_with_inertia", "u_servo_planning_frame"),
+    *(
+        "q_topic_for_frame",
+        "q_control_plugin_name",
+        "q_root_with_inertia",
+        "u_servo_planning_frame",
+    ),
 }
 # What nothing tells: a filter of a costmap among its layers, which is loaded all the same; what Jazzy
 # takes (it was refused in Humble, where it is told); a sensor type that sdformat takes; a node that is

@@ -91,7 +91,9 @@ def _literals(values: Iterable[Value]) -> dict[tuple[str, str], str]:
         type_ = _default(it.text, {}).type if it.text.startswith("<") else ""
         if type_ and it.function:
             found.setdefault((it.function, f"<{it.variable}>"), set()).add(type_)
-    return {at: types.pop() for at, types in found.items() if types <= {"double"} or types == {"bool"}}
+    return {
+        at: types.pop() for at, types in found.items() if types <= {"double"} or types == {"bool"}
+    }
 
 
 def shared_constants(values: Iterable[Value]) -> dict[str, str]:

@@ -64,10 +64,6 @@ def _of_many(name: str, given: list[Any], value: Any) -> str:
         return "" if every else f"{words} {first} in each place"
     if name == "bounds" and _is_number(value) and len(given) == 2:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
-    if name == "unique" and isinstance(value, list) and len(set(value)) < len(value):
-        return "without one twice"
-    if name == "some" and isinstance(value, list) and True not in value:
-        return "true in one place or more"
     if name == "not_empty" and value in ("", []):
         return "not empty"
     if name == "not_empty" and isinstance(value, list) and "" in value:
@@ -124,11 +120,23 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
         return None
 
 
+def _unique(_: Any, value: Any) -> str:
+    twice = isinstance(value, list) and len(set(value)) < len(value)
+    return "without one twice" if twice else ""
+
+
+def _some(_: Any, value: Any) -> str:
+    none = isinstance(value, list) and True not in value
+    return "true in one place or more" if none else ""
+
+
 _EACH = ("lower_bounds", "upper_bounds")
 _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "limits": _limits,
     "square": _square,
     "polygon": _polygon,
+    "unique": _unique,
+    "some": _some,
 }
 
 

@@ -16,6 +16,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
@@ -65,8 +66,8 @@ def _limits(velocity: str) -> str:
     what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in the "
     "package's description, or limits a joint that the robot of the SRDF beside it has not.",
     why="MoveIt takes the limits of the file in place of the URDF's. It plans what the hardware or "
-    "ros2_control does not take: the controller is behind, and aborts the trajectory. Limits of another "
-    "joint have no effect.",
+    "ros2_control does not take: the controller is behind, and aborts the trajectory. Limits of "
+    "another joint have no effect.",
     fix="Write the limits of the description, or narrower ones, and the joint's name as it is now.",
     bad=_limits("3.0"),
     good=_limits("1.5"),
@@ -109,7 +110,7 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
     for it in section.given:
         found = _JOINT.match(it.name)
         joint = found["joint"] if found else ""
-        if not joint or joint in there | told or any(joint.encode() in it for it in srdfs):
+        if not is_plain(joint) or joint in there | told or any(joint.encode() in it for it in srdfs):
             continue
         told.add(joint)
         message = f"joint {joint!r}, which has limits here, is not in the description"

@@ -66,10 +66,10 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
 
 
 def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
-    """Every fault in the models of an ``<sdf>``."""
+    """Every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
-    models = root.iterchildren("model")
-    return tuple(fault for model in models for fault in _element(model, "model", version))
+    found = root.iterchildren("model", "world")
+    return tuple(fault for it in found for fault in _element(it, str(it.tag), version))
 
 
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
