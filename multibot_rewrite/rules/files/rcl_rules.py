@@ -26,6 +26,8 @@ from multibot_rewrite.rules.files.records import Remark, remark_at
 _PLACE = re.compile(r"^.*?:\d+(?::\d+)?: ")
 _NEARLY = re.compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
 _DEEP = 4
+# What a launch file or a template puts something in place of; a brace alone begins a map.
+_FILLED_IN = re.compile(r"[<$%]|\{\{")
 _TIME = "use_sim_time"
 
 
@@ -36,7 +38,7 @@ def rejected_values(file: NamedFile) -> Iterator[Remark]:
         return
     for section, _ in file.pages:
         for node in filter(_is_read, _lists(section.body)):
-            if PLACEHOLDER.search(document.text[node.start_mark.index : node.end_mark.index]):
+            if _FILLED_IN.search(document.text[node.start_mark.index : node.end_mark.index]):
                 continue
             try:
                 value_of(document, node)
