@@ -20,6 +20,7 @@ QUIET = {
         "q_control_plugin_name",
         "q_root_with_inertia",
         "u_servo_planning_frame",
+        "u_trajectory_interface_name",
     ),
 }
 # What nothing tells: a filter of a costmap among its layers, which is loaded all the same; what Jazzy
