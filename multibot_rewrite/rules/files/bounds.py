@@ -112,7 +112,8 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
     except ValueError:
         return None
     points = read if isinstance(read, list) else []
-    if not all(isinstance(it, list) and len(it) == 2 for it in points):
+    pairs = all(isinstance(it, list) and len(it) == 2 for it in points)
+    if not pairs or any(isinstance(it, bool) for point in points for it in point):
         return None
     try:
         return [(float(x), float(y)) for x, y in points]

@@ -9,7 +9,6 @@ ros2_control controller_manager.cpp (a controller is what ``NAME.type`` of the m
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 import yaml
@@ -21,7 +20,6 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.producers.evidence.moveit import (
@@ -34,12 +32,8 @@ from multibot_rewrite.producers.evidence.moveit import (
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.examples import a_controller
 from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in
-from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.system.records import ACTION, SERVES, Place
-
-# Checks of generate_parameter_library that the default of a list fails.
-_FILLED = re.compile(r"\bnot_empty\(|\bsize_gt\(")
 
 
 def _moved_by(name: str) -> str:
@@ -153,8 +147,7 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
     WARNING,
     what="A section has the parameters of a controller, and no controller manager declares it. In a "
     "build it is a note unless it is called nearly as a declared controller that has no section; of a "
-    "file alone only that is reported. Or a declared controller has none of the parameters that it "
-    "cannot do without; of a file alone that is a note, as a spawner may give it another file.",
+    "file alone only that is reported.",
     why="Nothing reads the section: the controller that is meant runs with its defaults, or fails.",
     fix="Give the section the controller's name, or declare the controller below controller_manager.",
     bad=a_controller("arm_controller", "arm_controler"),
@@ -167,10 +160,8 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
     given, known = beside(file)
     declared = {it.name: it for it in given if it.manager}
     bare = [name for name, it in declared.items() if not it.values]
-    meant: set[str] = set()
     for it in _undeclared((it for it in given if is_in(file, it.place)), known):
         near = nearest(it.name, bare)
-        meant.add(near)
         if not declared or not (near or file.is_certain):
             continue
         place = declared[near or next(iter(declared))].place
@@ -179,20 +170,6 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
             it.place.line, 1, f"{it.name} has parameters of a controller that nothing declares",
             did_you_mean_at(near, place) if near else hint, WARNING if near else NOTE,
         )  # fmt: skip
-
-    level = WARNING if file.is_certain else NOTE
-    for it in declared.values():
-        alone = is_in(file, it.place) and TYPE not in it.values and it.name not in meant
-        needed = _needed(it, file.context.distro) if alone else ()
-        if needed and not any(name in it.values for name in needed):
-            message = f"controller {it.name} has no parameters: it cannot do without {needed[0]}"
-            yield Remark(it.place.line, 1, message, f"add a section {it.name}", level)
-
-
-def _needed(controller: GivenNode, release: str) -> tuple[str, ...]:
-    """The parameters of a type that may not be empty, and are by default."""
-    facts = of_release(declared_by(controller.type.partition("/")[0]), release)
-    return tuple(it.path for it in facts if _FILLED.search(it.bounds) and "<" not in it.path)
 
 
 def _undeclared(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[GivenNode]:
