@@ -269,7 +269,11 @@ HEALTHY = {
     "a placeholder of a launch file": (NAV, "true", "TF_BROADCAST_ON"),
     "a section for all nodes": (NAV, "amcl:", "/**:"),
     "no limit": (CONTROLLERS, "max_velocity: 1.0", "max_velocity: .nan"),
-    "an empty list": (CONTROLLERS, "command_interfaces: [position]", "command_interfaces: []"),
+    "an empty list": (
+        CONTROLLERS,
+        "command_interfaces: [position]",
+        "command_interfaces: [position]\n    command_joints: []",
+    ),
     "a number for rcl alone": (CONTROLLERS, "2.0", "2e0"),
     "an octal number": (CONTROLLERS, "update_rate: 100", "update_rate: 0100"),
     "a parameter of every node": (NAV, "scan_topic: scan", "use_sim_time: true"),
