@@ -331,12 +331,64 @@ def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> 
     assert found.place[:2] == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
 
 
+MISSING = """\
+import os
+from acme_tools import name
+from acme_configs.builders import Builder
+from ament_index_python.packages import get_package_share_directory
+SHARE = get_package_share_directory("acme_files")
+CONFIG = Builder("arm", package="acme").of_file(os.path.join(SHARE, "a.yaml")).made()
+"""
+
+
+def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:
+    """Packages and Python modules that are nowhere: the rest of the launch file is read."""
+    (tmp_path / "bringup.launch.py").write_text(
+        MISSING
+        + HEAD
+        + """\
+        Node(package="acme", executable="d", parameters=[
+            CONFIG.description, CONFIG.to_dict(), os.path.join(SHARE, "b.yaml"), {"rate": 1}]),
+        IncludeLaunchDescription(os.path.join(SHARE, "launch", "a.launch.py")),
+        name(CONFIG),
+        Node(package="acme", executable="e"),
+    ])
+"""
+    )
+    graph = launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.py"), trusted=True))
+    assert [it.executable for it in graph.nodes] == ["d", "e"]
+    assert ["rate: 1" in it.text for it in graph.nodes[0].parameters].count(True) == 1
+    told = [it.message for it in graph.notes]
+    for package in ("acme_tools", "acme_configs", "acme_files"):
+        assert any(f"package '{package}' is not installed here" in it for it in told), told
+    assert not graph.whole and not any(it.fails for it in graph.notes)
+
+
+def test_packages_beside_the_launch_files_own_are_found(tmp_path: Path) -> None:
+    """Without a word about folders; none outside of the folder with the package is looked for."""
+    inner = HEAD + '        Node(package="acme", executable="{}"),\n    ])\n'
+    for name in ("ws/acme_bringup", "ws/deep/acme_base", "acme_far"):
+        folder = tmp_path / name
+        (folder / "launch").mkdir(parents=True)
+        package = folder.name
+        (folder / "package.xml").write_text(f"<package><name>{package}</name></package>")
+        (folder / "launch" / "a.launch.py").write_text(inner.format(package))
+    includes = "".join(
+        f'IncludeLaunchDescription([FindPackageShare("{it}"), "/launch/a.launch.py"]),'
+        for it in ("acme_bringup", "acme_base", "acme_far")
+    )
+    file = tmp_path / "ws" / "acme_bringup" / "launch" / "all.launch.py"
+    file.write_text(f"{HEAD}        {includes}\n    ])\n")
+    graph = launch_graph(LaunchOrder(str(file), trusted=True))
+    assert [it.executable for it in graph.nodes] == ["acme_bringup", "acme_base"]
+    assert ["'acme_far' is not installed" in it.message for it in graph.notes] == [True]
+
+
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("import acme_tools\n", "package 'acme_tools' is not installed here"),
         ("def generate(:\n", "SyntaxError"),
         ("print('no')\n", "generate_launch_description"),
         ("raise SystemExit(0)\n", "SystemExit"),

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python packages that are not installed, for launch files that import them: whatever they have and
+make is an empty dictionary, which a node takes as parameters, and nothing is known of it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+
+def add_unknown(name: str) -> None:
+    """Make a Python package importable, with every module below it; the Python of a launch file alone
+    is to have it."""
+    sys.meta_path.append(_Finder(name))
+
+
+class Unknown(dict[Any, Any]):
+    """What nothing is known of."""
+
+    def __getattr__(self, name: str) -> Unknown:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return Unknown()
+
+    def __call__(self, *_: object, **__: object) -> Unknown:
+        return Unknown()
+
+    def __missing__(self, _: object) -> Unknown:
+        return Unknown()
+
+    def __fspath__(self) -> str:
+        return "unknown"
+
+    def __add__(self, _: object) -> Unknown:
+        return Unknown()
+
+    __radd__ = __truediv__ = __add__
+
+
+class _Module(ModuleType):
+    def __getattr__(self, name: str) -> Unknown:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return Unknown()
+
+
+class _Finder(MetaPathFinder, Loader):
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The module itself, and whatever is below it."""
+        mine = fullname == self._name or fullname.startswith(f"{self._name}.")
+        return ModuleSpec(fullname, self, is_package=True) if mine else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """One that has everything."""
+        return _Module(spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing is in it."""
