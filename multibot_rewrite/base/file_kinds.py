@@ -61,7 +61,7 @@ _XML = (
 # Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
 # one node's sections may be MoveIt's as well: that is a parameter file for its reader.
 BESIDE = (
-    (PARAMS, lazy_compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)),
+    (PARAMS, lazy_compile(rb"^\s+[\"']?ros_+parameters?[\"']?\s*:", re.MULTILINE)),
     (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),
     (
         BRIDGE,

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterable
 
 from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
@@ -15,6 +16,7 @@ from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet import Fleet, make_fleet
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, SUFFIXES
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -82,6 +84,7 @@ def _from_file(options: argparse.Namespace) -> Fleet:
 def _from_words(options: argparse.Namespace) -> Fleet:
     names = robots(options)
     if not names:
+        refuse_others(read_file(options.input), options.input, *DESCRIPTIONS)
         raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
     check_xacro(options, [options.input])
     nodes, nodl = own_nodes(options)

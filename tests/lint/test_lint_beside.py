@@ -269,7 +269,11 @@ HEALTHY = {
     "a placeholder of a launch file": (NAV, "true", "TF_BROADCAST_ON"),
     "a section for all nodes": (NAV, "amcl:", "/**:"),
     "no limit": (CONTROLLERS, "max_velocity: 1.0", "max_velocity: .nan"),
-    "an empty list": (CONTROLLERS, "command_interfaces: [position]", "command_interfaces: []"),
+    "an empty list": (
+        CONTROLLERS,
+        "command_interfaces: [position]",
+        "command_interfaces: [position]\n    command_joints: []",
+    ),
     "a number for rcl alone": (CONTROLLERS, "2.0", "2e0"),
     "an octal number": (CONTROLLERS, "update_rate: 100", "update_rate: 0100"),
     "a parameter of every node": (NAV, "scan_topic: scan", "use_sim_time: true"),
@@ -438,7 +442,7 @@ def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
         ("fixed_size", "[6]", [1.0], "with a size of 6"),
         ("size_gt", "[0]", ["a"], ""),
         ("size_lt", "[2]", ["a", "b"], "with a size below 2"),
-        ("unique", "", ["a", "a"], ""),
+        ("unique", "", ["a", "a"], "without one twice"),
         ("acme::even", "[2]", 3, ""),
     ],
 )

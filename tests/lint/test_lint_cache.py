@@ -104,7 +104,7 @@ def forget() -> None:
     """A new process has looked at nothing yet."""
     for it in (packages.entries.__wrapped__, packages._candidates, packages._own_package):
         it.cache_clear()
-    packages._below.cache_clear()
+    packages.packages_below.cache_clear()
     packages._by_lower_case.cache_clear()
 
 

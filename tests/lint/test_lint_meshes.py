@@ -149,7 +149,7 @@ def test_the_search_ends(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> No
     for name in ("too_deep", "hidden", "built"):
         assert linted(workspace, f"package://{name}/a.stl") == ["MB702"]
     monkeypatch.setattr(packages, "MOST_FOLDERS", 3)
-    packages._below.cache_clear()
+    packages.packages_below.cache_clear()
     assert len(list(packages._folders((str(workspace),)))) == 3
 
 

@@ -59,6 +59,21 @@ def test_a_variable_with_one_value_is_a_default() -> None:
     assert in_cpp('frame_ = "a"; frame_ = "b"; declare_parameter("f", frame_);')[0][2] == ""
 
 
+@pytest.mark.parametrize(
+    ("line", "type_"),
+    [
+        ('double t = 30.0; declare_parameter("t", t);', "double"),
+        ('bool t = true; if (!has_parameter("t")) declare_parameter("t", t);', "bool"),
+        ('declare_parameter("t", t_); t_ = get_parameter("t").as_int();', "int"),
+        # It may be an int for a double.
+        ('double t = 30; declare_parameter("t", t);', ""),
+        ('auto t = 1.0; t = false; declare_parameter("t", t);', ""),
+    ],
+)
+def test_the_type_of_a_default_that_is_a_variable(line: str, type_: str) -> None:
+    assert [it[1] for it in in_cpp(line) if it[3] == "declared"] == [type_]
+
+
 def test_a_part_of_a_name_may_be_a_variable() -> None:
     text = 'std::string above = "zone"; declare_parameter(above + ".frame", "a");'
     assert in_cpp(text)[0][0] == "zone.frame"

@@ -41,6 +41,8 @@ _TYPES = {
     "vector<string>": "string_array",
     "vector<double>": "double_array",
 }
+# ``get_parameter("rate").as_double()`` tells the type of a default that is a variable.
+_AS = re.compile(r"as_(bool|int|double|string)(_array)?")
 # joint_state_publisher has a method of its own.
 _ONE_OF_PYTHON = ("declare_parameter", "_declare_ros_parameter", "declare_ros_parameter")
 _OF_PYTHON = {bool: "bool", int: "int", float: "double", str: "string", list: "array"}
@@ -59,6 +61,7 @@ def cpp_parameters(
 ) -> Iterator[ParameterFact]:
     """The parameters of a C++ file; ``shared`` are the package's constants."""
     known = {**shared, **constants(source.values)}
+    read_as, held = _read_as(source.calls), _literals(source.values)
     for call in source.calls:
         how = DECLARED if _DECLARES.fullmatch(call.name) else READ
         if how == READ and not _READS.fullmatch(call.name):
@@ -67,7 +70,30 @@ def cpp_parameters(
         if name:
             owner = call.owner or call.place.path.rpartition("/")[2].partition(".")[0]
             type_, text = _of_type(_template_type(call.types), default)
+            type_ = type_ or read_as.get(name, "") or held.get((call.function, call.given[-1]), "")
             yield ParameterFact(package, owner, name, type_, text, "", "", how, call.place)
+
+
+def _read_as(calls: Iterable[Call]) -> dict[str, str]:
+    """The types that parameters are read as, by their names."""
+    return {
+        call.on[2:-1]: call.name.removeprefix("as_")
+        for call in calls
+        if call.on.startswith("<@") and _AS.fullmatch(call.name)
+    }
+
+
+def _literals(values: Iterable[Value]) -> dict[tuple[str, str], str]:
+    """The types of variables of a function that are set to numbers with a point, or to true or false;
+    a number without one may be of any type."""
+    found: dict[tuple[str, str], set[str]] = {}
+    for it in values:
+        type_ = _default(it.text, {}).type if it.text.startswith("<") else ""
+        if type_ and it.function:
+            found.setdefault((it.function, f"<{it.variable}>"), set()).add(type_)
+    return {
+        at: types.pop() for at, types in found.items() if types <= {"double"} or types == {"bool"}
+    }
 
 
 def shared_constants(values: Iterable[Value]) -> dict[str, str]:

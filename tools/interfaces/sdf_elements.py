@@ -19,7 +19,7 @@ from multibot_rewrite.base.record import NamedTuple
 
 # Older ones are not met any more.
 OLDEST = (1, 4)
-ROOTS = ("model", "link", "joint")
+ROOTS = ("model", "link", "joint", "world")
 HEAD = """\
 # What SDF has in each element, by version. Made by
 # python -m tools.interfaces --sdf sdformat@TAG > multibot_rewrite/rules/schema/sdf.schema

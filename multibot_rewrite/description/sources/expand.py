@@ -7,12 +7,14 @@ import os
 import re
 import sys
 from collections.abc import Mapping
+from functools import lru_cache
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
+from multibot_rewrite.description.sources.child.frames import KERNEL
 from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse
 from multibot_rewrite.description.sources.pieces import Pieces
 from multibot_rewrite.description.sources.trace import Origins, Trace, alike
@@ -95,6 +97,7 @@ def expand_whole(
     check_file(path)
     sources = Sources(Access(path, reach, find), {})
     result = converse(arguments, sources, traced=False)
+    _tell_missing(reach, result.fences)
     return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
 
 
@@ -111,6 +114,7 @@ def expand_traced(
     their values where they are asked for. Files that are ``changed`` have these texts, by real path."""
     sources = Sources(Access(path, reach, find), {path: data}, changed)
     result = converse(arguments, sources, True, in_pieces)
+    _tell_missing(reach, result.fences)
     trace = Trace(result, sources, path)
     text = _text(path, result, trace)
     if len(result.origins) != 3 * len(start_offsets(text)):
@@ -124,6 +128,18 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
         raise InputError(_message(path, result.failure, trace))
     _check_root(path, *result.root)
     return result.text
+
+
+def _tell_missing(reach: Reach, held: tuple[str, ...]) -> None:
+    """One line of a process where the kernel has no fence for files that it expands."""
+    if not reach.trust and KERNEL.isdisjoint(held) and not KERNEL.isdisjoint(reach.fences):
+        _tell_once()
+
+
+@lru_cache
+def _tell_once() -> None:
+    said = "xacro files are held by limits and Python's audit hook alone: this system has neither"
+    sys.stderr.write(f"{said} Landlock nor seccomp (SECURITY.md)\n")
 
 
 def _print(notes: str) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from lxml import etree
 
+from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim, InputError, Site
 from multibot_rewrite.base.naming import DECLARED_KINDS, DEFAULT_LAYOUT, Layout, find_layout
@@ -123,6 +124,7 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
     if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
         line, column = locate(document.source, document.starts[0])
+        refuse_others(document.source, f"{document.file}:{line}:{column}", *DESCRIPTIONS)
         tag = etree.QName(document.root)
         where = f" in the namespace {tag.namespace!r}" if tag.namespace else ""
         hint = "take out its xmlns" if where else "give a robot description"

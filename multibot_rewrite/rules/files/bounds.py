@@ -112,8 +112,23 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
     except ValueError:
         return None
     points = read if isinstance(read, list) else []
-    whole = all(isinstance(it, list) and len(it) == 2 and all(map(_is_number, it)) for it in points)
-    return [(float(x), float(y)) for x, y in points] if whole else None
+    pairs = all(isinstance(it, list) and len(it) == 2 for it in points)
+    if not pairs or any(isinstance(it, bool) for point in points for it in point):
+        return None
+    try:
+        return [(float(x), float(y)) for x, y in points]
+    except (TypeError, ValueError):
+        return None
+
+
+def _unique(_: Any, value: Any) -> str:
+    twice = isinstance(value, list) and len(set(value)) < len(value)
+    return "without one twice" if twice else ""
+
+
+def _some(_: Any, value: Any) -> str:
+    none = isinstance(value, list) and True not in value
+    return "true in one place or more" if none else ""
 
 
 _EACH = ("lower_bounds", "upper_bounds")
@@ -121,6 +136,8 @@ _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "limits": _limits,
     "square": _square,
     "polygon": _polygon,
+    "unique": _unique,
+    "some": _some,
 }
 
 

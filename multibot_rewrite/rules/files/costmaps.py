@@ -27,6 +27,8 @@ _RADIUS, _FOOTPRINT = "robot_radius", "footprint"
 _COSTMAP = "nav2_costmap_2d"
 # A radius that is so many times the robot's reach is in other units, or of another robot.
 _FAR = 3.0
+# An arm may reach as many times as far as its base.
+_TINY = 8.0
 
 
 class Size(NamedTuple):
@@ -54,10 +56,10 @@ def _costmap(lines: str) -> str:
     WARNING,
     what="The robot_radius or footprint of a costmap does not fit the rest: the inflation is smaller "
     "than the robot, a radius stands beside a footprint of another size, or is more than three times "
-    "what the description reaches.",
+    "or less than an eighth of what the description reaches.",
     why="With an inflation below the robot's radius the planner drives the robot into "
     "obstacles. Beside a footprint the radius has no effect. A robot that is too large "
-    "finds no path.",
+    "finds no path, one that is too small hits what it does not clear.",
     fix="Write metres. The inflation has to be larger than the distance from the robot's middle to its "
     "edge; leave the radius out where there is a footprint.",
     bad=_costmap("robot_radius: 0.6"),
@@ -86,6 +88,12 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Remark]:
     reach = _reach(file)
     if reach and size.inscribed > _FAR * reach:
         message = f"{section.title}: {size.given.name} reaches {size.inscribed:g} m from the middle"
+        hint = f"the description reaches {reach:.3g} m; write metres"
+        yield remark_at(size.given.node, message, hint)
+    elif size.reach * _TINY < reach:
+        message = (
+            f"{section.title}: {size.given.name} reaches {size.reach:g} m from the middle alone"
+        )
         hint = f"the description reaches {reach:.3g} m; write metres"
         yield remark_at(size.given.node, message, hint)
 

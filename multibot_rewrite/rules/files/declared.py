@@ -12,6 +12,7 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value
+from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.knowledge.declared import (
     DEMANDED,
     READ,
@@ -32,6 +33,7 @@ _EVERYWHERE = re.compile(
     r"|.*plugin_?\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
 )
 _ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
+_WORD = re.compile(r"\w+")
 _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
@@ -46,7 +48,9 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
         unknown = [
             it
             for it, found in section.known
-            if all(map(_is_any_name, found)) and not _is_known(section, it)
+            if all(map(_is_any_name, found))
+            and not _is_known(section, it)
+            and PARAMETERS not in it.name.split(".")
         ]
         if not unknown:
             continue
@@ -74,7 +78,8 @@ def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
     above = it.name.rpartition(".")[0]
     for path in paths:
         pattern, _, last = path.rpartition(".")
-        if "<" in pattern and "<" not in last and stands_for(pattern, above):
+        stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
+        if stand and all("." not in word for word in stand.values()):
             yield f"{above}.{last}"
 
 
@@ -188,10 +193,9 @@ def out_of_bounds(file: NamedFile) -> Iterator[Remark]:
     """Values that a check of generate_parameter_library, or of the node's code, rejects."""
     for section in sections(file):
         for it, facts in _declared(section, file.context.distro):
-            given = None if it.value is None else _type_of(it.value)
             alone = sum(fact.how != DEMANDED for fact in facts) == 1
             for fact in facts:
-                if given != _expected(fact.type) or not (alone or fact.how == DEMANDED):
+                if not _is_of(fact, it) or not (alone or fact.how == DEMANDED):
                     continue
                 said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
@@ -199,7 +203,7 @@ def out_of_bounds(file: NamedFile) -> Iterator[Remark]:
                     yield remark_at(it.node, message, f"declared in {fact.source}")
 
 
-def _is_filled_in(value: Value) -> bool:
+def _is_filled_in(value: Value | None) -> bool:
     """Is it a word in capitals, which a launch file of Nav2 puts a value in place of?"""
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
@@ -209,8 +213,22 @@ def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Decl
     for it, known in section.known:
         found = [fact for fact in of_release(known, release) if fact.how != READ]
         exact = [fact for fact in found if fact.path == it.name]
-        if found and not (isinstance(it.value, str) and _is_filled_in(it.value)):
+        if found and not (_is_filled_in(it.value) and not _is_misspelt(it.value, exact or found)):
             yield it, exact or found
+
+
+def _is_misspelt(value: Value | None, facts: Sequence[Declared]) -> bool:
+    """Is a word in capitals nearly one of those that there are?"""
+    words = (word for fact in facts for check in fact.checks for word in _WORD.findall(check[1]))
+    return isinstance(value, str) and nearest(value, words, MISTYPED) not in ("", value)
+
+
+def _is_of(fact: Declared, it: Given) -> bool:
+    """Has a value the type of a declaration? An empty list is one of any."""
+    type_ = _expected(fact.type)
+    if it.value == []:
+        return type_.endswith("_array")
+    return it.value is not None and type_ == _type_of(it.value)
 
 
 def _type_of(value: Value) -> str:

@@ -24,6 +24,8 @@ from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
 
+# What keeps a node from coming up in each release.
+_STOPS = ("instead", "period")
 _OWN = re.compile(r"nav2_\w+_bt_node")
 
 
@@ -145,12 +147,14 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            level = ERROR if it.check == "instead" and not it.releases else level
+            level = ERROR if it.check in _STOPS and not it.releases else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
 
 
 def _with(it: Demand) -> str:
     other, *wanted = it.words
+    if it.given.value in ("", []):
+        return ""
     value = value_of(it.section, other)
     if not wanted:
         there = other in {name.removeprefix(it.section.at) for name in it.section.whole}
@@ -223,6 +227,43 @@ def _alone(it: Demand) -> str:
     return f"cannot be true with {it.words[0]}" if there and it.given.value is True else ""
 
 
+def _period(it: Demand) -> str:
+    """What the node is told counts for all its plugins."""
+    other, default = it.words
+    given = it.section.whole.get(other)
+    rate = given.value if given else float(default)
+    short = _is_number(rate) and _is_number(it.given.value) and rate * it.given.value < 1 - _ROUNDED
+    return f"is {it.given.value}, below the period of {other} ({rate})" if short else ""
+
+
+def _once(it: Demand) -> str:
+    """Told at the later one."""
+    kind, _, rest = (it.section.at + it.given.name).partition(".")
+    for name, other in it.section.whole.items():
+        if name == f"{kind}.{rest}":
+            return ""
+        same = name.startswith(f"{kind}.") and name.rpartition(".")[2] == rest.rpartition(".")[2]
+        if same and other.value == it.given.value:
+            return f"is {it.given.value!r}, as {name} is"
+    return ""
+
+
+def _renamed(it: Demand) -> str:
+    old, new = it.words
+    value = it.given.value
+    there = isinstance(value, list) and old in value
+    return f"lists {old}, which is called {new} since Humble" if there else ""
+
+
+def _bonded(it: Demand) -> str:
+    """A node's bond has its name alone: LifecycleNode::createBond of nav2_util."""
+    value = it.given.value
+    words = [str(word) for word in value if "/" in str(word)] if isinstance(value, list) else []
+    bond = value_of(it.section, it.words[0])
+    kept = bond is None or (_is_number(bond) and bond > 0)
+    return f"lists {words[0]}, and waits for a bond of that name" if words and kept else ""
+
+
 def _text(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
@@ -238,4 +279,9 @@ _PAIRS: dict[str, Callable[[Demand], str]] = {
     "together": _together,
     "or_true": _or_true,
     "alone": _alone,
+    "period": _period,
+    "once": _once,
+    "renamed": _renamed,
+    "bonded": _bonded,
 }
+_ROUNDED = 1e-4

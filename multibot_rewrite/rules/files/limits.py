@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
@@ -23,7 +24,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.description.structure.shared import BOUNDED
 from multibot_rewrite.rules.files.records import Remark, remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
-from multibot_rewrite.rules.subject import Robots
+from multibot_rewrite.rules.subject import Robots, Subject
 
 _LIMIT = re.compile(
     r"robot_description_planning\.joint_limits\.(?P<joint>.+)\.(?P<what>max_velocity|m(?:ax|in)_position)"
@@ -35,7 +36,9 @@ _OF_URDF = {
     "min_position": ("lower", -1),
 }
 _ROUNDED = 1e-3
+_JOINT = re.compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]+)\.")
 _SRDF = ".srdf"
+_ROBOT = re.compile(rb"<robot\s[^>]*?name\s*=\s*[\"']([^\"'$]*)[\"']")
 _GROUP = re.compile(rb"<group\s[^>]*?name\s*=\s*[\"']([^\"']*)[\"']")
 _ARM = """\
 <robot name="arm">
@@ -61,10 +64,11 @@ def _limits(velocity: str) -> str:
     "limits-beyond-the-joint",
     WARNING,
     what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in the "
-    "package's description.",
+    "package's description, or limits a joint that the robot of the SRDF beside it has not.",
     why="MoveIt takes the limits of the file in place of the URDF's. It plans what the hardware or "
-    "ros2_control does not take: the controller is behind, and aborts the trajectory.",
-    fix="Write the limits of the description, or narrower ones.",
+    "ros2_control does not take: the controller is behind, and aborts the trajectory. Limits of "
+    "another joint have no effect.",
+    fix="Write the limits of the description, or narrower ones, and the joint's name as it is now.",
     bad=_limits("3.0"),
     good=_limits("1.5"),
     line=2,
@@ -74,14 +78,16 @@ def _limits(velocity: str) -> str:
 def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
     """What no description of the package with this joint allows."""
     robots: Robots | None = file.memo.get(Robots)
+    subjects = robots.subjects if robots and file.kind == MOVEIT else ()
     for section in sections(file) if robots else ():
+        yield from _of_none(file, section, subjects) if robots and robots.is_whole else ()
         for it in section.given:
             found = _LIMIT.fullmatch(it.name)
             if found is None or not _is_asked(section, it, found["what"]):
                 continue
             joints = [
                 subject.robot.joint[found["joint"]]
-                for subject in (robots.subjects if robots else ())
+                for subject in subjects
                 if found["joint"] in subject.robot.joint
             ]
             limits = [_beyond(joint, found["what"], it.value) for joint in joints]
@@ -89,6 +95,30 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
                 message = f"{found['what']} of {found['joint']} is {it.value}"
                 hint = "MoveIt plans beyond what the joint takes"
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
+
+
+def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Remark]:
+    """Joints that the only robot of a package has not, nor the SRDF of the file's folder, which is for
+    that robot."""
+    srdfs = _srdfs(file.file)
+    names = {_ROBOT.search(data) for data in srdfs}
+    robots = {subject.document.root.get("name", "").encode() for subject in subjects}
+    if len(robots) != 1 or {it[1] if it else b"" for it in names} != robots:
+        return
+    there = {name for subject in subjects for name in subject.robot.joint}
+    told: set[str] = set()
+    for it in section.given:
+        found = _JOINT.match(it.name)
+        joint = found["joint"] if found else ""
+        if (
+            not is_plain(joint)
+            or joint in there | told
+            or any(joint.encode() in it for it in srdfs)
+        ):
+            continue
+        told.add(joint)
+        message = f"joint {joint!r}, which has limits here, is not in the description"
+        yield remark_at(it.key, message, did_you_mean(joint, there) or "correct the name")
 
 
 def _is_asked(section: Section, it: Given, what: str) -> bool:
@@ -141,13 +171,18 @@ def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
 
 
 def _groups(file: str) -> frozenset[str]:
-    folder = os.path.dirname(os.path.abspath(file))
     found: set[str] = set()
-    for name in sorted(it for it in entries(folder) if _SRDF in it):
-        data = read_file(os.path.join(folder, name))
+    for data in _srdfs(file):
         names = {it[1].decode("utf-8", "replace") for it in _GROUP.finditer(data)}
         # A group that a macro makes may have any name.
         if any("$" in it for it in names) or b"xacro:" in data.partition(b">")[2]:
             return frozenset()
         found |= names
     return frozenset(found)
+
+
+def _srdfs(file: str) -> list[bytes]:
+    """The SRDFs in the folder of a file, as they are."""
+    folder = os.path.dirname(os.path.abspath(file))
+    names = sorted(it for it in entries(folder) if _SRDF in it)
+    return [read_file(os.path.join(folder, name)) for name in names]

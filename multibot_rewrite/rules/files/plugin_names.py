@@ -134,6 +134,12 @@ def without_plugin(file: NamedFile) -> Iterator[Remark]:
             it.words[0] if it.check == "blocks" and it.words else it.given.name.rpartition(".")[0]
         )
         above = f"{it.section.at}{place}." if place else it.section.at
+        if (
+            it.words
+            and it.check == "blocks"
+            and not any(n.startswith(above) for n in it.section.whole)
+        ):
+            continue  # MoveItConfigsBuilder adds its own of all planners where a file has none
         for word in [] if words == [*ids] else words:
             below = f"{above}{word}."
             found = f"{below}plugin" in it.section.whole or (

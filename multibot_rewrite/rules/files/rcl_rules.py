@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.named_file import NamedFile
@@ -26,6 +26,8 @@ from multibot_rewrite.rules.files.records import Remark, remark_at
 _PLACE = re.compile(r"^.*?:\d+(?::\d+)?: ")
 _NEARLY = re.compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
 _DEEP = 4
+# What a launch file or a template puts something in place of; a brace alone begins a map.
+_FILLED_IN = re.compile(r"[<$%]|\{\{")
 _TIME = "use_sim_time"
 
 
@@ -36,7 +38,7 @@ def rejected_values(file: NamedFile) -> Iterator[Remark]:
         return
     for section, _ in file.pages:
         for node in filter(_is_read, _lists(section.body)):
-            if PLACEHOLDER.search(document.text[node.start_mark.index : node.end_mark.index]):
+            if _FILLED_IN.search(document.text[node.start_mark.index : node.end_mark.index]):
                 continue
             try:
                 value_of(document, node)
@@ -66,6 +68,11 @@ def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
         if key.value != PARAMETERS and _NEARLY.fullmatch(str(key.value)):
             message = f"{key.value!r} is no {PARAMETERS}: no node gets what is below it"
             yield remark_at(key, message, f"write {PARAMETERS}, with two underscores", ERROR)
+    for section, _ in file.pages:
+        for key in _keys(section.body, _DEEP):
+            if key.value == PARAMETERS:
+                message = f"a section below the {PARAMETERS} of {section.path}: no node reads it"
+                yield remark_at(key, message, "move it out, to where that section begins", WARNING)
 
 
 def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:

@@ -131,7 +131,7 @@ def _is_read(fact: Declared, name: str, whole: Mapping[str, Given], at: str) -> 
         if check == ASKED:
             other, value = filled(text, fact.path, name)
             given = whole.get(at + other)
-            if given is None or str(given.value).lower() != value:
+            if given is None or str(given.value).lower() != value.lower():
                 return False
     return True
 

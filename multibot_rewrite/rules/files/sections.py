@@ -79,7 +79,8 @@ def _namespace(section: ParamSection, context: Context) -> Iterator[Remark]:
 )
 def shared_section(file: NamedFile) -> Iterator[Remark]:
     """Each node that serves all robots, at its first section."""
-    first = {it.path: it for it, _ in reversed(file.pages) if it.shared}
+    shared = (it for it, _ in reversed(file.pages) if it.shared and file.is_certain)
+    first = {it.path: it for it in shared}
     for path, section in first.items():
         message = f"{path} serves all robots, so its section stays as it is"
         yield remark_at(section.keys[-1], message, "start it once, with this file")

@@ -44,6 +44,9 @@ _MERGED = ("visual", "collision", "material")
 READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
 # Angles that SDF has no range for.
 ANGLES = frozenset({"min_angle", "max_angle"})
+# What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
+OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
+_CLASSICS = "gazebo_ros_"
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
@@ -66,10 +69,10 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
 
 
 def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
-    """Every fault in the models of an ``<sdf>``."""
+    """Every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
-    models = root.iterchildren("model")
-    return tuple(fault for model in models for fault in _element(model, "model", version))
+    found = root.iterchildren("model", "world")
+    return tuple(fault for it in found for fault in _element(it, str(it.tag), version))
 
 
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
@@ -234,12 +237,21 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     known = words(name)
     if not known or text in known or (text.lower() in known and _is_folded(name)):
         return
+    if text in OGRE_FORMATS and _is_for_classic(element):
+        return
     near = nearest(text, known)
     if not near and version <= CLASSIC and name == SENSOR_TYPE:
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield Fault("word", element, at, message, hint)
+
+
+def _is_for_classic(element: _Element) -> bool:
+    """Has the sensor of a value a plugin of Gazebo Classic?"""
+    sensor = next(element.iterancestors("sensor"), None)
+    plugins = sensor.iterchildren("plugin") if sensor is not None else ()
+    return any(_CLASSICS in it.get("filename", "") for it in plugins)
 
 
 @lru_cache

@@ -7,6 +7,7 @@ import re
 import shutil
 import socket
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -284,6 +285,23 @@ def test_a_user_can_ask_for_the_fences(capsys: pytest.CaptureFixture[str]) -> No
     tell_fences()
     told = dict(line.split(": ") for line in capsys.readouterr().out.splitlines())
     assert told == {it: "yes" if have(it) else "no" for it in FENCES}
+
+
+@pytest.mark.slow
+def test_a_line_says_where_no_fence_of_the_kernel_is(scene: Scene) -> None:
+    """As in a container that forbids both: the other two stand, and the file gets nothing."""
+    wrapper = str(Path(__file__).parents[2] / "support" / "without_kernel_fences.py")
+
+    def run(*call: str) -> subprocess.CompletedProcess[str]:
+        whole = [sys.executable, wrapper, *call]
+        return subprocess.run(whole, capture_output=True, text=True, check=False)
+
+    held = run("multibot_rewrite.description.sources").stdout.split()
+    assert held == ["landlock:", "no", "limits:", "yes", "seccomp:", "no", "audit:", "yes"]
+    done = run("multibot_rewrite", "inspect", scene.file("include_above"))
+    assert done.stderr.count("neither Landlock nor seccomp (SECURITY.md)") == 1
+    check_nothing_told(done.stdout + done.stderr)
+    scene.check_untouched()
 
 
 HELD = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">

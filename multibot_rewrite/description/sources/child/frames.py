@@ -19,6 +19,7 @@ READ, GLOB, FIND, ENVIRONMENT = "read", "glob", "find", "env"
 LIMITS, LANDLOCK, SECCOMP, AUDIT = "limits", "landlock", "seccomp", "audit"
 # In this order: the later ones refuse what the earlier ones need.
 FENCES = (LANDLOCK, LIMITS, SECCOMP, AUDIT)
+KERNEL = frozenset((LANDLOCK, SECCOMP))
 # How long each frame of a child may be; a larger one is a lie.
 MOST_TEXT = 16 * 2**20
 LONGEST: Mapping[bytes, int] = {

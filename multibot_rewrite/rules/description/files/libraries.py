@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest, slip_of
@@ -26,7 +28,11 @@ FAMILIES = (("gz-sim-", "-system"), ("gazebo_ros_", ""))
 
 
 def plugins_without_library(subject: Subject) -> Iterator[Problem]:
-    """Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release."""
+    """Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release;
+    hardware without a class, for which ros2_control throws."""
+    for system in subject.elements.tops("ros2_control"):
+        for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
+            yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
     named = subject.settings.distro in NAMED
     for it in simulator_plugins(subject):
         if not it.get("filename", "").strip():
@@ -54,6 +60,7 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "filename", "swap name and filename")
             continue
         name = it.get("name", "").strip().replace("ignition::gazebo::", "gz::sim::")
+        yield from _misspelt_library(subject, it, library, name)
         if not name or "$" in name or not library.startswith(FAMILIES[0][0]):
             continue
         section = subject.tree.vocabulary.values(library)
@@ -63,6 +70,20 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
             yield Problem(
                 it, message, "name", f"did you mean {nearest(name, classes, 0) or classes[0]!r}?"
             )
+
+
+def _misspelt_library(
+    subject: Subject, plugin: _Element, library: str, name: str
+) -> Iterator[Problem]:
+    """A library that is not known, of a class that is: that of another one, nearly spelt so."""
+    vocabulary = subject.tree.vocabulary
+    if "::" not in name or vocabulary.values(library) is not None:
+        return
+    section = vocabulary.values(name)
+    near = nearest(library, [it for it in section.names if "::" not in it] if section else [])
+    if near and near != library:
+        message = f"no library of Gazebo is called {library!r}; {name} is in another one"
+        yield Problem(plugin, message, "filename", f"did you mean {near!r}?")
 
 
 def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
@@ -132,4 +153,12 @@ def _slip(name: str, known: Iterable[str]) -> str:
     """The known name that was meant; one that is a part of the other is a name of its own."""
     near = slip_of(name, known)
     part = near in name or name in near
-    return "" if part and near.casefold() != name.casefold() else near
+    own = _has_own_word(name, near) or (part and near.casefold() != name.casefold())
+    return "" if own else near
+
+
+def _has_own_word(name: str, other: str) -> bool:
+    """Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?"""
+    words, others = name.casefold().split("_"), other.casefold().split("_")
+    pairs = zip(words, others, strict=False) if len(words) == len(others) else ()
+    return any(one and two and not set(one) & set(two) for one, two in pairs)

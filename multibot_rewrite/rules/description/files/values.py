@@ -11,7 +11,9 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.description.examples import a_link, block
 from multibot_rewrite.rules.description.structure.control_values import unreadable_numbers
 from multibot_rewrite.rules.description.structure.limits import (
@@ -98,6 +100,7 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
     """By what each reader takes, and what a sensor needs to see anything; MB120 has what is misread."""
     misread = {it.element for it in faults("value", subject)}
     yield from faults("range", subject)
+    yield from (it for it in unusable_numbers(subject) if it.element not in misread)
     yield from (it for it in sees_nothing(subject) if it.element not in misread)
 
 
@@ -142,6 +145,33 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
         for inner in sensor.iterchildren(*_LIDAR) if type_ in LIDARS else ():
             yield from _none_of(inner, _ABOVE_0["lidar"])
             yield from _in_millimetres(inner)
+
+
+def unusable_numbers(subject: Subject) -> Iterator[Problem]:
+    """Steps of no time, reductions of 0, minima of a plugin above their maxima."""
+    every = subject.elements.every
+    for physics in every("physics"):
+        above = physics.getparent()
+        if above is not None and above.tag == "world":
+            yield from _none_of(physics, ("max_step_size",))
+    for element in (it for tag in _REDUCTIONS for it in every(tag)):
+        if number(text_of(element)) == 0:
+            yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
+    for plugin in every("plugin"):
+        yield from _inverted(plugin)
+
+
+_REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
+
+
+def _inverted(plugin: _Element) -> Iterator[Problem]:
+    for least in plugin.iterchildren("*"):
+        tag = str(least.tag)
+        low = number(text_of(least)) if tag.startswith("min_") else None
+        high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
+        if low is not None and high is not None and low > high:
+            message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
+            yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:

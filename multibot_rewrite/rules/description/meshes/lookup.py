@@ -9,6 +9,7 @@ from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.sources.packages import (
@@ -17,9 +18,17 @@ from multibot_rewrite.description.sources.packages import (
     package_folders,
     package_of,
 )
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.description.meshes.shared import MESH, Used, problem, used_files
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import EXPANDED, Subject
+
+_CMAKE = "CMakeLists.txt"
+# install(DIRECTORY a b DESTINATION share/${PROJECT_NAME}/below)
+_INSTALLED = lazy_compile(
+    rb"install\s*\(\s*DIRECTORY\s+([^)]*?)\s+DESTINATION\s+\"?share/\$\{PROJECT_NAME\}/?([^\s\")]*)",
+    0,
+)
 
 
 class Lookup(NamedTuple):
@@ -47,7 +56,23 @@ def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
         return Lookup(it, folders, path, "")
     found = [find_in(folder, path) for folder in folders]
     exact = os.path.normpath(path)
+    if not any(found) and it.scheme == "package" and any(_installs(at, exact) for at in folders):
+        return Lookup(it, folders, path, exact)
     return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
+
+
+def _installs(folder: str, path: str) -> bool:
+    """Does CMake put a file of another folder of the package there?"""
+    if _CMAKE not in entries(folder):
+        return False
+    for words, below in _INSTALLED.findall(read_file(os.path.join(folder, _CMAKE))):
+        for word in words.decode("utf-8", "replace").split():
+            inner = "" if word.endswith("/") else os.path.basename(word)
+            start = os.path.join(below.decode("utf-8", "replace"), inner)
+            rest = os.path.relpath(path, start or ".")
+            if not rest.startswith("..") and find_in(folder, os.path.join(word, rest)):
+                return True
+    return False
 
 
 def _where(

@@ -26,6 +26,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     parts_with_mass,
     sizes_of,
 )
+from multibot_rewrite.rules.facts.sensors import number_at
 from multibot_rewrite.rules.subject import Subject
 
 # Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
@@ -85,6 +86,36 @@ def impossible_inertia(subject: Subject) -> Iterator[Problem]:
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
         place = part_of(inertial, "inertia")
         yield Problem(place, message, level=WARNING if merged else "")
+    if subject.document.root.tag == "sdf":
+        yield from _of_models(subject)
+
+
+def _of_models(subject: Subject) -> Iterator[Problem]:
+    """The links of an SDF, which are not merged: sdformat refuses a mass of 0 as well."""
+    for link in subject.elements.every("link"):
+        inertial = link.find("inertial")
+        if inertial is None or inertial.get("auto", "").lower() in ("true", "1"):
+            continue
+        mass, inertia = number_at(inertial, "mass"), inertial.find("inertia")
+        if mass is not None and mass <= 0:
+            message = f"mass of link {link.get('name')!r} is {mass:g}"
+            yield Problem(inertial, f"{message}, and has to be above 0", None)
+        found = [] if inertia is None else [_moment(inertia, it) for it in _MOMENTS]
+        moments = tuple(it for it in found if it is not None)
+        if len(moments) != len(_MOMENTS) or inertia is None or _is_possible(moments):
+            continue
+        low, middle, high = own = eigenvalues(moments) if any(moments) else (0.0, 0.0, 0.0)
+        if high < NOTHING or is_negative(own) or high > (low + middle) * (1 + ROUNDING):
+            message = "is 0" if high < NOTHING else fault_of(own)
+            yield Problem(inertia, f"inertia of link {link.get('name')!r} {message}", None)
+
+
+# With what sdformat takes where one is left out.
+_MOMENTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}
+
+
+def _moment(inertia: _Element, name: str) -> float | None:
+    return number_at(inertia, name) if inertia.find(name) is not None else _MOMENTS[name]
 
 
 @rule(

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, locate
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
     ERROR,
     what="Two things of one kind have the same name: links, joints and materials of a robot, "
     "sensors of a link, <ros2_control> elements, nodes of plugins. Of transmissions, and of the "
-    "joints, sensors and gpios of one <ros2_control>, it is a warning.",
+    "joints, sensors and gpios of one <ros2_control>, it is a warning; so it is of a system of Gazebo "
+    "that is loaded again with the same parameters.",
     why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
     "with such sensors, ros2_control's resource manager the hardware. gazebo_ros gives the second "
     "plugin a null pointer, and gzserver crashes. Interfaces of the second joint are mixed up with "
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
     """Every one except the first."""
     yield from declared_twice(subject)
-    for mild in (repeated_joint, duplicate_transmission):
+    for mild in (repeated_joint, duplicate_transmission, system_twice):
         yield from (it._replace(level=WARNING) for it in mild(subject))
     for fatal in (duplicate_hardware, duplicate_sensor, duplicate_material, one_node_twice):
         yield from fatal(subject)
@@ -140,6 +142,28 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     for it in _repeated(found):
         message = f"another plugin has the node name {name_of(it)!r}"
         yield Problem(it, message, "name", "rename one, or give them namespaces")
+
+
+def system_twice(subject: Subject) -> Iterator[Problem]:
+    """Systems of a model that say the same twice: both publish on the same topics."""
+    systems = [it for it in subject.elements.every("plugin") if "::" in it.get("name", "")]
+    if len(systems) < 2:
+        return
+    found = ((_scope(it), it.get("name"), _text(it)) for it in systems)
+    for it in _repeated(zip(found, systems, strict=True)):
+        yield Problem(it, f"{it.get('name')} is loaded twice with the same parameters", "name")
+
+
+def _text(element: _Element) -> bytes:
+    return etree.tostring(element, method="c14n", with_tail=False)
+
+
+def _scope(plugin: _Element) -> object:
+    """The model, world or sensor that loads a plugin; a block without a reference is the model's."""
+    above = plugin.getparent()
+    root = plugin.getroottree().getroot()
+    whole = above is not None and above.tag == "gazebo" and not above.get("reference")
+    return root if whole else above
 
 
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:

@@ -30,9 +30,11 @@ AS_WRITTEN = make_naming("tf-per-robot")
     "MB230",
     "frame-of-joint-and-plugin",
     WARNING,
-    what="A plugin sends the transform from its odometry frame to a link that is a joint's child.",
+    what="A plugin sends the transform from its odometry frame to a link that is a joint's child, or "
+    "to that frame itself.",
     why="robot_state_publisher sends the joint's transform: the frame has two parents and jumps "
-    "between them, and tf loses the way from odom to the robot's root.",
+    "between them, and tf loses the way from odom to the robot's root. A transform of a frame to "
+    "itself is refused (TF_SELF_TRANSFORM).",
     fix="Let the plugin send the root link of the robot, or switch its transform off.",
     bad=FIXED
     + a_plugin(
@@ -55,6 +57,9 @@ AS_WRITTEN = make_naming("tf-per-robot")
 def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
     """Plugins that send odometry to a link below the root."""
     for plugin, parent, child in _sent(subject):
+        if parent == child:
+            hint = "name the odometry frame and the robot's root link"
+            yield Problem(plugin, f"sends {parent} -> {child}, a frame to itself", None, hint)
         for joint in subject.robot.above.get(child, ())[:1]:
             message = (
                 f"sends {parent} -> {child}, and so does joint {joint.name!r} from {joint.parent}"

@@ -75,8 +75,8 @@ def _commanded(least: str) -> str:
     "MB538",
     "command-beyond-limits",
     WARNING,
-    what="A command interface of a joint has a min or max outside of the joint's <limit>. It is a note "
-    "for velocities and efforts.",
+    what="A command interface of a joint has a min or max outside of the joint's <limit>, or a min "
+    "above its max. It is a note for velocities and efforts outside of the limit.",
     why="ros2_control takes the narrower one, a driver or simulator without joint limits the wider "
     "one: the joint is commanded past its stop.",
     fix="Write the joint's limits, or narrower ones.",
@@ -90,9 +90,19 @@ def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
         for it in system.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))
             for interface in it.iterchildren(_COMMAND):
+                yield from _inverted(interface)
                 bounds = _bounds(joint, interface.get("name", "")) if joint else None
                 if joint and bounds:
                     yield from _beyond(joint, interface, *bounds)
+
+
+def _inverted(interface: _Element) -> Iterator[Problem]:
+    params = {it.get("name"): it for it in interface.iterchildren("param")}
+    found = {name: number(text_of(params[name])) for name in ("min", "max") if name in params}
+    low, high = found.get("min"), found.get("max")
+    if low is not None and high is not None and low > high:
+        message = f"min of {interface.get('name')} is {low:g}, above its max ({high:g})"
+        yield Problem(params["min"], message, "", "swap the two")
 
 
 def _beyond(joint: Joint, interface: _Element, low: float, high: float) -> Iterator[Problem]:
