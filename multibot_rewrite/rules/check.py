@@ -34,6 +34,7 @@ from multibot_rewrite.rules.system import (
     addresses,
     clocks,
     commands,
+    differing,
     equal_robots,
     frame_ids,
     interfaces,
@@ -70,6 +71,7 @@ _SYSTEM = (
         states,
         equal_robots,
         likes,
+        differing,
         unsent,
         interfaces,
         addresses,
@@ -107,7 +109,7 @@ def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
         found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
-        return likes.unexplained(found)
+        return differing.unexplained(found)
 
 
 def contradictions(seen: Index) -> list[Finding]:

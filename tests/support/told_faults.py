@@ -165,7 +165,7 @@ STEPS: Mapping[str, Callable[..., System]] = {
     "at": _at,
     "twice": lambda graph, child: _edges(graph, child, "", several=True),
     "heard": _heard,
-    "silent": lambda graph, topic: heard_all_but(topic)(graph),
+    "silent": lambda graph: heard_all_but()(graph),
     "ask": lambda graph, *words: graph._replace(lookups=(*graph.lookups, Lookup(*words))),
     "set": _set,
     "state": lambda graph, node, label: with_answers(graph, (told(node, label),)),
