@@ -153,8 +153,10 @@ def _lost_ends(
             continue
         theirs = [made[like].ends[key] for key in keys]
         does = shorten([f"{it.role} {it.name}" for it in theirs], SEVERAL)
+        others = {it.node for name in own for it in at_work(ends_of(seen, name))} - {node}
+        wait = f"; {shorten(sorted(others), SEVERAL)} has it in vain" if others else ""
         yield lacks_what_its_likes_have.finding(
-            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}",
+            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}{wait}",
             "a remap rule, a parameter or a version of its own?",
             robot=robot, node=node, names=own,
         )  # fmt: skip
