@@ -1,27 +1,25 @@
-"""Faults of ``fixtures/told_faults.txt``: each a graph, its healthy twin, and the words to be said of it.
+"""Faults of ``fixtures/told_faults.txt``: a graph, its healthy twin, the words to be said of it.
 
 ``python tests/support/told_faults.py`` prints which commands find which.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, reduce
-from pathlib import Path
 from typing import NamedTuple
 
 from fault_changes import nav, shared_tf, simulation
 from graph_cases import moved, qos, reframed, sent, without_node
-from healthy_systems import arms, plan, single, slam_with_filters, with_ends, with_mux, with_node
+from healthy_systems import arms, single, slam_with_filters, with_ends, with_mux, with_node
 from node_answers import told
 from open_faults import heard_all_but
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.records import Edge, Heard, Lookup, Parameter, System
 
@@ -36,8 +34,8 @@ SYSTEMS: Mapping[str, Callable[[], System]] = {
     "arms": arms,
 }
 PACKAGES = {
-    "sensor_msgs/msg": "LaserScan Image PointCloud2 PointCloud Joy Imu MagneticField BatteryState Range "
-    "CameraInfo NavSatFix JointState CompressedImage",
+    "sensor_msgs/msg": "LaserScan Image PointCloud2 PointCloud Joy Imu MagneticField BatteryState "
+    "Range CameraInfo NavSatFix JointState CompressedImage",
     "nav_msgs/msg": "Odometry OccupancyGrid",
     "geometry_msgs/msg": "Twist TwistStamped PoseStamped PoseWithCovarianceStamped",
     "std_msgs/msg": "Bool String Float64MultiArray",
@@ -56,13 +54,15 @@ TYPES = {name: f"{package}/{name}" for package, names in PACKAGES.items() for na
 
 
 class Told(NamedTuple):
-    """``bad`` and ``twin`` are steps; ``says`` are words of one error or warning."""
+    """``bad`` and ``twin`` are steps; ``says`` are words of one error or warning; ``unknown`` to these
+    commands, ``doctor`` or ``check``."""
 
     name: str
     on: str
     bad: tuple[str, ...]
     twin: tuple[str, ...]
     says: tuple[str, ...]
+    unknown: tuple[str, ...] = ()
 
     def faulty(self) -> System:
         return _made(self.on, self.bad)
@@ -77,13 +77,13 @@ def read(text: str) -> Iterator[Told]:
         name, *rest = block.splitlines()
         words = [line.split(" ", 1) for line in rest]
         of = {key: tuple(w[1] for w in words if w[0] in key.split()) for key in KEYS}
-        on, bad, twin, says = of.values()
-        yield Told(name, on[0], bad, twin, tuple(says[0].split()))
+        on, bad, twin, says, unknown = of.values()
+        yield Told(name, on[0], bad, twin, tuple(says[0].split()), unknown)
 
 
 # What is otherwise than in the plan.
 DEVIATIONS = ("MG101", "MG102", "MG108", "MG204", "MG306", "MG406")
-KEYS = ("on", "both bad", "both twin", "says")
+KEYS = ("on", "both bad", "both twin", "says", "unknown")
 
 
 @cache
@@ -92,8 +92,12 @@ def faults() -> tuple[Told, ...]:
 
 
 def _made(on: str, steps: tuple[str, ...]) -> System:
-    graph = reduce(_step, steps, SYSTEMS[on]())
-    return from_json(to_json(sent(graph)), "graph.json")
+    return sent(reduce(_step, steps, _system(on)))
+
+
+@cache
+def _system(on: str) -> System:
+    return SYSTEMS[on]()
 
 
 def _step(graph: System, step: str) -> System:
@@ -167,21 +171,12 @@ STEPS: Mapping[str, Callable[..., System]] = {
     "at": _at,
     "twice": lambda graph, child: _edges(graph, child, "", several=True),
     "heard": _heard,
-    "silent": lambda graph: heard_all_but()(graph),
+    "silent": heard_all_but(),
     "ask": lambda graph, *words: graph._replace(lookups=(*graph.lookups, Lookup(*words))),
     "set": _set,
     "state": lambda graph, node, label: with_answers(graph, (told(node, label),)),
     "qos": _qos,
     "type": _type,
-}
-PLANS: Mapping[str, Callable[[], System]] = {
-    "single": lambda: plan(("nav2",), "L1", ("robot1",)),
-    "nav": lambda: plan(("nav2",)),
-    "shared": lambda: plan(("nav2",), "L2"),
-    "sim": lambda: plan(("nav2",), "L1", ("robot1", "robot2", "robot3")),
-    "slam": lambda: plan(("nav2_slam", "robot_localization_gps")),
-    "mux": lambda: plan(("nav2", "teleop")),
-    "arms": lambda: plan(("moveit", "ros2_control"), "L3", ("left_arm", "right_arm")),
 }
 
 
@@ -189,8 +184,9 @@ def by_doctor(graph: System) -> tuple[Finding, ...]:
     return diagnose(graph).findings
 
 
-def by_check(on: str, graph: System) -> tuple[Finding, ...]:
-    return tuple(check(PLANS[on](), graph))
+def by_check(plan: System, graph: System) -> tuple[Finding, ...]:
+    """With the plan of the twin, as ``check --suggest`` begins one."""
+    return tuple(check(seen_plan(diagnose(plan)), graph))
 
 
 def tells(fault: Told, found: Iterable[Finding]) -> bool:
@@ -205,12 +201,14 @@ def tells(fault: Told, found: Iterable[Finding]) -> bool:
 
 
 def _line(fault: Told) -> str:
-    found = by_doctor(fault.faulty())
-    twin = by_doctor(fault.healthy())
-    marks = "D" if tells(fault, found) else "-"
-    codes = " ".join(sorted({it.code for it in found}))
-    return f"{marks} {len(twin)} {fault.name}: {codes}"
+    bad, twin = fault.faulty(), fault.healthy()
+    doctor, planned = by_doctor(bad), by_check(twin, bad)
+    marks = "".join(
+        mark if tells(fault, it) else "-" for mark, it in (("D", doctor), ("C", planned))
+    )
+    return f"{marks} {fault.name}: {' '.join(sorted({it.code for it in (*doctor, *planned)}))}"
 
 
 if __name__ == "__main__":
-    print("\n".join(map(_line, faults())))
+    for one in faults():
+        print(_line(one), flush=True)

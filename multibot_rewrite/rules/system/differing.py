@@ -28,7 +28,7 @@ _POLICIES = "reliability", "durability", "deadline", "liveliness"
 
 
 class _Told(NamedTuple):
-    """A value of one robot: where it is, what it is called, the value, the same in all robots' words."""
+    """A value of one robot: where, its name, the value, and the same in the words of all robots."""
 
     node: str
     name: str

@@ -76,8 +76,8 @@ _FAR = 20.0
     why="The numbers are millimetres or centimetres, or in another order: the sensor sees all in"
     " another place.",
     fix="Write metres; static_transform_publisher wants `--x --y --z` in metres, angles in radians.",
-    bad="running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /robot_description\n",
-    good="running: transform base_link -> lidar_link on /tf_static at 0.15 0 0.2 by /robot_description\n",
+    bad="running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /camera_tf\n",
+    good="running: transform base_link -> lidar_link on /tf_static at 0.15 0 0.2 by /camera_tf\n",
 )
 def part_far_away(seen: Index) -> Iterator[Finding]:
     """By the length alone: what is below the map is as far away as the building is long."""
