@@ -240,8 +240,9 @@ def meant(seen: Index, end: End) -> Ends | None:
         return words.get(nearest(last_word(end.code_name), words))
     last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
     if mux:  # idle, unless it is misspelt
-        words_of = {last_word(it): it for it in alike}
-        return alike.get(words_of.get(nearest(last_word(end.name), words_of, alike=_SLIP), ""))
+        words_of = {last_word(seen.plain(it)): it for it in alike}
+        near = nearest(last_word(seen.plain(end.name)), words_of, alike=_SLIP)
+        return alike.get(words_of.get(near, ""))
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 
