@@ -127,7 +127,7 @@ def test_a_manager_that_stands_in_for_controllers_has_their_rules(
 def test_who_has_a_topic_with_a_second_type_is_in_another_process() -> None:
     """A participant of Fast DDS refuses the second type."""
     text, flag = (
-        StubNode(name, (), (StubEndpoint(TOPIC, PUBLISHES, "chat", type_, False),), (), ())
+        StubNode(name, (), (), (StubEndpoint(TOPIC, PUBLISHES, "chat", type_, False),), ())
         for name, type_ in (("talker", "std_msgs/msg/String"), ("listener", "std_msgs/msg/Bool"))
     )
     assert split_over_processes([("robot1", text), ("robot1", flag)]) == [[text], [flag]]
