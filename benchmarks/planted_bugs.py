@@ -17,6 +17,7 @@ import json
 import os
 import random
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -40,6 +41,8 @@ ROOMS = (*sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
 AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
+# A bug may make a loop that never ends and keeps all that it makes.
+MOST_MEMORY = 6 << 30
 TEMPORARY = "planted_bugs_"
 # Exit codes of pytest.
 WRONG_USE, NO_TESTS, TOO_LONG = 4, 5, -1
@@ -200,6 +203,7 @@ def _run(tests: list[str], bench: Bench, *words: str) -> int:
         [*_pytest(), *FAST, *words, *tests], cwd=bench.copy, env=_environment(bench.copy),
         start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
+    resource.prlimit(run.pid, resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
     try:
         return run.wait(bench.seconds)
     except subprocess.TimeoutExpired:

@@ -34,6 +34,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     robot_nodes,
 )
 from multibot_rewrite.fleet.robots.simulators import is_chosen, may_be_real, note
+from multibot_rewrite.fleet.robots.world_systems import without_world_systems
 
 
 class FleetPlan(NamedTuple):
@@ -71,7 +72,7 @@ def plan_fleet(
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = [
             placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
-            for it in with_own_ports(rewrite_robots(file.robots, read))
+            for it in without_world_systems(with_own_ports(rewrite_robots(file.robots, read)))
             for own in [said.get(it.spec.name, ())]
         ]
         file = file._replace(robots=tuple(it.spec for it in robots))

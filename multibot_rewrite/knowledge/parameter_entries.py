@@ -49,7 +49,6 @@ PARAMETER_KEYS = (
 PARAM_KEYS = (
     "kind",
     "default",
-    "list",
     "absolute",
     "deprecated",
     "own",
@@ -112,7 +111,6 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         path,
         kind,
         word_of(keys, "default"),
-        flag_of(keys, "list"),
         releases_of(keys),
         releases_of(keys, "absolute") or (absolute if kind == "topic" else ""),
         word_of(keys, "note"),

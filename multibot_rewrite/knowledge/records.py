@@ -85,7 +85,6 @@ class Param(NamedTuple):
     path: str
     kind: str
     default: str = ""
-    is_list: bool = False
     releases: str = ""
     absolute: str = ""
     note: str = ""

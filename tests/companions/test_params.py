@@ -766,7 +766,7 @@ def test_the_data_is_what_it_seems() -> None:
 @pytest.mark.more
 def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     path = f"{tmp_path}/more.yaml"
-    text = "nodes:\n  rover:\n    params: {wheels: {kind: joint, list: true}, mast.*: frame}\n"
+    text = "nodes:\n  rover:\n    params: {wheels: joint, mast.*: frame}\n"
     with open(path, "w") as file:
         file.write(text + "  amcl: {params: {extra: frame}}\n")
     source = section("rover", "wheels: [elbow]", "mast.a: tool0") + section("amcl", "extra: laser")

@@ -131,7 +131,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
     posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
     broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
-    broken += simulator.one_port(there)
+    broken += [*simulator.one_port(there), *simulator.rendered_twice(there, world)]
     for it in there:
         broken += simulator.idle(
             it, [each.values for each in found.nodes if each.robot == it.robot]

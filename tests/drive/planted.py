@@ -52,6 +52,8 @@ SIMULATED = [
             'ros_topic_name: "/cmd_vel"', "robot1", "drives", "that moves []"),
     Spoiled("launch_tutorial", "robot2/rover.urdf", "<topic>robot2/cmd_vel",
             "<topic>robot1/cmd_vel", "robot2", "drives", "robot1 hears /robot1/cmd_vel, too"),
+    Spoiled("launch_tutorial", ROVER, "</robot>", f"<gazebo>{SYSTEM.format('sensors', 'Sensors')}/>"
+            "</gazebo></robot>", "robot1", "starts", "the world has the system Sensors, too"),
     Spoiled("launch_tutorial", LAUNCH, "'-name', name", "'-name', 'robot1'",
             "robot2", "starts", "two models are called"),
 ]  # fmt: skip

@@ -161,6 +161,16 @@ def one_port(models: Iterable[Model]) -> Iterator[Broken]:
                     yield model.robot, "starts", f"{first[port]} has its port {port}, too"
 
 
+def rendered_twice(models: Iterable[Model], world: World) -> Iterator[Broken]:
+    """A second Sensors system ends Gazebo (gz-sensors issue 497, create3_sim issue 218)."""
+    before = "the world" if "sensors" in (world.systems or ()) else ""
+    for model in models:
+        if any(gazebo.plugin_key(it) == "sensors" for it in model.kept.plugins):
+            if before:
+                yield model.robot, "starts", f"Gazebo crashes: {before} has the system Sensors, too"
+            before = before or model.robot
+
+
 def idle(model: Model, values: Iterable[Mapping[str, Any]]) -> Iterator[Broken]:
     """Wheels without a collision turn, and nothing moves; ``values`` are those of the controllers."""
     named = [

@@ -151,7 +151,7 @@ def test_a_plugin_of_the_simulator_is_not_started_again(
 def test_the_world_runs_the_sensors_of_the_robots(
     release: str, library: str, tmp_path: Path
 ) -> None:
-    """In Gazebo's empty.sdf neither a lidar nor an IMU sends; one that a robot brings runs once."""
+    """In Gazebo's empty.sdf neither a lidar nor an IMU sends; a system of a robot is moved there."""
     sensors = "".join(
         f'<sensor name="{it}" type="{it}"/>' for it in ("gpu_lidar", "imu", "altimeter")
     )
@@ -165,7 +165,7 @@ def test_the_world_runs_the_sensors_of_the_robots(
     world = ElementTree.parse(out / "world.sdf").getroot()
     systems = {it.get("filename"): it.get("name") for it in world.iter("plugin")}
     empty = {"physics", "user-commands", "scene-broadcaster", "contact"}
-    wanted = {f"{library}-{it}-system" for it in (*empty, "sensors", "imu")}
+    wanted = {f"{library}-{it}-system" for it in (*empty, "sensors", "imu", "altimeter")}
     assert systems.keys() == wanted
     assert systems[f"{library}-sensors-system"] == "gz::sim::systems::Sensors"
     text = " ".join((out / "fleet.launch.py").read_text().split())

@@ -111,7 +111,7 @@ nodes:
       map_frame: {kind: frame, default: map, releases: jazzy, source: acme/driver@1.0 d.cpp}
       topic: topic
       other: {kind: topic, absolute: rolling}
-      names: {kind: joint, list: true, deprecated: kilted+, own: true, instead: [x], note: n}
+      names: {kind: joint, deprecated: kilted+, own: true, instead: [x], note: n}
 stacks:
   cell:
     about: what it is
@@ -217,7 +217,6 @@ def test_the_whole_record_of_its_parameters() -> None:
                 Param(
                     "names",
                     "joint",
-                    is_list=True,
                     note="n",
                     deprecated="kilted+",
                     own=True,

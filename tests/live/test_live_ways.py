@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from subprocess import CompletedProcess
+from typing import Any
 
 import live_commands
 import live_fleet
@@ -35,19 +37,32 @@ COMPOSED = ("jazzy", "nav2_composed", "")
 LEAKING = {TAG_ALONE: "diff_drive_controller", UNKNOWN: "controller_manager"}
 LEAKING[NOWHERE] = "diff_drive_controller"
 ALL = (AT_SPAWNER, TAG_ALONE, UNKNOWN, FORWARDED, FORWARDED_TO_UNKNOWN, NOWHERE, COMPOSED)
+USUAL = (AT_SPAWNER, TAG_ALONE, NOWHERE)
 Case = tuple[str, str, str]
 
 
+def rows(cases: Iterable[Case]) -> list[Any]:
+    return [pytest.param(it, marks=[] if it in USUAL else [pytest.mark.deep]) for it in cases]
+
+
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> dict[Case, CompletedProcess[str]]:
-    """All rehearsals, side by side: most of it is waiting."""
+def done(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> dict[Case, CompletedProcess[str]]:
+    """The rehearsals that are asked for, side by side: most of it is waiting."""
     folder = tmp_path_factory.mktemp("ways")
+    asked = [it.callspec.params.get("case") for it in request.session.items if _is_here(it)]
 
     def run(at: int, case: Case) -> CompletedProcess[str]:
         return _rehearsed(folder, at, case)
 
     with ThreadPoolExecutor() as pool:
-        return dict(zip(ALL, pool.map(run, range(len(ALL)), ALL), strict=True))
+        cases = [it for it in ALL if it in asked]
+        return dict(zip(cases, pool.map(run, range(len(cases)), cases), strict=True))
+
+
+def _is_here(item: pytest.Item) -> bool:
+    return item.path == Path(__file__) and hasattr(item, "callspec")
 
 
 def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
@@ -61,7 +76,7 @@ def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
     return live_commands.multibot(*words, env=live_fleet.environ(domain))
 
 
-@pytest.mark.parametrize("case", [it for it in ALL if it not in LEAKING])
+@pytest.mark.parametrize("case", rows(it for it in ALL if it not in LEAKING))
 def test_what_a_release_hands_on_is_as_planned(
     case: Case, done: dict[Case, CompletedProcess[str]]
 ) -> None:
@@ -71,7 +86,7 @@ def test_what_a_release_hands_on_is_as_planned(
     assert not {" MG1", " MG2"} & {it[:4] for it in done[case].stdout.split(":")}
 
 
-@pytest.mark.parametrize("case", list(LEAKING))
+@pytest.mark.parametrize("case", rows(LEAKING))
 def test_what_it_does_not_hand_on_leaks(
     case: Case, done: dict[Case, CompletedProcess[str]]
 ) -> None:

@@ -51,6 +51,8 @@ class Ros:
 
     def __init__(self, *absent: str) -> None:
         self.absent, self.rows = absent, list[Row]()
+        # What was told of itself.
+        self.ends, self.frames = list[list[str]](), list[str]()
 
     @contextmanager
     def opened(self) -> Iterator[str]:
@@ -78,6 +80,10 @@ class Ros:
         sent = lambda message: self.rows.append(("sent", topic, str(message)))  # noqa: E731
         return SimpleNamespace(publish=sent)
 
+    def topic_ends(self, session: str) -> list[Row]:
+        topics = ("publishes", "subscribes")
+        return [(it[0], it[2]) for it in self.rows if it[1] in topics and session == "session"]
+
     def kept(self, kind: str) -> Any:
         return lambda node, type_, name: self.rows.append((node.name, kind, name, type_))
 
@@ -104,7 +110,8 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int
     order = json.dumps(to_order(stubs))
     assert stub_nodes.main(order, Stop(), told.append) == 0
     stub_nodes._installed.cache_clear()
-    return [("replaced", json.loads(told[0])), *ros.rows]
+    replaced, ros.ends, ros.frames = json.loads(told[0])
+    return [("replaced", replaced), *ros.rows]
 
 
 def stub(*endpoints: StubEndpoint, edges: Any = ()) -> StubNode:
@@ -198,6 +205,9 @@ def test_transforms_are_sent_once_or_again_and_again(
     )
     node = stub(StubEndpoint(TOPIC, PUBLISHES, topic, TF, False), edges=edges)
     static = topic.endswith("tf_static")
-    found = rows(monkeypatch, Ros(absent), node, turns=2)
+    ros = Ros(absent)
+    found = rows(monkeypatch, ros, node, turns=2)
     assert found[2][-1] is static
+    assert ros.ends == [["a", topic]]
+    assert ros.frames == (["scan"] if static else ["base_link", "wheel"])
     assert [it[2] for it in found if it[0] == "sent"] == (sent if static else sent * 2)

@@ -92,10 +92,10 @@ def files(folder: Path) -> set[Path]:
     return {it.relative_to(folder) for it in folder.rglob("*")}
 
 
-SYMLINKED = pytest.param("symlinked", marks=pytest.mark.deep)
+BUILDS = [pytest.param(it, marks=pytest.mark.deep) for it in ("installed", "symlinked")]
 
 
-@pytest.fixture(scope="module", params=["installed", SYMLINKED])
+@pytest.fixture(scope="module", params=BUILDS)
 def workspace(
     request: pytest.FixtureRequest, colcon: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> Path:

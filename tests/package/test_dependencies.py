@@ -114,11 +114,8 @@ def test_the_first_python_reads_every_file() -> None:
         parsed(path)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "version",
-    [pytest.param(FIRST, id="first"), pytest.param(LAST, id="last", marks=pytest.mark.deep)],
-)
+@pytest.mark.deep
+@pytest.mark.parametrize("version", [FIRST, LAST], ids=["first", "last"])
 def test_mypy_finds_nothing_for_the_first_and_the_last_python(
     version: tuple[int, int], pytestconfig: pytest.Config
 ) -> None:

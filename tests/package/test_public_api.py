@@ -102,7 +102,7 @@ WRONG = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_mypy_sees_every_option(tmp_path: Path) -> None:
     """With a program of a caller: right calls are right, and each wrong one is one error."""
     program = tmp_path / "caller.py"

@@ -540,6 +540,7 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("rules", "code"),

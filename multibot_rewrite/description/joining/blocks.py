@@ -15,9 +15,9 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.joining.kept import was
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.readback.xml import plain, text_of
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.spans import Spans
 
 _FILES = "parameters"
 # What stands in a block for itself; anything else is a setting of the robot.

@@ -22,9 +22,9 @@ from multibot_rewrite.description.checks.rotation import (
 )
 from multibot_rewrite.description.joining.kept import was
 from multibot_rewrite.description.joining.part import ZERO, Part, ReadPart
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import tag_end, value_slot
+from multibot_rewrite.description.steps.spans import Spans
 
 _FREE = ("floating", "planar")
 _MOUNT = """

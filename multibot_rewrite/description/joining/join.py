@@ -37,11 +37,11 @@ from multibot_rewrite.description.joining.part import (
 from multibot_rewrite.description.joining.proof import prove
 from multibot_rewrite.description.joining.second_reading import Mounted
 from multibot_rewrite.description.joining.spaces import own_spaces
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.spans import Spans
 
 JOINED = "the joined description"
 _START = attrgetter("start")

@@ -23,9 +23,9 @@ from urllib.parse import quote, unquote
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document, silenced
+from multibot_rewrite.description.steps.spans import Spans
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 _PART = lazy_compile(

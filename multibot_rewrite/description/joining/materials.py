@@ -15,9 +15,9 @@ from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import was
 from multibot_rewrite.description.joining.part import ReadPart
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import Document, read_document, value_slot
+from multibot_rewrite.description.steps.spans import Spans
 
 # Colour and texture.
 _Look = tuple[tuple[float, ...], str]

@@ -10,8 +10,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.joining.kept import was
-from multibot_rewrite.description.joining.spans import Spans
 from multibot_rewrite.description.steps.document import Document, tag_end
+from multibot_rewrite.description.steps.spans import Spans
 
 
 def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:

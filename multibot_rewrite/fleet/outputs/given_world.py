@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from lxml.etree import _Element
 
@@ -30,6 +30,7 @@ from multibot_rewrite.description.steps.document import (
     tag_end,
     text_slot,
 )
+from multibot_rewrite.description.steps.spans import Spans
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 
 _SCOPE = "::"
@@ -68,10 +69,10 @@ class _Kind(NamedTuple):
 
 
 class _Text(NamedTuple):
-    """The world as it is read, where its elements start, and the places of the fleet file."""
+    """The world as it is read, where its elements are, and the places of the fleet file."""
 
     document: Document
-    starts: Mapping[_Element, int]
+    spans: Spans
     file: str
     line: int
 
@@ -85,9 +86,8 @@ def own_world(
     world = document.root.find("world")
     if world is None:
         raise InputError(f"{path}:1: there is no <world> in it; simulator_world takes an SDF world")
-    starts = dict(zip(document.elements, document.starts, strict=True))
-    it = _Text(document, starts, file, line)
-    at = tag_end(document.source, starts[world])
+    it = _Text(document, Spans(document), file, line)
+    at = tag_end(document.source, it.spans.start_of(world))
     edits = [Edit(at, at, b"\n" + systems.rstrip("\n").encode(), None)] if systems else []
     edits += _own_paths(it)
     findings: list[Finding] = []
@@ -95,7 +95,7 @@ def own_world(
         gone = [one for one in world.iterchildren("include", "model") if _is(one, kind, path)]
         names = kind.names | {name for one in gone if (name := _name(one))}
         for one in gone:
-            edits.append(Edit(*_span(it, one), b"", None))
+            edits.append(Edit(*it.spans.of(one), b"", None))
             findings.append(_said(it, one, f"the world's {_name(one)!r} is left out", NOTE))
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
@@ -151,14 +151,14 @@ def _name(one: _Element) -> str:
 def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
     blocks = [one for one in plugin.iterchildren("*") if len(one) and _names(one, kind)]
     for block in blocks:
-        start, end = _span(it, block)
+        start, end = it.spans.of(block)
         texts = [_block(it, block, kind, robot) for robot in kind.robots]
         yield Edit(start, end, b"\n".join(texts), None)
     leaves = [one for one in plugin.iterchildren("*") if not len(one)]
     named = [one for one in leaves if _new(text_of(one), kind.robots[0], kind.names, False)]
     for one in leaves:
         new = _new(text_of(one), kind.robots[0], kind.names, bool(named))
-        slot = text_slot(it.document.source, it.starts[one], text_of(one)) if new else None
+        slot = text_slot(it.document.source, it.spans.start_of(one), text_of(one)) if new else None
         if slot:
             yield Edit(*slot, new.encode(), None)
     if named and len(kind.robots) > 1:
@@ -179,12 +179,12 @@ def _names(block: _Element, kind: _Kind) -> bool:
 def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
     """The block for one robot; its own name, if it has one, is made the robot's."""
     source = it.document.source
-    start, end = _span(it, block)
+    start, end = it.spans.of(block)
     edits = []
     for one in block.iter("*"):
         text = text_of(one) if not len(one) else ""
         new = _new(text, robot, kind.names, True)
-        slot = text_slot(source, it.starts[one], text) if new else None
+        slot = text_slot(source, it.spans.start_of(one), text) if new else None
         edits += [Edit(slot[0] - start, slot[1] - start, new.encode(), None)] if slot else []
     own = re.compile(rb"""\bname\s*=\s*["']([^"'<]*)""").search(
         source, start, tag_end(source, start)
@@ -225,25 +225,9 @@ def _own_paths(it: _Text) -> Iterator[Edit]:
         text = text_of(one)
         path = os.path.join(folder, text)
         if text and "://" not in text and os.path.exists(path):
-            slot = text_slot(it.document.source, it.starts[one], text)
+            slot = text_slot(it.document.source, it.spans.start_of(one), text)
             if slot:
                 yield Edit(*slot, f"file://{path}".encode(), None)
-
-
-def _span(it: _Text, one: _Element) -> tuple[int, int]:
-    """Where an element starts and ends."""
-    source, start, depth = it.document.source, it.starts[one], 0
-    tag = str(one.tag).encode()
-    start_tag = rb"""<%s(?=[\s/>])(?:[^>"']|"[^"]*"|'[^']*')*>""" % tag
-    pattern = re.compile(rb"<!--.*?-->|</%s\s*>|" % tag + start_tag, re.DOTALL)
-    for found in pattern.finditer(source, start):
-        if found[0].startswith(b"</"):
-            depth -= 1
-        elif not found[0].startswith(b"<!--") and not found[0].endswith(b"/>"):
-            depth += 1
-        if depth == 0 and not found[0].startswith(b"<!--"):
-            return start, found.end()
-    return start, start
 
 
 def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:

@@ -18,6 +18,7 @@ from multibot_rewrite.fleet.outputs.given_world import own_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.outputs.spawn import is_classic, is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.world_systems import systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
 
 FILE = "world.sdf"
@@ -72,46 +73,48 @@ _WORLD = """\
 def world_file(plan: FleetPlan) -> FilesAndFindings:
     """The world of the fleet file with what the robots need; else an empty one, where a robot in gz-sim
     has a sensor that Gazebo's own does not run. Raises InputError for a file that is no world."""
-    robots = [it for it in plan.robots if is_simulated(it) and not is_classic(it)]
-    ours = _needed(robots)
-    given = plan.file.simulator_world
     kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
+    robots = [it for it in plan.robots if is_simulated(it) and not is_classic(it)]
+    usual = {library: _system(kind, library, name) for library, name in _ALWAYS.items()}
+    ours = _needed(robots, kind)
+    given = plan.file.simulator_world
     if given:
         simulated = [it for it in plan.robots if is_simulated(it)]
-        systems = "".join(_system(kind, *it) for it in _lacking(given, ours).items())
+        systems = "".join(_lacking(given, ours, usual).values())
         data, findings = own_world(given, simulated, systems, *plan.file.world_place)
         yield OutputFile(FILE, data, (given,))
         yield from findings
     elif ours:
-        systems = "".join(_system(kind, *it) for it in {**_ALWAYS, **ours}.items())
+        systems = "".join({**usual, **ours}.values())
         place = _PLACE if "navsat" in ours else ""
         yield OutputFile(FILE, _WORLD.format(systems=systems, place=place).encode())
 
 
-def _needed(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
-    """The systems for the sensors of these robots; one that brings a system would run it twice."""
+def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
+    """The systems for the sensors of these robots, by library, and those that their files had."""
     roots = [it.member.inventory.document.root for it in robots]
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
     needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))
-    brought = [it.get("filename") or "" for root in roots for it in root.iter("plugin")]
-    return {
-        library: name
-        for library, name in needed.items()
-        if not any(f"-{library}-system" in it for it in brought)
-    }
+    found = systems_of(robots).items()
+    theirs = {_of_library(library): f"    {text}\n" for library, text in found}
+    return {**{it: _system(kind, it, name) for it, name in needed.items()}, **theirs}
 
 
-def _lacking(path: str, ours: Mapping[str, str]) -> Mapping[str, str]:
+def _of_library(library: str) -> str:
+    return library.removeprefix("gz-sim-").removesuffix("-system")
+
+
+def _lacking(path: str, ours: Mapping[str, str], usual: Mapping[str, str]) -> Mapping[str, str]:
     """The systems that a world lacks; to one that names none those are added that Gazebo gives it."""
     world = read_document(read_file(path), path).root.find("world")
     plugins = world.iterchildren("plugin") if world is not None else ()
     there = [it.get("filename") or "" for it in plugins]
     lacking = {
-        library: name
-        for library, name in ours.items()
+        library: text
+        for library, text in ours.items()
         if not any(f"-{library}-system" in it for it in there)
     }
-    return lacking if there or not lacking else {**_ALWAYS, **lacking}
+    return lacking if there or not lacking else {**usual, **lacking}
 
 
 def _system(kind: str, library: str, name: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -52,12 +53,16 @@ PREFIX_ONLY = "MB422"
 SET_PREFIX = "its plugin can only put the robot's name in front of names: set affix: prefix"
 
 
+NO_SYSTEMS: Mapping[str, str] = MappingProxyType({})
+
+
 class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty if it has none).
 
     ``names`` is the rename map of frames, joints and planning groups, ``topics`` that of ROS names.
     ``findings`` are warnings about the source. ``simulated`` is the model for the simulator,
-    empty where that is the description.
+    empty where that is the description. ``world_systems`` are plugins that were in it, by library, and
+    are loaded by the world.
     """
 
     spec: RobotSpec
@@ -68,6 +73,7 @@ class RewrittenRobot(NamedTuple):
     member: Member
     findings: tuple[Finding, ...]
     simulated: bytes = b""
+    world_systems: Mapping[str, str] = NO_SYSTEMS
 
     @property
     def tree(self) -> list[Edge]:

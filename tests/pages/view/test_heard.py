@@ -133,6 +133,7 @@ def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     assert made["robots"][0]["heard"]["base_link/robot1"] == "heard"
 
 
+@pytest.mark.more
 def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None:
     """Where each robot has its own tf, frames of all are called alike."""
     graph = healthy("tf-per-robot")

@@ -27,9 +27,13 @@ class Spans:
         """The offset right after it."""
         return self._silent.rindex(b">", 0, self._behind(element)) + 1
 
+    def of(self, element: _Element) -> tuple[int, int]:
+        """Where it starts and ends."""
+        return self.start_of(element), self.end_of(element)
+
     def text_of(self, element: _Element) -> bytes:
         """The bytes of it."""
-        return self.document.source[self.start_of(element) : self.end_of(element)]
+        return self.document.source[slice(*self.of(element))]
 
     def inside(self, element: _Element) -> tuple[int, int]:
         """From behind its start tag to its end tag; for one without an end tag both are its end."""

@@ -1,0 +1,125 @@
+"""Systems of the whole world in a robot's description: loaded once, by the world.
+
+Expected: gz-sim makes an object of each <plugin> (src/SystemManager.cc), so of each system there has to
+be one in all that it reads: the world and every description that is spawned.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from multibot_rewrite.cli.multibot import main
+
+LIDAR = (
+    '<sensor name="eye" type="gpu_lidar"><topic>scan</topic><update_rate>5</update_rate></sensor>'
+)
+ROVER = """<robot name="rover"><link name="base_link"><inertial><mass value="1"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<gazebo reference="base_link">{sensor}</gazebo><gazebo>{plugins}</gazebo></robot>"""
+SENSORS = (
+    '<plugin name="gz::sim::systems::Sensors" filename="{}">'
+    "<render_engine>{}</render_engine></plugin>"
+)
+OGRE = SENSORS.format("gz-sim-sensors-system", "ogre")
+DRIVE = '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system"/>'
+WORLD = '<sdf version="1.9"><world name="lake">{}</world></sdf>'
+FLEET = (
+    "layout: both\ndistro: {}\nsimulator: {}\n{}robots:\n"
+    "  - {{name: r1, description: r1.urdf, pose: {{y: 0}}}}\n"
+    "  - {{name: r2, description: r2.urdf, pose: {{y: 5}}}}\n"
+)
+
+
+def _built(
+    folder: Path,
+    *plugins: str,
+    distro: str = "jazzy",
+    simulator: str = "gazebo",
+    world: str = "",
+    sensor: str = LIDAR,
+) -> Path:
+    for number, own in enumerate(plugins, 1):
+        (folder / f"r{number}.urdf").write_text(ROVER.format(sensor=sensor, plugins=own))
+    more = "simulator_world: lake.sdf\n" if world else ""
+    (folder / "lake.sdf").write_text(world)
+    (folder / "fleet.yaml").write_text(FLEET.format(distro, simulator, more))
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
+    return folder / "out"
+
+
+def _systems(out: Path) -> Counter[str]:
+    """How often each library is loaded by the world and the robots."""
+    roots = [etree.parse(it).getroot() for it in [*out.glob("*.sdf"), *out.glob("r?/*.urdf")]]
+    return Counter(it.get("filename") or "" for root in roots for it in root.iter("plugin"))
+
+
+@pytest.mark.parametrize(
+    ("distro", "library"),
+    [
+        ("jazzy", "gz-sim-sensors-system"),
+        ("jazzy", "libgz-sim8-sensors-system.so"),
+        ("humble", "libignition-gazebo6-sensors-system.so"),
+    ],
+)
+def test_the_world_loads_it_once_with_its_settings(
+    distro: str, library: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plugin = SENSORS.format(library, "ogre")
+    out = _built(tmp_path, plugin + DRIVE, DRIVE + plugin, distro=distro)
+    found = _systems(out)
+    assert [it for it in found if "sensors" in it] == [library] and found[library] == 1
+    assert found["gz-sim-diff-drive-system"] == 2
+    world = etree.parse(out / "world.sdf").getroot()
+    assert world.findtext(f"world/plugin[@filename='{library}']/render_engine") == "ogre"
+    said = capsys.readouterr().err
+    assert said.count("MF847") == 1 and "MB416" not in said
+    assert "gz-sim-sensors-system" in said
+
+
+def test_a_system_without_a_sensor_is_moved_too(tmp_path: Path) -> None:
+    wind = '<plugin name="w" filename="gz-sim-wind-effects-system"><x>1</x></plugin>'
+    out = _built(tmp_path, wind, wind, sensor="")
+    assert _systems(out)["gz-sim-wind-effects-system"] == 1
+    assert etree.parse(out / "world.sdf").findtext("world/plugin/x") == "1"
+
+
+def test_the_worlds_own_stays(tmp_path: Path) -> None:
+    own = SENSORS.format("gz-sim-sensors-system", "ogre2")
+    out = _built(tmp_path, OGRE, OGRE, world=WORLD.format(own))
+    assert _systems(out)["gz-sim-sensors-system"] == 1
+    assert etree.parse(out / "world.sdf").findtext("world/plugin/render_engine") == "ogre2"
+
+
+def test_a_world_without_it_gets_it(tmp_path: Path) -> None:
+    out = _built(tmp_path, OGRE, OGRE, world=WORLD.format(""))
+    found = _systems(out)
+    # To a world that names no system gz-sim gives its own, and to others none (server.config).
+    assert found["gz-sim-sensors-system"] == found["gz-sim-physics-system"] == 1
+
+
+def test_other_settings_of_the_second_robot_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = SENSORS.format("gz-sim-sensors-system", "ogre2")
+    out = _built(tmp_path, OGRE, other)
+    assert etree.parse(out / "world.sdf").findtext("world/plugin/render_engine") == "ogre"
+    said = capsys.readouterr().err
+    assert "warning: MF847 r2 has other settings of gz-sim-sensors-system" in said
+
+
+def test_blanks_are_no_other_settings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _built(tmp_path, OGRE, OGRE.replace('" filename', '"\n   filename'))
+    assert "other settings" not in capsys.readouterr().err
+
+
+def test_real_robots_and_classic_keep_their_files(tmp_path: Path) -> None:
+    real = _built(tmp_path, OGRE, OGRE, simulator="none")
+    assert _systems(real)["gz-sim-sensors-system"] == 2
+    (tmp_path / "classic").mkdir()
+    ros = '<plugin name="f" filename="libgazebo_ros_factory.so"/>'
+    classic = _built(tmp_path / "classic", ros, ros, distro="humble", sensor="")
+    assert _systems(classic)["libgazebo_ros_factory.so"] == 2
