@@ -150,12 +150,14 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
     said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    told = {name for it in found for name in it.names}
     for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
         options = RULES[it.code].options
         abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
         by_plan = any((it.code, about) in said for about in abouts)
         absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
-        if not (by_plan or absent or _is_meant(plan, seen, it)):
+        compared = it.code in differing.COMPARED and not told.isdisjoint(it.names)
+        if not (by_plan or absent or compared or _is_meant(plan, seen, it)):
             yield it
 
 

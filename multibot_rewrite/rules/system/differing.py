@@ -77,16 +77,19 @@ def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
         yield from _lost_parts(seen, likes)
 
 
+# What is found of robots held against each other is left to any other finding about it.
+COMPARED = (lacks_what_its_likes_have.code, differs_from_its_likes.code)
+
+
 def unexplained(found: Sequence[Finding]) -> list[Finding]:
     """The findings without those of robots compared about what another one is about."""
-    codes = (lacks_what_its_likes_have.code, differs_from_its_likes.code)
-    others = [one for one in found if one.code not in codes]
+    others = [one for one in found if one.code not in COMPARED]
     about = {it for one in others for it in (one.node, *one.names)} - {""}
     robots = {one.robot for one in others if not one.node and not one.names}
     return [
         it
         for it in found
-        if it.code not in codes
+        if it.code not in COMPARED
         or (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
     ]
 
@@ -206,7 +209,9 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
         lost = [it for it in lost if it not in frames[robot]]
         # Two robots of which each has parts of its own are made for two things.
         more = any(counts[it] == 1 for it in frames[robot])
-        if lost and (len(likes) > _TWO or not more):
+        # Under other names all are lost, which is another finding.
+        few = len(lost) < len(frames[robot])
+        if lost and few and (len(likes) > _TWO or not more):
             like = next(it for it in likes if it != robot)
             yield differs_from_its_likes.finding(
                 f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",

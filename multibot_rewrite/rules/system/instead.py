@@ -70,7 +70,9 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
     ]
     akin = [it for it in given if _words(seen, it.name) & _words(seen, end.name)]
+    akin = akin or [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
+    plain = plain or is_from_outside(end.name)
     return _only(akin) or (None if plain else _only(given))
 
 
@@ -93,6 +95,12 @@ def _reads_another_robots(seen: Index, end: End) -> bool:
         for it in seen.by_node[end.node]
         if it.role == SUBSCRIBES and it.name in seen.published
     )
+
+
+def _begin_alike(one: str, other: str) -> bool:
+    """Is the last word of one the beginning of the other's: joy, joystick?"""
+    short, long = sorted((last_word(one), last_word(other)), key=len)
+    return long.startswith(short)
 
 
 def _words(seen: Index, name: str) -> set[str]:

@@ -223,7 +223,8 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
                 continue
             near = nearest(it.parent, sorted(children - {it.child}), MISTYPED)
             # Names that differ in their numbers alone are two things.
-            if near and not {*it.parent} ^ {*near} <= {*"0123456789"}:
+            slip = near and near not in it.parent and it.parent not in near
+            if slip and not {*it.parent} ^ {*near} <= {*"0123456789"}:
                 robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
                 yield tf_tree_in_pieces.finding(
                     f"{in_pieces(robot, tree.topic, sorted({it.parent, root_of(near, _above(tree))}))}:"
