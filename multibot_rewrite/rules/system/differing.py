@@ -202,7 +202,7 @@ def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterat
 
 def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
     """Of a robot that sends some: where it sends none, its robot_state_publisher is the finding."""
-    frames = {robot: {*it} for robot, it in _frames(seen).items() if robot in likes}
+    frames = {robot: it for robot, it in _frames(seen).items() if robot in likes}
     counts = Counter(it for own in frames.values() for it in own)
     for robot in likes if len(frames) == len(likes) else ():
         lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)
@@ -216,13 +216,14 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
             yield differs_from_its_likes.finding(
                 f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",
                 "has it another description, or an older one?",
-                robot=robot, names=tuple(lost),
+                robot=robot, names=tuple(frames[like][it] for it in lost if it in frames[like]),
             )  # fmt: skip
 
 
 @once
-def _frames(seen: Index) -> Mapping[str, Sequence[str]]:
-    found: dict[str, list[str]] = defaultdict(list)
+def _frames(seen: Index) -> Mapping[str, Mapping[str, str]]:
+    """By robot: its frames by their names without its own."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
     for robot, it in _edges_of(seen):
-        found[robot].append(seen.plain_frame(it.child))
+        found[robot][seen.plain_frame(it.child)] = it.child
     return found
