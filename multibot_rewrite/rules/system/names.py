@@ -305,11 +305,12 @@ def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]
 
 def _waits(seen: Index, end: End) -> bool:
     """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
-    every node serves are left out, and a view in which nodes are missing."""
+    every node serves are left out, and a view in which nodes are missing. What is known by code alone
+    is told by ``nothing_known_sends``."""
     doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
-    return not (doubt or theirs or usual) and _runs(end) and "/_" not in end.name
+    return not (doubt or theirs or usual or end.code_name) and "/_" not in end.name
 
 
 def _node_like(seen: Index, listed: str) -> str:
