@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import plural
@@ -118,8 +118,14 @@ def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Fin
 
 
 def _sum_up(options: argparse.Namespace, findings: Sequence[Finding], verdict: Verdict) -> int:
-    note(options, f"{counted_findings(findings)}: {WORDS[verdict]}")
+    note(options, f"{counted_findings(findings)}: {_words(findings)[verdict]}")
     return live.CODES[verdict]
+
+
+def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
+    """With a warning, not that there is nothing wrong."""
+    warned = any(it.level == WARNING for it in findings)
+    return {**WORDS, Verdict.PLANNED: "no error, see the warnings"} if warned else WORDS
 
 
 def _watch(options: argparse.Namespace) -> int:
@@ -131,7 +137,7 @@ def _watch(options: argparse.Namespace) -> int:
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
     _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
-    note(options, f"{counted_findings(last.findings)}: {in_words(last, WORDS)}")
+    note(options, f"{counted_findings(last.findings)}: {in_words(last, _words(last.findings))}")
     return live.CODES[final(last)]
 
 
