@@ -13,6 +13,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
+from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
@@ -120,7 +121,8 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
         yield from robot.findings
     yield from other_hardware(plan.robots)
     yield from named_twice(plan.robots)
-    yield from one_device_each(plan.robots)
+    met = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
+    yield from one_device_each(plan.robots, met)
     for found in plan.evidence.values():
         yield from found.findings
     yield from too_near(plan)

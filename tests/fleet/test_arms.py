@@ -226,7 +226,8 @@ IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: 
 @pytest.mark.parametrize(
     ("plugin", "addresses", "said"),
     [
-        (UR, ("10.0.0.1", "10.0.0.1"), ["robot_ip", "kinematics/hash", "reverse_port"]),
+        # That both have one robot_ip is said of the description.
+        (UR, ("10.0.0.1", "10.0.0.1"), ["kinematics/hash", "reverse_port"]),
         (FRANKA, ("10.0.0.1", "10.0.0.2"), ["kinematics/hash", "reverse_port"]),
         # No device is named, or none is there.
         (UR, ("0.0.0.0", "0.0.0.0"), []),

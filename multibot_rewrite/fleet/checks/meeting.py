@@ -11,6 +11,7 @@ from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.readback.meeting import (
     LOOKUP,
     NOT_TAKEN,
+    OPENED,
     Meeting,
     advice,
     code_of,
@@ -18,6 +19,8 @@ from multibot_rewrite.description.readback.meeting import (
     said,
 )
 from multibot_rewrite.description.readback.reading import NODE, RuntimeName
+from multibot_rewrite.description.sources.known_arguments import known_arguments
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.spelling.records import Table
 
@@ -72,9 +75,18 @@ def _finding(met: Meeting, member: Member | None) -> Finding:
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name), names=(name.name,))
     if name.tag and member:
+        found = found._replace(hint=_by_argument(name, member) or found.hint)
         line = line_of(member.source, name.tag, name.number)
         return found._replace(file=member.source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
+
+
+def _by_argument(name: RuntimeName, member: Member) -> str:
+    """What to do where an argument of the xacro is called as the parameter that has the value."""
+    word = name.path.rpartition("=")[2].rstrip("]")
+    if code_of(name) != OPENED or word not in known_arguments(map(read_file, member.read)).names:
+        return ""
+    return f"give each robot its own in the fleet file: arguments: {{{word}: ...}}"
 
 
 def _level(code: str) -> str:

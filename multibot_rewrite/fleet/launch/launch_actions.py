@@ -25,6 +25,7 @@ from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.conditions import UNSENT, said
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
@@ -33,7 +34,7 @@ from multibot_rewrite.knowledge.programs import (
     known_program,
     program_of,
 )
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
@@ -176,6 +177,8 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
     known = facts.kind
     if facts.usual and all(it.known != known for it in given.plan.evidence_of(robot).given):
         found.append(dict(facts.usual))
+    if known == MANAGER and (types := dict(_types(given, name))):
+        found.append(types)
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
@@ -193,6 +196,18 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
+    """The types of the controllers that no file of the robot declares: without one a controller is not
+    loaded (ros2_control controller_manager.cpp)."""
+    file, left = given.plan.file, dict(_left(given))
+    types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}
+    declared = {it.name for it in given.plan.evidence_of(given.robot).given if it.type}
+    for name, it in given.names.started.items():
+        mine = it.way == SPAWNER and it.manager == given.names.name(manager)
+        if mine and not {name} & {*left, *declared} and given.facts[name].kind in types:
+            yield f"{it.node.name}.type", types[given.facts[name].kind]
 
 
 def _called(given: _Given, node: str) -> str:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -16,9 +16,13 @@ from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Address, Place, Robot, System
 
 
-def one_device_each(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    """What two robots were both given, at the second one."""
-    addresses = tuple(address for it in robots for address in _addresses(it))
+def one_device_each(
+    robots: Sequence[RewrittenRobot], told: Collection[str] = ()
+) -> Iterator[Finding]:
+    """What two robots were both given, at the second one, but for values that are ``told`` already."""
+    addresses = tuple(
+        address for it in robots for address in _addresses(it) if address.value not in told
+    )
     fleet = System(robots=tuple(Robot(it.spec.namespace) for it in robots), addresses=addresses)
     for it in judge(index(fleet, whose_by_plan(fleet))):
         if it.code == one_device.code:

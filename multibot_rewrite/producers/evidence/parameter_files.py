@@ -62,16 +62,19 @@ def _name(path: str) -> str:
 
 
 def given_nodes(
-    documents: Iterable[YamlText], known: KnownNodes, only: Collection[str] = ()
+    documents: Iterable[YamlText],
+    known: KnownNodes,
+    only: Collection[str] = (),
+    managers: Collection[str] = (),
 ) -> list[GivenNode]:
     """The nodes that these files have sections for, and the controllers that they declare; ``only``
-    some of them, by name.
+    some of them, by name. ``managers`` are controller managers that are not called as usual.
 
     Raises InputError for a file that is not a parameter file, and for a controller whose name no node
     can have.
     """
     sections = [it for document in documents for it in _sections(document)]
-    controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
+    controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections, managers))}
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
     # A node of Nav2 makes helpers that have its parameters, and none of its topics and actions.
@@ -142,14 +145,21 @@ class _Controller(NamedTuple):
     manager: str
 
 
-def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controller]]:
+def _controllers(
+    sections: Sequence[_Section], managers: Collection[str]
+) -> Iterator[tuple[str, _Controller]]:
     """Controller -> its type, below the name of the manager's namespace."""
     for section in sections:
         above, _, last = section.name.rpartition("/")
         # A renamed one is called controller_manager_robot1, for example.
-        if MANAGER not in last:
+        if MANAGER not in last and section.name not in managers:
             continue
-        for name, given in section.values.items():
+        # What is for every node is for the manager, too.
+        own = [
+            it for it in sections if not it.name and re.fullmatch(it.pattern, f"/{section.name}")
+        ]
+        every = (*own, section)
+        for name, given in (pair for it in every for pair in it.values.items()):
             if name.endswith(TYPE):
                 controller = name.removesuffix(TYPE)
                 full = f"{above}/{controller}" if above else controller

@@ -44,6 +44,7 @@ from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
+    ParameterText,
     Rules,
     RunningNode,
 )
@@ -53,6 +54,8 @@ from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 DESCRIPTION = "robot_description"
+# What a controller is whose type no file says.
+UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
 _CLASSIC = ("gazebo_ros", "gzserver")
@@ -223,8 +226,10 @@ def _controllers(
         if name not in managers:
             continue
         manager = managers[name]
-        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
-        given = given_nodes(documents, known.parameters)
+        # What a launch file sets itself is for /**: with a section of its own the manager has it.
+        of_all = ParameterText("", f"{name}:\n  ros__parameters: {{}}\n")
+        documents = [document_of(it.file, it.text) for it in (of_all, *texts) if has_sections(it)]
+        given = given_nodes(documents, known.parameters, managers=(name.strip("/"),))
         active = (it for it in spawned if it.manager == name and not it.inactive)
         # A spawner skips what is loaded already (spawner.py).
         for it in {it.name: it for it in active}.values():
@@ -240,7 +245,7 @@ def _controllers(
                 mine.values,
                 manager.process,
                 (),
-                mine.type or "a controller",
+                mine.type or UNTYPED,
                 it.place,
             )
 

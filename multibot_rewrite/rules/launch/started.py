@@ -16,11 +16,13 @@ from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
+from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED
 from multibot_rewrite.rules.launch.declaration import (
     FIRST,
     LAUNCH,
@@ -110,7 +112,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
     """An error where all nodes are known, or a manager of another namespace is there."""
-    there = [it.full_name for it in launched.nodes if _is(it, "controller_manager")]
+    there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
         if manager in there:
             continue
@@ -174,6 +176,32 @@ def no_description(launched: Launched) -> Iterator[Finding]:
             hint = f"did you mean {near}?" if near else "name the topic that has it"
             message = f"waits for a description on {topic}, where nothing sends one"
             yield at(no_description, it.place, message, hint, names=(topic,))
+
+
+@launch_rule(
+    "MG728",
+    "controller-without-type",
+    what="A spawner loads a controller whose type no parameter of its controller manager says.",
+    why="The manager refuses it: the 'type' param was not defined. The controller does not come up.",
+    fix="Write `NAME: {type: ...}` into the parameters of the controller manager, or `type` into the "
+    "controller's own section of a file that the spawner gets by `--param-file`.",
+    bad=launch_of(_MANAGER, _SPAWNER),
+    good=launch_of(_WITH_TYPE, _SPAWNER),
+    line=1,
+)
+def no_type(launched: Launched) -> Iterator[Finding]:
+    """Where all parameter files are known; the file of a manager in a plugin is not read here."""
+    if any(it.parameters for it in launched.graph.notes):
+        return
+    managers = {
+        it.full_name for it in launched.nodes if _is(it, MANAGER) and it.process != SIMULATED
+    }
+    spawned = {(it.full_name, it.place): it.manager for it in launched.spawned}
+    for it in launched.nodes:
+        manager = spawned.get((it.full_name, it.place), "")
+        if it.program == UNTYPED and manager in managers:
+            message = f"no parameter of {manager} says the type of {it.name}"
+            yield at(no_type, it.place, message, f"add {it.name}: {{type: ...}} to its parameters")
 
 
 @launch_rule(
