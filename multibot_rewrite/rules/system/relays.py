@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from itertools import combinations
 
 from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
@@ -162,7 +161,7 @@ running: /ekf publishes /odometry/filtered nav_msgs/msg/Odometry
 )
 def data_in_a_circle(seen: Index) -> Iterator[Finding]:
     """A bridge reads and sends each of its topics, as it is made. Joints come from several."""
-    passed: dict[str, tuple[Ends, Ends]] = {}
+    passed: dict[tuple[str, str], tuple[str, Ends]] = {}
     for node, (read, sent) in _passing(seen).items():
         both = [it for it in read if it in sent]
         for ends in both:
@@ -172,15 +171,15 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
                 robot=seen.robot(node), node=node, names=(ends.name,),
             )  # fmt: skip
         if len(read) == len(sent) == 1 and not both:
-            passed[node] = read[0], sent[0]
-    for (one, (source, given)), (other, (read_, back)) in combinations(passed.items(), 2):
-        if (given.name, back.name) == (read_.name, source.name):
-            # Who sends where others send as well closes the circle.
-            node, name = (other, back.name) if len(back.publishers) > 1 else (one, given.name)
+            passed[read[0].name, sent[0].name] = node, sent[0]
+    for (source, given), (node, sent_) in passed.items():
+        other, back = passed.get((given, source), ("", sent_))
+        # Of the two it is the one that sends where others send as well.
+        if other and (len(sent_.publishers), given) > (len(back.publishers), source):
             yield data_in_a_circle.finding(
-                f"sends {name} of what {one if node == other else other} makes of {name}",
+                f"sends {given} of what {other} makes of {given}",
                 "one of the two has to send on another topic",
-                robot=seen.robot(node), node=node, names=(name,),
+                robot=seen.robot(node), node=node, names=(given,),
             )  # fmt: skip
 
 
