@@ -11,8 +11,9 @@ from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
+from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
+from multibot_rewrite.rules.system.slips import alike
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
