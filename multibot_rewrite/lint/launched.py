@@ -103,7 +103,9 @@ def _values(launched: Launched) -> Iterator[Finding]:
         for text in (one.text for one in it.parameters if not one.file and running):
             if running and text.startswith(_FOR_ALL) and not _TEXT.search(text):
                 own = text.replace(_FOR_ALL, f"{running.full_name}:", 1)
-                for one in lint_data("launch.yaml", own.encode(), settings):
+                # Descriptions of the package of the launch file are beside it.
+                beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
+                for one in lint_data(beside, own.encode(), settings):
                     yield one._replace(file=it.place.file, line=it.place.line, column=1)
 
 

@@ -16,7 +16,7 @@ DEEPEST = 4
 MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
-_MANIFEST = "package.xml"
+MANIFEST = "package.xml"
 _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and similar folders: there are no sources of meshes below them.
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
@@ -41,8 +41,8 @@ def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if known or own is None or ".git" in entries(own[1]):
         return known[0] if known else ""
-    beside = _below((os.path.dirname(own[1]),)).get(name, ())
-    return next((it for it in beside if _MANIFEST in entries(it)), "")
+    beside = packages_below((os.path.dirname(own[1]),)).get(name, ())
+    return next((it for it in beside if MANIFEST in entries(it)), "")
 
 
 @outside
@@ -68,8 +68,8 @@ def _candidates(
     own = _own_package(here)
     found = [own[1]] if own is not None and own[0] == name else []
     shares = (os.path.join(prefix, "share", name) for prefix in prefixes)
-    found += _below(roots).get(name, ())
-    return (*found, *(it for it in shares if _MANIFEST in entries(it)))
+    found += packages_below(roots).get(name, ())
+    return (*found, *(it for it in shares if MANIFEST in entries(it)))
 
 
 def _split(paths: str) -> tuple[str, ...]:
@@ -81,19 +81,33 @@ def _own_package(folder: str) -> tuple[str, str] | None:
     """Name and folder of the package that a folder is in."""
     for _ in range(HIGHEST):
         # Asked for alone: folders above may be those of all users, or for temporary files.
-        if os.path.isfile(os.path.join(folder, _MANIFEST)):
+        if os.path.isfile(os.path.join(folder, MANIFEST)):
             return _package_name(folder), folder
         folder = os.path.dirname(folder)
     return None
 
 
+@outside
+def sources_around(file: str) -> str:
+    """The folder with the packages beside that of a file: its repository, or what the package is in;
+    empty for a file in no package."""
+    own = package_of(file)
+    above = [own[1]] if own else []
+    for _ in range(HIGHEST if own else 0):
+        if ".git" in entries(above[-1]):
+            return above[-1]
+        above.append(os.path.dirname(above[-1]))
+    return above[1] if own else ""
+
+
 @lru_cache(maxsize=8)
-def _below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
-    """Packages below some folders by name; a folder of that name counts where no manifest has it."""
+def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
+    """Packages below some folders by name, each with its folders; a folder of that name counts where no
+    manifest has it."""
     named: dict[str, tuple[str, ...]] = {}
     called: dict[str, tuple[str, ...]] = {}
     for folder in _folders(roots):
-        if _MANIFEST in entries(folder):
+        if MANIFEST in entries(folder):
             name = _package_name(folder)
             named[name] = (*named.get(name, ()), folder)
         else:
@@ -110,7 +124,7 @@ def _folders(roots: tuple[str, ...]) -> Iterator[str]:
             return
         folder, depth = waiting.popleft()
         yield folder
-        if depth < DEEPEST and _MANIFEST not in entries(folder):
+        if depth < DEEPEST and MANIFEST not in entries(folder):
             waiting += ((it, depth + 1) for it in _subfolders(folder))
 
 
@@ -140,7 +154,7 @@ def entries(folder: str) -> frozenset[str]:
 def _manifest(folder: str, most: int) -> bytes:
     """The start of a package.xml; empty where it cannot be read."""
     try:
-        with open(os.path.join(folder, _MANIFEST), "rb") as file:
+        with open(os.path.join(folder, MANIFEST), "rb") as file:
             return file.read(most)
     except OSError:
         return b""

@@ -78,8 +78,8 @@ def given_nodes(
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
     # A node of Nav2 makes helpers that have its parameters, and none of its topics and actions.
-    own = (it.name for it in sections if it.name and not it.name.endswith(INNER))
-    names = dict.fromkeys((*own, *controllers))
+    own = (it.name for it in sections if it.name in only or not it.name.endswith(INNER))
+    names = dict.fromkeys(filter(None, (*own, *controllers)))
     wanted = (it for it in names if it in only) if only else names
     return [_node(name, sections, controllers.get(name), known) for name in wanted]
 

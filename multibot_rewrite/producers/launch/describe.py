@@ -25,6 +25,7 @@ from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
@@ -46,7 +47,10 @@ _OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
 _WORLDS = ("gz_args", "ign_args", "world")
 # ament_index_python and Python say it so.
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
-_NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
+# In the share folder of a package that is stood in for (source_packages.py).
+_NOT_FOUND = re.compile(
+    rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
+)
 
 
 class Visit(NamedTuple):
@@ -72,11 +76,27 @@ class Visit(NamedTuple):
 
 def failure(error: BaseException) -> str:
     """What went wrong, in one line; for a package that is missing what to do."""
-    found = _NOT_FOUND.search(str(error))
-    if found:
-        name = found[1] or found[2]
-        return f"package {name!r} is not installed here; {ROOTS}"
+    name = missing_package(error) or missing_module(error)
+    if name:
+        return not_installed(name)
     return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def not_installed(name: str) -> str:
+    """What is said of a package that is missing."""
+    return f"package {name!r} is not installed here; {ROOTS}"
+
+
+def missing_package(error: BaseException) -> str:
+    """The package of ROS that was not found; empty for another fault."""
+    found = _NOT_FOUND.search(str(error))
+    return (found[1] or found[2] or "") if found else ""
+
+
+def missing_module(error: BaseException) -> str:
+    """The Python package that was not found; empty for another fault."""
+    found = _NOT_FOUND.search(str(error))
+    return (found[3] or "") if found else ""
 
 
 def is_certain(error: BaseException, here: Visit) -> bool:
@@ -95,11 +115,11 @@ def is_certain(error: BaseException, here: Visit) -> bool:
 def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
     """The simulator of a package that is missing here: that it starts one is known without it, and with
     which words."""
-    found = _NOT_FOUND.search(str(error))
-    if found is None or found[1] not in _GAZEBO.values():
+    package = missing_package(error)
+    if package not in _GAZEBO.values():
         return None
     words = tuple(_simulator_words(include, here.context))
-    return LaunchedNode(found[1], SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
+    return LaunchedNode(package, SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
 
 
 def _simulator_words(include: Any, context: Any) -> Iterator[str]:

@@ -6,16 +6,22 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
-from multibot_rewrite.producers.launch.describe import Visit, failure
+from multibot_rewrite.producers.launch.describe import (
+    Visit,
+    failure,
+    missing_package,
+    not_installed,
+)
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
-from multibot_rewrite.producers.launch.source_packages import add_sources
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import add_empty, add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.visit import visit_all
 from multibot_rewrite.system.records import Place
@@ -30,7 +36,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
 
     Raises ImportError without launch, UnreadableError for a file that cannot be read.
     """
-    add_sources(order.roots, folder)
+    add_sources(order.file, order.roots, folder)
     # What the parsers of the launch files in XML and YAML need.
     of_launch_ros("actions")
     keep_places()
@@ -39,12 +45,24 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     reads = keep_reads()
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
-    try:
-        description = _included(order)
-    except (Exception, SystemExit) as error:
-        raise UnreadableError(failure(error)) from error
-    graph = _visited(description, order)
-    return graph._replace(files=(*graph.files, *descriptions_in(reads)))
+    missing: list[str] = []
+    while True:
+        try:
+            graph = _visited(_included(order), order)
+            break
+        except (Exception, SystemExit) as error:
+            name = missing_package(error)
+            if not name or name in missing:
+                raise UnreadableError(failure(error)) from error
+            add_empty(name, folder)
+            missing.append(name)
+    files = (*graph.files, *descriptions_in(reads))
+    return graph._replace(notes=(*graph.notes, *_not_there(order, missing)), files=files)
+
+
+def _not_there(order: LaunchOrder, missing: Iterable[str]) -> Iterator[LaunchNote]:
+    for name in missing:
+        yield LaunchNote(Place(os.path.abspath(order.file), 1), not_installed(name))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packages that are there as sources, for launch files that look for them.
+"""Packages that are not installed, for launch files that look for them: those that are there as
+sources, and an empty folder for others.
 
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of
 AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``).
@@ -11,52 +12,56 @@ import os
 import sys
 from collections.abc import Iterable, Iterator
 
-_MANIFEST, _INDEX = (
-    "package.xml",
-    os.path.join("share", "ament_index", "resource_index", "packages"),
+from multibot_rewrite.description.sources.packages import (
+    MANIFEST,
+    package_of,
+    packages_below,
+    sources_around,
 )
+
+_INDEX = os.path.join("share", "ament_index", "resource_index", "packages")
 _PATH = "AMENT_PREFIX_PATH"
-_DEPTH = 6
+# The prefix of packages that have an empty folder here.
+NOT_INSTALLED = "not_installed"
 
 
-def add_sources(roots: Iterable[str], folder: str) -> None:
-    """Make the packages below ``roots`` known; ``folder`` gets links to them.
-
-    What is installed is found first.
+def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
+    """Make the packages below ``roots`` known, and those beside the one of the launch ``file``;
+    ``folder`` gets links to them. What is installed is found first, then what is below the roots.
     """
-    prefix = os.path.join(folder, "sources")
-    os.makedirs(os.path.join(prefix, _INDEX))
-    for name, path in dict(_packages(roots)).items():
-        with open(os.path.join(prefix, _INDEX, name), "wb"):
-            pass
-        os.symlink(path, os.path.join(prefix, "share", name))
+    for name, path in dict(_packages(file, roots)).items():
+        os.symlink(path, _shared(name, os.path.join(folder, "sources")))
         if os.path.isfile(os.path.join(path, name, "__init__.py")):
             sys.path.append(path)
-    os.environ[_PATH] = os.pathsep.join(filter(None, (os.environ.get(_PATH, ""), prefix)))
+    _search(os.path.join(folder, "sources"))
 
 
-def _packages(roots: Iterable[str]) -> Iterator[tuple[str, str]]:
+def add_empty(name: str, folder: str) -> None:
+    """Make a package known that is nowhere: its share folder is empty, and has NOT_INSTALLED in its
+    path."""
+    prefix = os.path.join(folder, NOT_INSTALLED)
+    os.makedirs(_shared(name, prefix))
+    _search(prefix)
+
+
+def _search(prefix: str) -> None:
+    paths = os.environ.get(_PATH, "").split(os.pathsep)
+    os.environ[_PATH] = os.pathsep.join(dict.fromkeys(filter(None, (*paths, prefix))))
+
+
+def _shared(name: str, prefix: str) -> str:
+    os.makedirs(os.path.join(prefix, _INDEX), exist_ok=True)
+    with open(os.path.join(prefix, _INDEX, name), "wb"):
+        pass
+    return os.path.join(prefix, "share", name)
+
+
+def _packages(file: str, roots: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Name and folder of every package; the first of a name comes last."""
-    found = [it for root in roots for it in _below(os.path.abspath(root), 0)]
-    yield from reversed(found)
-
-
-def _below(folder: str, depth: int) -> Iterator[tuple[str, str]]:
-    names = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
-    if _MANIFEST in names:
-        name = _name(os.path.join(folder, _MANIFEST))
-        yield from [(name, folder)] if name else []
-        return
-    for name in names if depth < _DEPTH else []:
-        path = os.path.join(folder, name)
-        if not name.startswith(".") and not os.path.islink(path):
-            yield from _below(path, depth + 1)
-
-
-def _name(path: str) -> str:
-    import xml.etree.ElementTree as ET  # the stand-in, with which a build is read back, has no packages
-
-    try:
-        return (ET.parse(path).findtext("name") or "").strip()
-    except (ET.ParseError, OSError):
-        return ""
+    own, around = package_of(file), sources_around(file)
+    below = packages_below((*roots, *([around] if around else ())))
+    for name, folders in below.items():
+        path = os.path.abspath(folders[0])
+        if os.path.isfile(os.path.join(path, MANIFEST)):
+            yield name, path
+    yield from [own] if own else []

@@ -225,6 +225,8 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
         facts = it.facts
         if (it.full_name, it.place) not in spawned or facts is None or not facts.claims:
             continue
+        if it.program == UNTYPED:
+            continue
         given = GivenNode(it.name, facts.known, it.program, it.values, it.place)
         commands = [claim for claim in facts.claims if claim.kind == COMMAND]
         by_joint = commands and all(claim.template.startswith("<") for claim in commands)
