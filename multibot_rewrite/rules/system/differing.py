@@ -207,11 +207,10 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
     for robot in likes if len(frames) == len(likes) else ():
         lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)
         lost = [it for it in lost if it not in frames[robot]]
-        # Two robots of which each has parts of its own are made for two things.
-        more = any(counts[it] == 1 for it in frames[robot])
         # Under other names all are lost, which is another finding.
         few = len(lost) < len(frames[robot])
-        if lost and few and (len(likes) > _TWO or not more):
+        # Of two robots one may have a part more.
+        if lost and few and len(likes) > _TWO:
             like = next(it for it in likes if it != robot)
             yield differs_from_its_likes.finding(
                 f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",

@@ -259,7 +259,8 @@ def _waits(seen: Index, end: End) -> bool:
     doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
-    return not (doubt or theirs or usual or end.code_name) and "/_" not in end.name
+    # Beside other robots it may be one that is not started yet.
+    return not (doubt or theirs or usual or end.code_name or seen.robots) and "/_" not in end.name
 
 
 def _node_like(seen: Index, listed: str) -> str:

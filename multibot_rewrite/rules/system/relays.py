@@ -164,7 +164,8 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
     passed: dict[tuple[str, str], tuple[str, Ends]] = {}
     for node, (read, sent) in _passing(seen).items():
         both = [it for it in read if it in sent]
-        for ends in both:
+        # With several it is a bridge, whatever it is called.
+        for ends in both if len(both) == 1 else ():
             yield data_in_a_circle.finding(
                 f"reads {ends.name}, on which it sends",
                 "let it read, or send, on another topic",
