@@ -260,7 +260,8 @@ def _waits(seen: Index, end: End) -> bool:
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet.
-    return not (doubt or theirs or usual or end.code_name or seen.robots) and "/_" not in end.name
+    others = len(seen.robots) > 1
+    return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
 
 
 def _node_like(seen: Index, listed: str) -> str:
