@@ -28,7 +28,7 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final
+from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, doubts
@@ -165,12 +165,16 @@ def plan_name(options: argparse.Namespace) -> str:
     return str(given.get("plan") or given["input"])
 
 
-def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Finding]) -> Outcome:
+def _outcome(
+    options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Finding], words: str = ""
+) -> Outcome:
     """A graph may be as planned, and the plan have faults."""
     is_open = any(it.level != NOTE for it in gaps)
     word = "but" if verdict == Verdict.PLANNED else "and"
     but = f", {word} the plan has faults" if is_open else ""
-    return Outcome(verdict, f"{WORDS[verdict]}{but}", f"{options.program} {options.command}")
+    return Outcome(
+        verdict, f"{words or WORDS[verdict]}{but}", f"{options.program} {options.command}"
+    )
 
 
 def _sum_up(
@@ -193,7 +197,7 @@ def _watch(options: argparse.Namespace, plan: System) -> int:
     if options.output:
         report_first(options, findings, About([options.plan], robot_words(plan), plan.release))
     verdict = final(last)
-    outcome = _outcome(options, verdict, gaps)
+    outcome = _outcome(options, verdict, gaps, in_words(last))
     pictures.deliver(options, plan, last.graph, findings, outcome)
     _sum_up(options, plan, findings, outcome)
     return STOPPED if any(it.level == ERROR for it in gaps) else live.CODES[verdict]

@@ -13,20 +13,23 @@ from multibot_rewrite.cli import check_launch, fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
-from multibot_rewrite.cli.usage import given_options
+from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.live.seen_plan import seen_plan
+from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan_file import to_json, to_yaml
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
+from multibot_rewrite.system.ownership import without_name
 from multibot_rewrite.system.records import System
 
 PLAN, POLICY = "plan", "sros2"
+# How a plan calls a robot without a name; its frames are those of its description.
+ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
 NOT_OF_LAUNCH = {
     **{it: f"--{it}" for it in ("robots", "stack", "launch", "layout", "affix", "topics")},
@@ -43,15 +46,25 @@ def run(options: argparse.Namespace) -> int:
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
         return _of_launch(options)
     fleet.check_use(options, printed=not goes_to_file(options))
+    alone = _is_alone(options)
+    if alone:
+        options.words, options.layout = [ALONE], LAYOUT_ALONE
     made = fleet.build(options)
     failed = fleet.report_table(options, made)
     if options.form == PLAN:
-        _write(options, expected(made))
+        plan = expected(made)
+        _write(options, without_name(plan) if alone else plan)
     elif options.form == POLICY:
         deliver(options, to_policy(expected(made), possible(made)).encode())
     else:
         deliver_rules(options, made)
     return STOPPED if failed else DONE
+
+
+def _is_alone(options: argparse.Namespace) -> bool:
+    """Is it the plan of a robot that is called nothing? A layout, or rules, are for one with a name."""
+    unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
+    return unnamed and options.form == PLAN and not given_options(options, {"layout": "--layout"})
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
@@ -71,10 +84,8 @@ def _of_launch(options: argparse.Namespace) -> int:
         check_folder(options.output)
     made = check_launch.launched_by(options, orders).system
     seen = diagnose(made)
-    if not seen.robots:
-        raise UsageError(
-            f"{orders[0].file}: no name of a robot is in what it starts, so there is no plan"
-        )
+    if not made.nodes:
+        raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")
     for caveat in doubts(made):
         say(f"incomplete: {caveat.message}", PROGRAM)
     _write(options, seen_plan(seen)._replace(release=release_here(options.distro)))

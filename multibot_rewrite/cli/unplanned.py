@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
@@ -23,15 +24,16 @@ from multibot_rewrite.cli.report import (
     report_first,
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.cli.watch import follow
+from multibot_rewrite.cli.watch import Look, follow
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.suggestion import FILES, suggestion
-from multibot_rewrite.live.watching import Outcome, Verdict, final
+from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.check import doubts
+from multibot_rewrite.rules.pair.nodes import missing_robot
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tool_nodes import is_tool
 
@@ -116,12 +118,18 @@ def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Fin
 
 
 def _sum_up(options: argparse.Namespace, findings: Sequence[Finding], verdict: Verdict) -> int:
-    note(options, f"{counted_findings(findings)}: {WORDS[verdict]}")
+    note(options, f"{counted_findings(findings)}: {_words(findings)[verdict]}")
     return live.CODES[verdict]
 
 
+def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
+    """With a warning, not that there is nothing wrong."""
+    warned = any(it.level == WARNING for it in findings)
+    return {**WORDS, Verdict.PLANNED: "no error, see the warnings"} if warned else WORDS
+
+
 def _watch(options: argparse.Namespace) -> int:
-    last = follow(_look, live.watched(options), WORDS)
+    last = follow(_looking(), live.watched(options), WORDS)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
@@ -129,9 +137,26 @@ def _watch(options: argparse.Namespace) -> int:
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
     _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
-    return _sum_up(options, last.findings, final(last))
+    note(options, f"{counted_findings(last.findings)}: {in_words(last, _words(last.findings))}")
+    return live.CODES[final(last)]
 
 
-def _look(graph: System) -> tuple[System, Sequence[Finding]]:
-    seen = diagnose(graph)
-    return seen_plan(seen), seen.findings
+def _looking() -> Look:
+    """What is found in one graph after another; a robot that ran is missed when it is gone."""
+    known: dict[str, set[str]] = {}
+
+    def look(graph: System) -> tuple[System, Sequence[Finding]]:
+        seen = diagnose(graph)
+        there = {it.name for it in graph.nodes if not is_tool(it.name)}
+        for node in there:
+            if robot := seen.whose.robot(node):
+                known.setdefault(robot, set()).add(node)
+        gone = (_gone(*it) for it in known.items() if there.isdisjoint(it[1]))
+        return seen_plan(seen), (*seen.findings, *gone)
+
+    return look
+
+
+def _gone(robot: str, nodes: Collection[str]) -> Finding:
+    message = f"{robot} is gone: none of its {plural(len(nodes), 'node')} runs any more"
+    return missing_robot.finding(message, "is it off, or out of the network?", robot=robot)

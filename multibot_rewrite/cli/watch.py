@@ -9,10 +9,11 @@ from contextlib import ExitStack, closing, contextmanager
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
+from multibot_rewrite.rules.pair.nodes import missing_robot
 from multibot_rewrite.system.records import CHANGING, System
 
 # As many findings as a screen holds beside the robots.
@@ -99,7 +100,9 @@ def _headline(words: Mapping[Verdict, str], state: WatchState) -> str:
     moving = state.graph.environment.settled == CHANGING
     said = "still changing" if moving else words[state.verdict]
     found = plural(len(state.findings), "finding")
-    return f"{nodes} nodes, {names} names, {found}: {said}"
+    gone = [it.robot for it in state.findings if it.code == missing_robot.code]
+    without = f", without {shorten(gone)}" if gone else ""
+    return f"{nodes} nodes, {names} names{without}, {found}: {said}"
 
 
 def _sum(pairs: Iterator[tuple[int, int]]) -> tuple[int, int]:

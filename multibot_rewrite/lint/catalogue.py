@@ -100,6 +100,7 @@ HOMES: tuple[Home, ...] = (
             "rules.system.sharing",
             "rules.system.equal_robots",
             "rules.system.likes",
+            "rules.system.differing",
             "rules.system.unsent",
         ),
     ),

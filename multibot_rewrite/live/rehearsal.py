@@ -147,11 +147,19 @@ def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint
 
 
 def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
-    """The stub nodes by process: one process for each robot, but no more than PROCESSES."""
+    """The stub nodes by process: one process for each robot, but no more than PROCESSES.
+
+    A participant of DDS refuses a topic under a second type: who has it so is in another process.
+    """
     processes: dict[int, list[StubNode]] = {}
     process_of: dict[str, int] = {}
+    types: dict[tuple[int, str, str], str] = {}
     for robot, node in nodes:
         process = process_of.setdefault(robot, len(process_of) % PROCESSES)
+        own = {it.name: it.type for it in node.endpoints if it.kind == TOPIC}
+        while any(types.get((process, robot, it), own[it]) != own[it] for it in own):
+            process += PROCESSES
+        types |= {(process, robot, name): type_ for name, type_ in own.items()}
         processes.setdefault(process, []).append(node)
     return list(processes.values())
 

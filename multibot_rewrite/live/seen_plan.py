@@ -26,7 +26,8 @@ def seen_plan(seen: Diagnosis) -> System:
     robots = {_mine(it): it for it in robots_to_plan(seen)}
     whose = {node: seen.whose.robot(node) for node in nodes}
     topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
-    bare = (it for it in topics if not seen.whose.robot(it) and "/_" not in it)
+    # All is of the robot that has no name.
+    bare = (it for it in topics if "" not in robots and not seen.whose.robot(it) and "/_" not in it)
     return System(
         tuple(
             Node(it, robot=robots[whose[it]].name if whose[it] in robots else "") for it in nodes

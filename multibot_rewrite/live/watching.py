@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from enum import IntEnum
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
@@ -122,6 +122,14 @@ def _to_remember(found: Iterable[Finding], graph: System, complete: bool) -> Ver
 def final(state: WatchState) -> Verdict:
     """The worst verdict; what is still missing at the end counts as well."""
     return max(state.worst, state.verdict)
+
+
+def in_words(state: WatchState, words: Mapping[Verdict, str] = WORDS) -> str:
+    """The verdict at the end in a command's words, and that of before where it was worse."""
+    worst = final(state)
+    if worst == state.verdict:
+        return words[worst]
+    return f"{words[state.verdict]} now, but before: {words[worst]}"
 
 
 def progress(plan: System, graph: System) -> list[Progress]:

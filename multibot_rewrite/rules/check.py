@@ -34,6 +34,7 @@ from multibot_rewrite.rules.system import (
     addresses,
     clocks,
     commands,
+    differing,
     equal_robots,
     frame_ids,
     interfaces,
@@ -70,6 +71,7 @@ _SYSTEM = (
         states,
         equal_robots,
         likes,
+        differing,
         unsent,
         interfaces,
         addresses,
@@ -107,7 +109,7 @@ def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
         found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
-        return likes.unexplained(found)
+        return differing.unexplained(found)
 
 
 def contradictions(seen: Index) -> list[Finding]:
@@ -148,12 +150,14 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
     said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    told = {name for it in found for name in it.names}
     for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
         options = RULES[it.code].options
         abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
         by_plan = any((it.code, about) in said for about in abouts)
         absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
-        if not (by_plan or absent or _is_meant(plan, seen, it)):
+        compared = it.code in differing.COMPARED and not told.isdisjoint(it.names)
+        if not (by_plan or absent or compared or _is_meant(plan, seen, it)):
             yield it
 
 

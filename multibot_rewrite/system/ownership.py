@@ -120,7 +120,9 @@ def whose_by_plan(plan: System) -> Whose:
     """Whose names are by a plan; what it has for all robots is nobody's."""
     names, frames = name_ownership(plan), frame_ownership(plan)
     shared = {*(it.name for it in plan.nodes if not it.robot), *plan.shared_topics}
-    robot = cache(lambda name: "" if name in shared else names.robot(name))
+    # All that is not everybody's is of a robot alone whose name is in no name.
+    alone = plan.robots[0].name if is_alone(plan) else ""
+    robot = cache(lambda name: "" if name in shared else alone or names.robot(name))
     frame_robot = cache(frames.robot)
     return Whose(
         tuple(sorted(it.name for it in plan.robots)),
@@ -130,6 +132,55 @@ def whose_by_plan(plan: System) -> Whose:
         cache(lambda frame: frames.without_robot(frame, frame_robot(frame))),
         names,
         frames,
+    )
+
+
+def is_alone(plan: System) -> bool:
+    """Is it the plan of one robot, whose name is in no name of its nodes and ends?"""
+    if len(plan.robots) != 1:
+        return False
+    word = plan.robots[0].name
+    names = (*(it.name for it in plan.nodes), *(it.name for it in plan.ends))
+    return bool(plan.nodes) and not any(word in name for name in names)
+
+
+def without_name(plan: System) -> System:
+    """The plan of a robot as it is without its namespace: its nodes and names in the root."""
+    (robot,) = plan.robots
+    space = f"/{robot.name}"
+
+    def bare(name: str) -> str:
+        return (name.removeprefix(space) or "/") if f"{name}/".startswith(f"{space}/") else name
+
+    return plan._replace(
+        nodes=tuple(
+            it._replace(
+                name=bare(it.name),
+                taker=bare(it.taker),
+                sure=it.sure._replace(instead=tuple(map(bare, it.sure.instead))),
+            )
+            for it in plan.nodes
+        ),
+        ends=tuple(it._replace(name=bare(it.name), node=bare(it.node)) for it in plan.ends),
+        edges=tuple(
+            it._replace(topic=bare(it.topic), publishers=tuple(map(bare, it.publishers)))
+            for it in plan.edges
+        ),
+        robots=(robot._replace(tf_topic=bare(robot.tf_topic)),),
+        gaps=tuple(
+            it._replace(
+                message=it.message.replace(f"{space}/", "/"),
+                hint=it.hint.replace(f"{space}/", "/"),
+                node=bare(it.node),
+                names=tuple(map(bare, it.names)),
+            )
+            for it in plan.gaps
+        ),
+        parameters=tuple(it._replace(node=bare(it.node)) for it in plan.parameters),
+        topics=tuple(
+            it._replace(name=bare(it.name), senders=tuple(map(bare, it.senders)))
+            for it in plan.topics
+        ),
     )
 
 

@@ -12,7 +12,8 @@ from multibot_rewrite.system.records import SERVES, SERVICE, System
 GET_STATE = "lifecycle_msgs/srv/GetState"
 GET_PARAMETERS = "rcl_interfaces/srv/GetParameters"
 LIST_CONTROLLERS = "controller_manager_msgs/srv/ListControllers"
-ASKED = (GET_STATE, GET_PARAMETERS, LIST_CONTROLLERS)
+LIST_PARAMETERS = "rcl_interfaces/srv/ListParameters"
+ASKED = (GET_STATE, GET_PARAMETERS, LIST_PARAMETERS, LIST_CONTROLLERS)
 SIM_TIME = "use_sim_time"
 # How long all nodes together have for their answers.
 ANSWER_SECONDS = 5.0
@@ -33,7 +34,7 @@ def questions(
 ) -> Iterator[Question]:
     """Whom to ask for what; of two nodes with one name, one would answer for the other.
 
-    ``parameters`` are those that are wanted of a node besides ``use_sim_time``.
+    ``parameters`` are those that are wanted of a node besides ``use_sim_time``, whatever it lists.
     """
     times = Counter(node.name for node in graph.nodes)
     for end in graph.ends:

@@ -41,6 +41,8 @@ _KINDS = {
 _OF_ONE_SENSOR = (
     ODOMETRY, "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/Image",
     "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/NavSatFix",
+    "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/MagneticField", "sensor_msgs/msg/BatteryState",
+    "sensor_msgs/msg/Joy",
 )  # fmt: skip
 # No sensor's: a person's hand, a clock.
 _NO_SENSOR = ("sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference")
@@ -63,7 +65,8 @@ def _has(name: str, words: Iterable[str]) -> bool:
 
 def is_pose_order(plain: str, type_: str) -> bool:
     """Does the topic (without its robot's name) send a robot somewhere, or say where it is?"""
-    return type_ in _POSES and plain.strip("/").replace("_", "") in _POSE_NAMES
+    bare = plain.strip("/").replace("_", "")
+    return type_ in _POSES and (bare in _POSE_NAMES or bare.startswith("goalpos"))
 
 
 def is_start_pose(plain: str, type_: str) -> bool:

@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 import yaml
+from graph_cases import without_node
+from healthy_systems import single
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.system.json import to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 GZ = str(FIXTURES / "robots" / "rover_gz.urdf")
@@ -110,3 +113,31 @@ def test_nodes_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     code, out, err = run(capsys, *words)
     assert code == 0, err
     assert "/paint -> paint" in out
+
+
+@pytest.mark.more
+def test_a_robot_without_a_name_has_a_plan(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its names are those of the code; the graph of such a robot is as planned, a lost node is not."""
+    file = tmp_path / "plan.yaml"
+    words = ("--stack", "nav2", "--distro", "jazzy", "-o", str(file))
+    assert main(["plan", ROVER, *words]) == 0
+    own = yaml.safe_load(file.read_text())["robots"]["robot1"]
+    assert own["tf"] == "/tf" and "base_link" in own["frames"]
+    assert {"/amcl", "/bt_navigator", "/diff_drive"} <= own["nodes"].keys()
+    assert "/robot1" not in file.read_text().partition("\nrobots:")[2]
+    graph = single()
+    for lost, code in (("", 0), ("/amcl", 1)):
+        seen = tmp_path / "graph.json"
+        seen.write_bytes(to_json(without_node(graph, lost)))
+        capsys.readouterr()
+        assert main(["check", str(file), "--snapshot", str(seen)]) == code
+        out = capsys.readouterr().out
+        assert ("/amcl: error: MG101" in out) is bool(lost)
+        assert "MG320" not in out and "MG305" not in out
+
+
+def test_rules_are_of_a_robot_with_a_name(capsys: pytest.CaptureFixture[str]) -> None:
+    code, _, err = run(capsys, ROVER, "--stack", "nav2")
+    assert code == 2 and "no ROBOT given" in err

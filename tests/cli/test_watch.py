@@ -10,6 +10,8 @@ import pytest
 from small_fleet import clash, half, healthy, moving, plan
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.cli import live
+from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.live.watching import Verdict, WatchState, final
 from multibot_rewrite.rules.check import check
@@ -87,3 +89,21 @@ def test_as_many_as_a_screen_holds_are_all(monkeypatch: pytest.MonkeyPatch) -> N
     lines = shown(monkeypatch, [finding(NOTE, at) for at in range(15)])
     assert len([it for it in lines if "MG306" in it]) == 15
     assert not any("more" in it for it in lines)
+
+
+def test_a_robot_that_vanishes_is_named_and_the_last_line_agrees(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a watch without a plan: robot2 goes, and comes again."""
+    one = healthy()
+    kept = tuple(it for it in one.nodes if it.name.startswith("/robot1/"))
+    less = one._replace(
+        nodes=kept, ends=tuple(it for it in one.ends if it.node.startswith("/robot1/"))
+    )
+    for graphs, told in (((one, less), "error"), ((one, less, one), "now, but before")):
+        monkeypatch.setattr(live, "watched", lambda _, seen=graphs: views(*seen))
+        assert multibot(["check", "--watch"]) == 1
+        out, err = capsys.readouterr()
+        assert "robot2 is gone: none of its" in out and ", without robot2, " in out
+        assert told in (out if told == "error" else err)
+        assert "0 findings: something is wrong" not in err

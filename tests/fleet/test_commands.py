@@ -153,5 +153,8 @@ def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
     text += "robots: [{name: robot1}, {name: robot2}]\n"
     text += "companions: {params: mux.yaml}\n" if own else ""
     (tmp_path / "fleet.yaml").write_text(text)
-    launch = load_fleet(tmp_path / "fleet.yaml").text("fleet.launch.py")
+    made = load_fleet(tmp_path / "fleet.yaml")
+    launch = made.text("fleet.launch.py")
+    # Locks as well: a file with the node's section and without locks has none.
+    assert ("robot1/pause_navigation" in made.text("plan.yaml")) is not own
     assert ("'topics.joystick.topic': 'joy_vel'" in launch.replace('"', "'")) is not own

@@ -124,6 +124,16 @@ def test_a_manager_that_stands_in_for_controllers_has_their_rules(
     assert "/tf:=tf" in found["robot_state_publisher"].arguments
 
 
+def test_who_has_a_topic_with_a_second_type_is_in_another_process() -> None:
+    """A participant of Fast DDS refuses the second type."""
+    text, flag = (
+        StubNode(name, (), (), (StubEndpoint(TOPIC, PUBLISHES, "chat", type_, False),), ())
+        for name, type_ in (("talker", "std_msgs/msg/String"), ("listener", "std_msgs/msg/Bool"))
+    )
+    assert split_over_processes([("robot1", text), ("robot1", flag)]) == [[text], [flag]]
+    assert split_over_processes([("robot1", text), ("robot1", text)]) == [[text, text]]
+
+
 def test_robots_share_processes_when_they_are_many() -> None:
     some = [
         (f"robot{at}", StubNode(f"node{at}", (), (), (), ())) for at in range(3 * PROCESSES + 1)

@@ -19,7 +19,13 @@ from multibot_rewrite.producers.ros.observe import _ChangeTimes, _complete_view,
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.system.parameters import Answer
-from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, LIST_CONTROLLERS, Question
+from multibot_rewrite.system.questions import (
+    GET_PARAMETERS,
+    GET_STATE,
+    LIST_CONTROLLERS,
+    LIST_PARAMETERS,
+    Question,
+)
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Controller, End, Parameter, Qos
 
 STATE = Question("/a", "/a/get_state", GET_STATE)
@@ -124,6 +130,22 @@ def test_a_node_that_lacks_a_parameter_is_asked_for_halves() -> None:
         ["y"],
     ]
     assert node.made == ["/a/get_parameters"]
+
+
+def test_what_a_node_lists_is_asked_of_it_but_for_secrets() -> None:
+    names = [
+        "rate",
+        "qos_overrides./tf.publisher.depth",
+        "wifi_password",
+        "api.key",
+        "use_sim_time",
+    ]
+    node = Asker(
+        {**ANSWERS, "/a/list_parameters": SimpleNamespace(result=SimpleNamespace(names=names))}
+    )
+    (found,) = answers(node, Question("/a", "/a/list_parameters", LIST_PARAMETERS))
+    assert [it.name for it in found.parameters] == ["rate", "use_sim_time"]
+    assert node.asked[-1] == ("/a/get_parameters", ["rate", "use_sim_time"])
 
 
 @pytest.mark.parametrize(

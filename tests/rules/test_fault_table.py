@@ -13,7 +13,7 @@ from fault_changes import Fault
 from fault_sources import NODES, SOURCES, recording, written
 from graph_faults import FAULTS, MORE_NEEDS, NEEDS, needed
 from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
-from healthy_systems import SYSTEMS
+from healthy_systems import OF_EACH_RELEASE, SYSTEMS, plan, slam_with_filters, started
 from healthy_twins import TWINS, sent_twice_alike
 from paths import ROOT
 
@@ -21,7 +21,7 @@ from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
-from multibot_rewrite.rules.check import ABSENCE
+from multibot_rewrite.rules.check import ABSENCE, check
 from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import to_json
 
@@ -40,6 +40,25 @@ def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
 @pytest.mark.parametrize("name", TWINS)
 def test_what_looks_like_a_fault_and_is_none_has_no_finding(name: str) -> None:
     assert [str(it) for it in diagnose(SOURCES["file"].read(TWINS[name]())).findings] == []
+
+
+@pytest.mark.slow
+@pytest.mark.sample(6)
+@pytest.mark.parametrize("release", ["humble", "jazzy", "kilted", "lyrical", "rolling"])
+@pytest.mark.parametrize("what", OF_EACH_RELEASE, ids=lambda it: f"{it[0][0]}-{it[1]}")
+def test_what_stands_as_planned_has_no_finding_in_any_release(
+    what: tuple[tuple[str, ...], str, tuple[str, ...]], release: str
+) -> None:
+    graph = started(*what, release)
+    assert [str(it) for it in diagnose(graph).findings] == []
+    assert [str(it) for it in check(plan(*what, release), graph)] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("release", ["humble", "jazzy", "kilted", "lyrical", "rolling"])
+def test_slam_with_filters_has_no_finding_in_any_release(release: str) -> None:
+    graph = slam_with_filters(release)
+    assert [str(it) for it in diagnose(graph).findings] == []
 
 
 @pytest.mark.parametrize("name", ["parts of a robot", "arms on a base", "one robot"])

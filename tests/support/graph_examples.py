@@ -13,8 +13,8 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
-    transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
-                                                     and whether several of them send it
+    transform PARENT -> CHILD on TOPIC [at X Y Z] [by NODES] [twice]    a transform, who publishes
+                                                     there, and whether several of them send it
     frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
@@ -70,7 +70,9 @@ NODE = re.compile(
 )
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
-TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+?))?( twice)?")
+TRANSFORM = re.compile(
+    r"transform (\S+) -> (\S+) on (\S+)(?: at ([-\d. ]+))?(?: by (.+?))?( twice)?"
+)
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
 ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
 BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
@@ -264,6 +266,7 @@ def _qos(words: list[str]) -> Qos | None:
     return qos(**{POLICIES[word]: word.upper() for word in words}) if words else None
 
 
-def _transform(parent: str, child: str, topic: str, nodes: str, twice: str) -> Edge:
+def _transform(parent: str, child: str, topic: str, at: str, nodes: str, twice: str) -> Edge:
     publishers = tuple(nodes.split(", ")) if nodes else ()
-    return Edge(child, parent, topic, "tf_static" in topic, publishers, bool(twice))
+    place = (*map(float, at.split()), 0.0, 0.0, 0.0, 1.0) if at else ()
+    return Edge(child, parent, topic, "tf_static" in topic, publishers, bool(twice), place)

@@ -47,19 +47,29 @@ TWO = ("robot1", "robot2")
 
 
 @cache
-def plan(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
+def plan(
+    stacks: tuple[str, ...],
+    layout: str = "L1",
+    robots: tuple[str, ...] = TWO,
+    release: str = "jazzy",
+) -> System:
     """The plan of rovers with these stacks, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
-        given = ["--stack", ",".join(stacks), "--layout", layout, "--distro", "jazzy", "-o", file]
+        given = ["--stack", ",".join(stacks), "--layout", layout, "--distro", release, "-o", file]
         assert multibot.main(["plan", str(ROVER), *robots, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 
 
 @cache
-def started(stacks: tuple[str, ...], layout: str = "L1", robots: tuple[str, ...] = TWO) -> System:
+def started(
+    stacks: tuple[str, ...],
+    layout: str = "L1",
+    robots: tuple[str, ...] = TWO,
+    release: str = "jazzy",
+) -> System:
     """The graph of such a plan, each robot with its tree of frames."""
-    planned = plan(stacks, layout, robots)
+    planned = plan(stacks, layout, robots, release)
     graph = _with_types(as_planned(planned))
     edges = (edge for robot in planned.robots for edge in _edges(robot))
     return sent(graph._replace(edges=tuple(edges)))
@@ -178,11 +188,16 @@ def single() -> System:
     return respelled(graph, lambda name: name.replace("/robot1", "", 1) or "/")
 
 
-def slam_with_filters() -> System:
+SLAM_WITH_FILTERS = ("nav2_slam", "robot_localization_gps")
+
+
+def slam_with_filters(release: str = "jazzy") -> System:
     """SLAM and two filters a robot: the second's map to odom is switched off."""
-    graph = started(("nav2_slam", "robot_localization_gps"))
+    graph = started(SLAM_WITH_FILTERS, release=release)
     for robot in TWO:
-        graph = moved(graph, f"/{robot}/imu", f"/{robot}/imu/data", "/imu_driver")
+        # navsat_transform of Humble reads imu.
+        if release != "humble":
+            graph = moved(graph, f"/{robot}/imu", f"/{robot}/imu/data", "/imu_driver")
         fix = (PUBLISHES, f"/{robot}/gps/fix", "sensor_msgs/msg/NavSatFix")
         graph = with_node(graph, f"/{robot}/gps_driver", fix)
     return with_tools(graph, TWO)
@@ -295,3 +310,14 @@ SYSTEMS: Mapping[str, Callable[[], System]] = {
     "one map for all": one_map_for_all,
     "a follower and a convoy": follower,
 }
+# What stands in each release, with its plan: stacks, layout, robots.
+OF_EACH_RELEASE = (
+    (("nav2",), "L1", TWO),
+    (("nav2",), "L2", TWO),
+    (("nav2",), "L3", TWO),
+    (("nav2",), "L4", TWO),
+    (("navigation",), "L2", TWO),
+    (("nav2_slam",), "L1", TWO),
+    (("teleop",), "L1", TWO),
+    (("moveit", "ros2_control"), "L3", ("left_arm", "right_arm")),
+)

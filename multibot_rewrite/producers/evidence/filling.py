@@ -134,6 +134,9 @@ def _is_decided(
         return _are_listed(needed, values)
     if raw.condition or any(_set_names(raw.parameter, values)):
         return True
+    # Of a pattern all are there that a file has, and no others.
+    if "*" in raw.name and values:
+        return True
     return "<" in raw.name and all("<" in it.name for it in of_stack)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import threading
 import time
@@ -19,10 +20,13 @@ from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system.json import plain_value
 from multibot_rewrite.system.parameters import Answer, parameter_text
-from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, Question
+from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, LIST_PARAMETERS, Question
 from multibot_rewrite.system.records import Controller, Parameter
 
 POLL_SECONDS = 0.05
+# Of one node, and how long a text may be: a description is in the graph.
+MOST, LONGEST = 500, 2000
+_UNASKED = re.compile(r"^qos_overrides\.|passw|token|secret|credential|(^|[._])key($|[._])")
 # rcl_interfaces/msg/ParameterType -> the field of ParameterValue; bytes are left out.
 _FIELDS = {
     1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value",
@@ -78,8 +82,18 @@ def _ask(
             before = found.get(it.node, Answer(it.node))
             answer = sent.pop(it).result()
             found[it.node] = _with_answer(before, it, answer)
-            waiting += halves(it, answer)
+            more = listed(it, answer) if it.type == LIST_PARAMETERS else halves(it, answer)
+            waiting += [one for one in more if _client(node, one, clients)]
     return found
+
+
+def listed(asked: Question, answer: Any) -> list[Question]:
+    """The parameters of a node, to hold robots against each other; QoS is seen in the graph, and what
+    nobody is to know is not asked."""
+    names = sorted(it for it in map(str, answer.result.names) if not _UNASKED.search(it))
+    service = asked.service.removesuffix("list_parameters") + "get_parameters"
+    own = asked._replace(service=service, type=GET_PARAMETERS, parameters=tuple(names[:MOST]))
+    return [own] if names else []
 
 
 def halves(asked: Question, answer: Any) -> list[Question]:
@@ -103,6 +117,8 @@ def _request(asked: Question) -> Any:
     class_, _ = ros.message_class(asked.type)
     if asked.type == GET_PARAMETERS:
         return class_.Request(names=list(asked.parameters))
+    if asked.type == LIST_PARAMETERS:
+        return class_.Request(prefixes=[], depth=0)
     return class_.Request()
 
 
@@ -111,6 +127,8 @@ def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:
         return _with_parameters(state, asked, answer.values)
+    if asked.type == LIST_PARAMETERS:
+        return state
     own = (
         Controller(asked.node, str(it.name), str(it.state), tuple(map(str, it.claimed_interfaces)))
         for it in answer.controller
@@ -134,7 +152,8 @@ def _plain(value: Any) -> str | None:
     if field is None:
         return None
     found = getattr(value, field)
-    return parameter_text(list(found) if field.endswith("_array_value") else found)
+    text = parameter_text(list(found) if field.endswith("_array_value") else found)
+    return text if len(text) <= LONGEST else None
 
 
 if __name__ == "__main__":

@@ -79,7 +79,8 @@ def _why_missing(plan: Index, seen: Index, planned: End) -> Cause:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
         same = [it for it in _unplanned_names(plan, seen, planned) if _has_type(seen, planned, it)]
-        if same:
+        # Of text and numbers are many things.
+        if len(same) == 1 or (same and "std_" not in planned.type):
             return Cause(
                 f"it {DOES[planned.role]} {shorten(same)} of that type: is that meant?{state}"
             )
@@ -92,9 +93,9 @@ def _why_missing(plan: Index, seen: Index, planned: End) -> Cause:
 
 
 def _has_type(seen: Index, planned: End, name: str) -> bool:
-    """Is the name of the planned type? Of text and numbers are many things."""
+    """Is the name of the planned type?"""
     end = seen.by_key.get((planned.node, planned.kind, planned.role, name))
-    return bool(end and planned.type and end.type == planned.type and "std_" not in end.type)
+    return bool(end and planned.type and end.type == planned.type)
 
 
 def _why_remapped(plan: Index, seen: Index, planned: End, used: str) -> str:

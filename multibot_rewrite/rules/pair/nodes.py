@@ -13,7 +13,7 @@ from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_oth
 from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
-from multibot_rewrite.system.records import Robot
+from multibot_rewrite.system.records import SERVES, Robot
 
 
 @pair_rule(
@@ -45,12 +45,24 @@ def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
         for node in () if _is_absent(plan, seen, robot) else _missing(plan, seen, robot):
             match = matches(plan, seen).get(node, "")
             cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
-            message = f"node {node} is in the plan, but not in the graph"
+            message = (
+                f"node {node} is in the plan, but not in the graph{_waiting(plan, seen, node)}"
+            )
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
     for node in dict.fromkeys(plan.own[""]):
         if node not in seen.nodes and node not in plan.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
+
+
+def _waiting(plan: Index, seen: Index, node: str) -> str:
+    """Who calls in vain what the node serves."""
+    served = (it for it in plan.by_node.get(node, ()) if it.role == SERVES)
+    for it in served:
+        ends = seen.by_name.get((it.kind, it.name))
+        if ends and ends.clients and not ends.servers and "lifecycle" not in it.type:
+            return f"; {ends.clients[0].node} calls {it.name}"
+    return ""
 
 
 def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
+from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.pair.causes import Cause, caused
 from multibot_rewrite.rules.pair.name_variants import name_variants
@@ -29,6 +30,7 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
     unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
     causes = (
         _two_names(plan, robot, roots, edges),
+        _misspelled(robot, roots, edges),
         *(_not_sent(plan, seen, robot, it) for it in unsent),
         *(_silent(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
         _bridged(plan, seen, robot),
@@ -60,6 +62,17 @@ def _two_names(
         if other:
             right, wrong = (root, other) if root in robot.frames else (other, root)
             return _wrongly_named(plan, robot, right, wrong)
+    return None
+
+
+def _misspelled(robot: Robot, roots: Sequence[str], edges: Sequence[Edge]) -> Cause | None:
+    """A root that is called nearly as a frame of the robot is."""
+    for edge in edges:
+        known = {*robot.frames, *robot.other_frames}
+        odd = edge.parent in roots and edge.parent not in known
+        if near := nearest(edge.parent, sorted(known), MISTYPED) if odd else "":
+            sent = f"{edge.child} is sent below {edge.parent}, which nothing sends"
+            return Cause(f"{sent}: did you mean {near}?")
     return None
 
 

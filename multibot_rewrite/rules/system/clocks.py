@@ -25,6 +25,8 @@ _TIMED = (
 )  # fmt: skip
 _IS_TIMED = re.compile("|".join(map(translate, _TIMED)))
 
+_TYPE = "rosgraph_msgs/msg/Clock"
+
 
 @system_rule(
     "MG501",
@@ -51,6 +53,9 @@ def no_clock(seen: Index) -> Iterator[Finding]:
             f"on simulated time (use_sim_time), but no node publishes {CLOCK}: {shorten(nodes)}"
         )
         cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
+        if other := next((it for it in seen.topics if it.type == _TYPE and it.publishers), None):
+            message += f"; {other.publishers[0].node} publishes {other.name}"
+            cause = f"pass the rule {other.name}:={CLOCK}: all robots have one clock"
         yield no_clock.finding(message, cause, robot=robot, node=nodes[0], names=(CLOCK,))
 
 

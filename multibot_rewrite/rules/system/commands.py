@@ -3,19 +3,26 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.names import ABSENT, alike, nobody_in
+from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
+from multibot_rewrite.rules.system.slips import alike
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
+
+# A person drives with these.
+_BY_HAND = re.compile("teleop|joy|keyboard|gamepad")
+# The topics of RViz's own tools.
+_OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
 
 @system_rule(
@@ -90,6 +97,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         same = obeyed[ends.type]
         robots = [it for it in same if seen.plain(it) == name]
         meant = next(iter(robots), "") or alike(name, same, ends.type) or _of_a_mux(seen, ends)
+        meant = meant or _of_a_person(seen, ends, same)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
             continue
@@ -121,6 +129,25 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     return next(drives, "")
 
 
+def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
+    """The one goal, or velocity, that the same robot obeys, where a person sends another one."""
+    robot = seen.robot(ends.name)
+    if words.moves(seen.plain(ends.name), ends.type):
+        if not any(_BY_HAND.search(it) for it in nodes_of(ends.publishers)):
+            return ""
+        # What one node of Nav2 hands to the next is no drive's.
+        same = [it for it in same if not _is_in_a_chain(seen.by_name[TOPIC, it])]
+    else:
+        obeyed = (it for it in seen.orders.values() if it.type == ends.type and _obeyed(it))
+        same = [it.name for it in obeyed]
+    own = [it for it in same if seen.robot(it) == robot]
+    return own[0] if len(own) == 1 else ""
+
+
+def _is_in_a_chain(ends: Ends) -> bool:
+    return all(team(it.node) != it.node for it in at_work(ends.subscribers))
+
+
 def _obeyed(ends: Ends) -> bool:
     return bool(at_work(ends.subscribers))
 
@@ -131,7 +158,9 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
-    level = NOTE if is_viewer(node) and not is_hidden(node) else ERROR
+    # RViz offers these from the start.
+    usual = last_word(ends.name) in _OFFERED and is_viewer(node) and not is_hidden(node)
+    level = NOTE if usual else WARNING if is_viewer(node) and not is_hidden(node) else ERROR
     return command_to_nobody.finding(
         message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant)
     )

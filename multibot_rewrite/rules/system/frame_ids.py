@@ -120,7 +120,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         yield frame_id_unknown.finding(
             f"frame_id of {topics} is {frame}, which is in no transform of {robot or 'tf'}; sent by"
             f" {_who(senders)}",
-            _remedy(senders, meant or _alike(frame, own), elsewhere),
+            _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own), elsewhere),
             level=ERROR if meant or elsewhere else WARNING,
             robot=robot,
             node=senders[0],
@@ -161,6 +161,23 @@ def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:
 def _alike(frame: str, own: Sequence[str]) -> list[str]:
     found = nearest(frame, sorted(own), MISTYPED)
     return [found] if found else []
+
+
+# What frames of sensors of a type are called.
+_CALLED = {
+    "sensor_msgs/msg/LaserScan": ("laser", "lidar", "scan"),
+    "sensor_msgs/msg/PointCloud2": ("lidar", "velodyne", "ouster", "depth"),
+    "sensor_msgs/msg/Imu": ("imu",),
+    "sensor_msgs/msg/Image": ("optical",),
+    "sensor_msgs/msg/NavSatFix": ("gps", "gnss", "navsat"),
+}
+
+
+def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
+    """The one frame of the robot that is called as such a sensor's is."""
+    called = {word for it in messages for word in _CALLED.get(it.type, ())}
+    found = sorted(it for it in own if any(word in it for word in called))
+    return found if len(found) == 1 else []
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:

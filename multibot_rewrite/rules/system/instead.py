@@ -29,6 +29,11 @@ COMMON = (
 )
 # Of such a type are many topics that have nothing to do with each other.
 _PLAIN_TYPES = "std_"
+# Such messages are sent for many ends: the name has to say which.
+_PLAIN_DATA = ("std_msgs/", "geometry_msgs/", "visualization_msgs/")
+# Shorter words of a name, and these, say nothing of what it is.
+_SAYING = 4
+_OF_ALL = frozenset({"data", "state", "status", "pose", "info", "robot", "topic"})
 # Of which the name says what they are for.
 _TRIGGERS = "std_srvs/"
 
@@ -46,7 +51,61 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
         return None
     if end.role == CALLS:
         return _nearest(end, list(_served(seen, end)))
-    return _data(seen, end) if end.role == SUBSCRIBES and not chooses(end.node) else None
+    if end.role != SUBSCRIBES or chooses(end.node):
+        return None
+    return _data(seen, end) or _orphan(seen, end)
+
+
+def _orphan(seen: Index, end: End) -> Ends | None:
+    """What is sent of its very type and read by no node, where that is one topic, or one of them has a
+    word in common with it: of a plain type, and of what a person may send, always."""
+    robot = seen.robot(end.name)
+    merges = _has_another(seen, end) and not _reads_another_robots(seen, end)
+    if merges or seen.robot(end.node) not in ("", robot):
+        return None
+    given = [
+        it
+        for it in _unread(seen).get((end.type, robot), ())
+        if end.node not in (one.node for one in it.publishers)
+        and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
+    ]
+    akin = [it for it in given if _words(seen, it.name) & _words(seen, end.name)]
+    akin = akin or [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
+    plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
+    plain = plain or is_from_outside(end.name)
+    return _only(akin) or (None if plain else _only(given))
+
+
+@once
+def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
+    """Topics that nodes at work send and no node at work reads, by type and robot."""
+    found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
+    for it in seen.topics:
+        senders = [one for one in at_work(it.publishers) if team(one.node) == one.node]
+        senders = [one for one in senders if not chooses(one.node)]
+        if senders and not at_work(it.subscribers):
+            found[it.type, seen.robot(it.name)].append(it)
+    return found
+
+
+def _reads_another_robots(seen: Index, end: End) -> bool:
+    """Does its node read the same of another robot, from which it comes?"""
+    return any(
+        it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
+        for it in seen.by_node[end.node]
+        if it.role == SUBSCRIBES and it.name in seen.published
+    )
+
+
+def _begin_alike(one: str, other: str) -> bool:
+    """Is the last word of one the beginning of the other's: joy, joystick?"""
+    short, long = sorted((last_word(one), last_word(other)), key=len)
+    return long.startswith(short)
+
+
+def _words(seen: Index, name: str) -> set[str]:
+    """The words of a name that say what it is."""
+    return {it for it in re.split(r"[/_]", seen.plain(name)) if len(it) >= _SAYING} - _OF_ALL
 
 
 def _data(seen: Index, end: End) -> Ends | None:
@@ -67,6 +126,8 @@ def _data(seen: Index, end: End) -> Ends | None:
     unread = [it for it in given if not at_work(it.subscribers)]
     # Joints come from several nodes, and a node that merges them need not have all.
     several = words.JOINTS in (kind, end.type)
+    akin = [it for it in unread if _words(seen, it.name) & _words(seen, end.name)]
+    unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
     return _only(given if several and unread else unread or ([] if several else same))
 
@@ -119,7 +180,8 @@ def _served(seen: Index, end: End) -> Iterator[Ends]:
     for it in _servers(seen).get((end.kind, end.type), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
         common = end.type.startswith(COMMON)
-        alike = end.type.startswith(_TRIGGERS) and last == last_word(it.name)
+        same = last == last_word(it.name) or _words(seen, it.name) == _words(seen, end.name)
+        alike = end.type.startswith(_TRIGGERS) and same
         if own and not at_work(it.clients) and (alike or not common):
             yield it
 
@@ -186,8 +248,9 @@ def meant(seen: Index, end: End) -> Ends | None:
         return words.get(nearest(last_word(end.code_name), words))
     last = [name for name in alike if name.endswith(f"/{last_word(end.name)}")]
     if mux:  # idle, unless it is misspelt
-        words_of = {last_word(it): it for it in alike}
-        return alike.get(words_of.get(nearest(last_word(end.name), words_of, alike=_SLIP), ""))
+        words_of = {last_word(seen.plain(it)): it for it in alike}
+        near = nearest(last_word(seen.plain(end.name)), words_of, alike=_SLIP)
+        return alike.get(words_of.get(near, ""))
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 

@@ -7,12 +7,13 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.conventions import EVERYBODYS, chooses
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import TF, Index, at_work, ends_of
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import TF, Index, at_work, ends_of, once
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
@@ -23,11 +24,12 @@ _EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"[0-9a-f]*\d{4,}[0-9a-f]*")
+_CHANGE = "/change_state"
 # Node, kind, role and name, without the robot's.
 _Key = tuple[str, str, str, str]
 
 
-class _Made(NamedTuple):
+class Made(NamedTuple):
     """What a robot is made of, by names without its own: its nodes, and their ends by key."""
 
     nodes: Mapping[str, str]
@@ -64,11 +66,8 @@ running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 )
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """What another finding is about as well is left to that one (``unexplained``)."""
-    own: dict[str, list[str]] = {it: [] for it in seen.robots}
-    for node in seen.nodes:
-        own.get(seen.robot(node), []).append(node)
-    made = {robot: _made(seen, names) for robot, names in own.items()}
-    for likes in _alike(made):
+    made = made_of(seen)
+    for likes in alike(made):
         others = len(likes) - 1
         nodes = Counter(node for it in likes for node in made[it].nodes)
         ends = Counter(key for it in likes for key in made[it].ends)
@@ -84,19 +83,16 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             )
 
 
-def unexplained(found: Sequence[Finding]) -> list[Finding]:
-    """The findings without those of this rule about what another one is about."""
-    code = lacks_what_its_likes_have.code
-    about = {it for one in found if one.code != code for it in (one.node, *one.names)} - {""}
-    robots = {one.robot for one in found if one.code != code and not one.node and not one.names}
-    return [
-        it
-        for it in found
-        if it.code != code or (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
-    ]
+@once
+def made_of(seen: Index) -> Mapping[str, Made]:
+    """What each robot is made of."""
+    own: dict[str, list[str]] = {it: [] for it in seen.robots}
+    for node in seen.nodes:
+        own.get(seen.robot(node), []).append(node)
+    return {robot: _made(seen, names) for robot, names in own.items()}
 
 
-def _made(seen: Index, own: Iterable[str]) -> _Made:
+def _made(seen: Index, own: Iterable[str]) -> Made:
     nodes, ends = {}, {}
     for name in own:
         plain = seen.plain(name)
@@ -107,10 +103,10 @@ def _made(seen: Index, own: Iterable[str]) -> _Made:
             plumbing = it.type.startswith(_EVERY_NODE) or it.name in EVERYBODYS
             if it.type != TF and not plumbing and "/_" not in it.name:
                 ends[plain, it.kind, it.role, seen.plain(it.name)] = it
-    return _Made(nodes, ends)
+    return Made(nodes, ends)
 
 
-def _alike(made: Mapping[str, _Made]) -> Iterator[Sequence[str]]:
+def alike(made: Mapping[str, Made]) -> Iterator[Sequence[str]]:
     """Groups of robots of which more than half of all nodes are the same, and enough of them."""
     left = [it for it in made if len(made[it].nodes) >= _ENOUGH]
     while left:
@@ -126,7 +122,7 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 
 
 def _lost_nodes(
-    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], lost: Sequence[str]
+    seen: Index, made: Mapping[str, Made], robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
     """All of one robot in one finding."""
     like = next(it for it in likes if it != robot)
@@ -144,7 +140,7 @@ def _lost_nodes(
 
 
 def _lost_ends(
-    seen: Index, made: Mapping[str, _Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
+    seen: Index, made: Mapping[str, Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
     """Those of a node in one finding."""
     like = next(it for it in likes if it != robot)
@@ -157,15 +153,17 @@ def _lost_ends(
             continue
         theirs = [made[like].ends[key] for key in keys]
         does = shorten([f"{it.role} {it.name}" for it in theirs], SEVERAL)
+        others = {it.node for name in own for it in at_work(ends_of(seen, name))} - {node}
+        wait = f"; {shorten(sorted(others), SEVERAL)} has it in vain" if others else ""
         yield lacks_what_its_likes_have.finding(
-            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}",
+            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}{wait}",
             "a remap rule, a parameter or a version of its own?",
             robot=robot, node=node, names=own,
         )  # fmt: skip
 
 
 def _waiting(
-    seen: Index, made: Mapping[str, _Made], robot: str, keys: Sequence[_Key]
+    seen: Index, made: Mapping[str, Made], robot: str, keys: Sequence[_Key]
 ) -> tuple[str, ...]:
     """The names of the robot whose other side is in it, and has nobody but what it lacks."""
     sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
@@ -173,6 +171,15 @@ def _waiting(
     for (_, kind, role, name), it in made[robot].ends.items():
         lost = sides.get((kind, role, name))
         there = at_work(ends_of(seen, it.name)) if lost and not is_viewer(it.node) else ()
-        if lost and not any(one.role == lost for one in there):
+        if lost and _is_needy(it) and not any(one.role == lost for one in there):
             found[it.name] = None
     return tuple(found)
+
+
+def _is_needy(end: End) -> bool:
+    """Is it useless alone? A reader and a client are, a managed node, joints, and who drives; a server
+    or a sensor of which one robot's program makes use is not, nor what seldom has all its inputs."""
+    if end.role == SUBSCRIBES and chooses(end.node):
+        return False
+    wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(_CHANGE)
+    return wants or end.type == words.JOINTS or words.moves(end.name, end.type)

@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
-from multibot_rewrite.rules.system.tf_topics import is_of_description, publishes_description
+from multibot_rewrite.rules.system.tf_topics import (
+    is_of_description,
+    publishes_description,
+    root_of,
+)
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import NOWHERE, UNKNOWN_NODES, Edge, Lookup
+from multibot_rewrite.system.records import NOWHERE, QUIET, UNKNOWN_NODES, Edge, Lookup
 
 _MAP = "map"
 _ODOM = "odom"
@@ -62,7 +67,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, edges) if usual else None
     if sender is None:
-        return None
+        return _unknown(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
     who = next((it for it in sender.publishers if not publishes_description(seen, it)), "a node")
     sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
@@ -70,6 +75,15 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # A map often comes from a node that is started apart.
     level = NOTE if plain == _MAP else WARNING
     return _finding(seen, it, f"reads frame {it.frame}, which no known node sends", hint, level)
+
+
+def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+    """A frame of another name: misspelled, or in no transform of a system that runs."""
+    near = nearest(it.frame, sorted(frames_in(edges)), MISTYPED)
+    if not near and (seen.system.environment.settled != QUIET or not edges):
+        return None
+    hint = f"did you mean {near}?" if near else "send it, or use a frame that is sent"
+    return _finding(seen, it, f"reads frame {it.frame}, which nothing sends", hint, WARNING)
 
 
 def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
@@ -87,11 +101,26 @@ def _is_of_a_node(seen: Index, edge: Edge) -> bool:
 
 
 def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
-    if any(edge.child == it.frame for edge in edges):
-        return None
+    above = {edge.child: edge.parent for edge in edges}
+    if it.frame in above:
+        return _not_joined(seen, it, above)
+    if near := nearest(it.frame, sorted(frames_in(edges)), MISTYPED):
+        message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
+        return _finding(seen, it, message, f"did you mean {near}?", WARNING)
     message = f"has the transform {it.parent} -> {it.frame} as its state, which no known node sends"
     hint = "name the node that sends it, or make the virtual joint fixed"
     return _finding(seen, it, message, hint, NOTE)
+
+
+def _not_joined(seen: Index, it: Lookup, above: Mapping[str, str]) -> Finding | None:
+    """The frame is there, and what it is looked up from is nowhere."""
+    if it.parent in {*above, *above.values()}:
+        return None
+    root = root_of(it.frame, above)
+    return _finding(
+        seen, it, f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}: the tree begins"
+        f" with {root}", f"start what sends {it.parent} -> {root}: localization, or odometry", WARNING,
+    )  # fmt: skip
 
 
 def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
-from itertools import islice, zip_longest
 
-from multibot_rewrite.base.conventions import EVERYBODYS, chooses
+from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
+from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
@@ -21,12 +18,20 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
+from multibot_rewrite.rules.system.slips import alike
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
-from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
+from multibot_rewrite.system.records import (
+    ACTION,
+    RUNS,
+    SERVES,
+    SERVICE,
+    TOPIC,
+    UNKNOWN_NODES,
+    End,
+)
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
-_DIGITS = re.compile(r"_?\d+")
 
 
 @system_rule(
@@ -68,6 +73,11 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
+            elif absent := nobody_in(seen, name, published):
+                yield topic_names_miss.finding(
+                    f"subscribes to {name}, which no node publishes; {absent}",
+                    ABSENT, level=WARNING, node=end.node, names=(name,), **where([end]),
+                )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
             yield _missed_topic(seen, first, published[other_name], WARNING, more)
 
@@ -93,6 +103,8 @@ def _published_instead(
         # Its own robot has it: whether or not others read it as well.
         own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
         return next((it for it in own if published[it].type == end.type), "")
+    if not owner and (mine := _of_a_robot_without(seen, end, published)):
+        return mine
     same = [
         it.name
         for it in _published(seen).get(end.type, ())
@@ -106,6 +118,14 @@ def _published_instead(
     bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
     unread = (it for it in bare if it in unheard)
     return next(unread, "") or alike(end.name, same, end.type)
+
+
+def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) -> str:
+    """The topic of the one robot that lacks a node of this name, which runs without a namespace."""
+    there = {seen.robot(it) for it in seen.nodes if seen.plain(it) == end.node}
+    without = [it for it in seen.robots if it not in there]
+    name = f"/{without[0]}{end.name}" if len(without) == 1 and len(there) > 1 else ""
+    return name if name in published and published[name].type == end.type else ""
 
 
 @once
@@ -145,54 +165,6 @@ def _is_doubled(name: str, meant: str) -> bool:
     """Is it the other name with a namespace of it once more in front?"""
     front = name.removesuffix(meant)
     return front != name and meant.startswith(f"{front}/")
-
-
-def alike(name: str, known: Iterable[str], type_: str) -> str:
-    """The known name that is the same but for case, dashes or a misspelled word; empty for none.
-
-    Names that differ in their numbers alone are two things.
-    """
-    letters = _letters(name)
-    names = [it for it in islice(known, COMPARED) if it != name]
-    folded = next((it for it in names if _letters(it) == letters), "")
-    if folded or type_.startswith(COMMON):
-        return folded
-    parts = name.split("/")
-    for at in (1, len(parts) - 1):
-        near = dict(_with_other_word(parts, at, names))
-        swapped = (it for it in near if sorted(it) == sorted(parts[at]))
-        slips = [it for it in near if _is_slip(it, parts[at])]
-        found = next(swapped, "") or nearest(parts[at], slips, MISTYPED)
-        if found:
-            return near[found]
-    return ""
-
-
-def _with_other_word(parts: list[str], at: int, names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """The names that differ in the word at one place alone, by that word; not by its number."""
-    rest = parts[:at] + parts[at + 1 :]
-    for name in names:
-        other = name.split("/")
-        same = len(other) == len(parts) and other[:at] + other[at + 1 :] == rest
-        if same and not _same_but_number(other[at], parts[at]):
-            yield other[at], name
-
-
-def _is_slip(one: str, other: str) -> bool:
-    """Is no part between underscores another word? `cmd_vel_out` is no slip of `cmd_vel_ui`, nor is
-    `lidar_l` of `lidar_r`."""
-    parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
-    return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
-
-
-@lru_cache(maxsize=4096)
-def _letters(name: str) -> str:
-    """Its letters, digits and slashes, in lower case."""
-    return "".join(it for it in name.lower() if it.isalnum() or it == "/")
-
-
-def _same_but_number(one: str, other: str) -> bool:
-    return _DIGITS.sub("", one) == _DIGITS.sub("", other)
 
 
 def _missed_topic(
@@ -261,8 +233,10 @@ def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]
     if other := near or (by_type.name if by_type else ""):
         yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
     elif listed and end.name.endswith("/change_state"):
+        meant = _node_like(seen, listed)
+        instead = f"; {meant} runs" if meant else ""
         yield server_names_miss.finding(
-            f"{lost}: {listed} is in its list, and does not run",
+            f"{lost}: {listed} is in its list, and does not run{instead}",
             f"it waits for {listed} and activates nothing after it: start it, or leave it out of"
             " node_names",
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
@@ -271,6 +245,31 @@ def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]
         yield server_names_miss.finding(
             f"{lost}; {absent}", ABSENT, level=WARNING, node=end.node, names=(end.name,)
         )
+    elif not listed and _waits(seen, end):
+        yield server_names_miss.finding(
+            lost, "start the node that serves it, or leave out what calls it", level=WARNING,
+            robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
+        )  # fmt: skip
+
+
+def _waits(seen: Index, end: End) -> bool:
+    """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
+    every node serves are left out, and a view in which nodes are missing. What is known by code alone
+    is told by ``nothing_known_sends``."""
+    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
+    theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
+    usual = end.type.startswith(COMMON) or is_from_outside(end.name)
+    # Beside other robots it may be one that is not started yet.
+    others = len(seen.robots) > 1
+    return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+
+
+def _node_like(seen: Index, listed: str) -> str:
+    """A node that runs and is called nearly so: a letter wrong, or without the namespace."""
+    same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
+    space = listed.rpartition("/")[0]
+    others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
+    return next(same, "") or nearest(listed, others, MISTYPED)
 
 
 def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:

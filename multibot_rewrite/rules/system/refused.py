@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
-from math import isfinite
+from collections.abc import Iterator, Mapping
+from math import inf, isfinite
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, robots_of
@@ -61,3 +62,41 @@ def _why(it: Edge) -> str:
     if it.transform and abs(length - 1) > _TOLERANCE:
         return "its quaternion is all zeros" if not length else "its quaternion is not of length 1"
     return ""
+
+
+# No robot's part is so far from its base, in metres: a place in millimetres is.
+_FAR = 20.0
+
+
+@system_rule(
+    "MG418",
+    "part-far-away",
+    WARNING,
+    what="A fixed transform of a part of the robot, below its base, is over 20 m long.",
+    why="The numbers are millimetres or centimetres, or in another order: the sensor sees all in"
+    " another place.",
+    fix="Write metres; static_transform_publisher wants `--x --y --z` in metres, angles in radians.",
+    bad="running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /camera_tf\n",
+    good="running: transform base_link -> lidar_link on /tf_static at 0.15 0 0.2 by /camera_tf\n",
+)
+def part_far_away(seen: Index) -> Iterator[Finding]:
+    """By the length alone: what is below the map is as far away as the building is long."""
+    for tree in seen.trees:
+        above = {it.child: it.parent for it in tree.edges}
+        for it in tree.edges:
+            away = max(map(abs, it.transform[:3]), default=0.0)
+            if it.static and _FAR < away < inf and _is_of_a_body(seen, it.parent, above):
+                yield part_far_away.finding(
+                    f"{it.parent} -> {it.child} on {it.topic} is {away:g} m long",
+                    "write metres",
+                    robot=seen.frame_robot(it.child) or only(robots_of(seen, it.publishers)),
+                    names=(it.child, it.topic),
+                )
+
+
+def _is_of_a_body(seen: Index, frame: str, above: Mapping[str, str]) -> bool:
+    """Is it the base of a robot, or below it?"""
+    way = [frame]
+    while way[-1] in above and above[way[-1]] not in way:
+        way.append(above[way[-1]])
+    return any(seen.plain_frame(it) in BODY_FRAMES for it in way)

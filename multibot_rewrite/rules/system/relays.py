@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
@@ -16,6 +18,7 @@ from multibot_rewrite.system.tool_nodes import last_word
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")
 _CONTROLLER = "controller_server"
+_BRIDGE = re.compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 
 @system_rule(
@@ -135,3 +138,65 @@ def _word(seen: Index, name: str) -> str:
 
 def _velocities(seen: Index) -> Iterator[Ends]:
     return (it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type))
+
+
+@system_rule(
+    "MG329",
+    "data-in-a-circle",
+    ERROR,
+    meant=(PUBLISHES, SUBSCRIBES),
+    what="A node reads velocities, odometry, a scan or IMU data on the topic on which it sends them; or"
+    " one relay gives them to a second one, which sends them back.",
+    why="Each message comes round again: a filter believes itself, a command never ends.",
+    fix="Let it read, or send, on another topic: the remap rule of one of the two names.",
+    bad="""\
+running: /ekf subscribes /odometry/filtered nav_msgs/msg/Odometry
+running: /ekf publishes /odometry/filtered nav_msgs/msg/Odometry
+""",
+    good="""\
+running: /ekf subscribes /odom nav_msgs/msg/Odometry
+running: /ekf publishes /odometry/filtered nav_msgs/msg/Odometry
+""",
+    line=2,
+)
+def data_in_a_circle(seen: Index) -> Iterator[Finding]:
+    """A bridge reads and sends each of its topics, as it is made. Joints come from several."""
+    passed: dict[tuple[str, str], tuple[str, Ends]] = {}
+    for node, (read, sent) in _passing(seen).items():
+        both = [it for it in read if it in sent]
+        # With several it is a bridge, whatever it is called.
+        for ends in both if len(both) == 1 else ():
+            yield data_in_a_circle.finding(
+                f"reads {ends.name}, on which it sends",
+                "let it read, or send, on another topic",
+                robot=seen.robot(node), node=node, names=(ends.name,),
+            )  # fmt: skip
+        if len(read) == len(sent) == 1 and not both:
+            passed[read[0].name, sent[0].name] = node, sent[0]
+    for (source, given), (node, sent_) in passed.items():
+        other, back = passed.get((given, source), ("", sent_))
+        # Of the two it is the one that sends where others send as well.
+        if other and (len(sent_.publishers), given) > (len(back.publishers), source):
+            yield data_in_a_circle.finding(
+                f"sends {given} of what {other} makes of {given}",
+                "one of the two has to send on another topic",
+                robot=seen.robot(node), node=node, names=(given,),
+            )  # fmt: skip
+
+
+def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
+    """The topics of such data that each node reads and sends, of nodes that do both."""
+    found: dict[str, tuple[list[Ends], list[Ends]]] = defaultdict(lambda: ([], []))
+    for ends in seen.topics:
+        body = words.is_of_a_body(ends.type) and ends.type != words.JOINTS
+        if body or words.moves(seen.plain(ends.name), ends.type):
+            for at, side in enumerate((ends.subscribers, ends.publishers)):
+                for node in nodes_of(at_work(side)):
+                    found[node][at].append(ends)
+    own = {it: both for it, both in found.items() if all(both) and not _is_bridge(it)}
+    return {it: (read, sent) for it, (read, sent) in own.items() if read[0].type == sent[0].type}
+
+
+def _is_bridge(node: str) -> bool:
+    """Does it hold several networks, or a simulator, together?"""
+    return bool(_BRIDGE.search(last_word(node)))

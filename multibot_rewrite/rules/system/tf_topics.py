@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
@@ -76,6 +77,21 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
             if deaf:
                 yield _hears_elsewhere(seen, robot, home, topic, deaf)
     yield from _frames_of_another(seen)
+    yield from _rviz_hears_nothing(seen)
+
+
+def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
+    """RViz on a tf topic on which nothing is, while robots have theirs."""
+    sent = [it.topic for it in seen.trees if it.senders]
+    for tree in seen.trees:
+        rviz = [it for it in tree.listeners if last_word(it).startswith("rviz")]
+        if rviz and sent and not tree.senders:
+            yield tf_on_two_topics.finding(
+                f"listens to {tree.topic}, on which no node sends; robots send on {shorten(sent)}",
+                f"start it with -r {tree.topic}:={sent[0]} -r {tree.topic}_static:={sent[0]}_static,"
+                " one for each robot",
+                level=WARNING, robot=seen.robot(rviz[0]), node=rviz[0], names=(tree.topic,),
+            )  # fmt: skip
 
 
 def _frames_of_another(seen: Index) -> Iterator[Finding]:
@@ -171,6 +187,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
             yield from _senders_apart(seen, tree)
         return
     bases = BODY_FRAMES[::-1]
+    yield from _misspelled(seen)
     for tree in seen.trees:
         above: dict[str, str] = {edge.child: edge.parent for edge in tree.edges}
         if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
@@ -194,6 +211,31 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
             yield tf_tree_in_pieces.finding(
                 message, cause, robot=robot, names=(odom, own[0], found),
             )  # fmt: skip
+
+
+def _misspelled(seen: Index) -> Iterator[Finding]:
+    """A parent that nothing sends, and that is called nearly as a frame is which is sent."""
+    for tree in seen.trees:
+        children = {it.child for it in tree.edges}
+        for it in tree.edges:
+            usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
+            if it.parent in children or usual:
+                continue
+            near = nearest(it.parent, sorted(children - {it.child}), MISTYPED)
+            # Names that differ in their numbers alone are two things.
+            slip = near and near not in it.parent and it.parent not in near
+            if slip and not {*it.parent} ^ {*near} <= {*"0123456789"}:
+                robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
+                yield tf_tree_in_pieces.finding(
+                    f"{in_pieces(robot, tree.topic, sorted({it.parent, root_of(near, _above(tree))}))}:"
+                    f" {it.child} is sent below {it.parent}, and nothing sends {it.parent}",
+                    f"did you mean {near}?",
+                    robot=robot, names=(it.child, it.parent),
+                )  # fmt: skip
+
+
+def _above(tree: Tree) -> dict[str, str]:
+    return {it.child: it.parent for it in tree.edges}
 
 
 def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:

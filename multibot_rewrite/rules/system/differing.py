@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robots with the same nodes held against each other: parameters, types, QoS and fixed transforms."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.likes import alike, lacks_what_its_likes_have, made_of
+from multibot_rewrite.system.index import Index, once
+from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge, End
+
+# What is each robot's own: who and where it is, what it is connected to, which files it reads.
+_OWN = re.compile(
+    r"(^|[._])((?<!frame_)id|ip|ports?|address(es)?|host(name)?|ur[li]|serial|device|dev|names?|namespace"
+    r"|prefix|tag|color|seed|domain|poses?|position|datum|path|file(name)?|folder|home|start)([._]|$)"
+    r"|^(x|y|z|yaw|roll|pitch|theta|qos_overrides\..*)$|description|semantic|plugin_lib"
+)
+# A description's place of a part, in metres and parts of a quaternion.
+_SAME = 1e-3
+_TWO = 2
+_POLICIES = "reliability", "durability", "deadline", "liveliness"
+
+
+class _Told(NamedTuple):
+    """A value of one robot: where, its name, the value, and the same in the words of all robots."""
+
+    node: str
+    name: str
+    value: str
+    plain: str
+
+
+# What it is of, in the words of all robots -> robot -> its value.
+_Values = Mapping[tuple[str, ...], Mapping[str, _Told]]
+
+
+@system_rule(
+    "MG328",
+    "differs-from-its-likes",
+    WARNING,
+    what="Robots with the same nodes differ: a parameter, the type or QoS of a topic, the place or the"
+    " parent of a part. Of three and more it is the one that is unlike all others. Names, numbers and"
+    " addresses that are each robot's own, files and start poses are left out.",
+    why="One was changed and the others were not: it drives more slowly, keeps less distance, sees its"
+    " scan in another place.",
+    fix="Make them equal, or do nothing if the robots are meant to differ.",
+    bad="""\
+running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan reliable volatile
+running: /robot1/imu publishes /robot1/imu/data sensor_msgs/msg/Imu
+running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan best_effort volatile
+running: /robot2/imu publishes /robot2/imu/data sensor_msgs/msg/Imu
+""",
+    good="""\
+running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
+running: /robot1/imu publishes /robot1/imu/data sensor_msgs/msg/Imu
+running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
+running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan best_effort volatile
+running: /robot2/imu publishes /robot2/imu/data sensor_msgs/msg/Imu
+""",
+    line=5,
+)
+def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
+    """All of a node, and all transforms of a robot, are one finding."""
+    for likes in alike(made_of(seen)):
+        for values in (_parameters(seen), _types(seen), _qualities(seen)):
+            yield from _told(seen, _odd(values, likes))
+        yield from _moved_parts(seen, _odd(_parts(seen), likes))
+        yield from _lost_parts(seen, likes)
+
+
+# What is found of robots held against each other is left to any other finding about it.
+COMPARED = (lacks_what_its_likes_have.code, differs_from_its_likes.code)
+
+
+def unexplained(found: Sequence[Finding]) -> list[Finding]:
+    """The findings without those of robots compared about what another one is about."""
+    others = [one for one in found if one.code not in COMPARED]
+    about = {it for one in others for it in (one.node, *one.names)} - {""}
+    robots = {one.robot for one in others if not one.node and not one.names}
+    return [
+        it
+        for it in found
+        if it.code not in COMPARED
+        or (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
+    ]
+
+
+def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _Told]]:
+    """Robot, its value and that of the others: what one has otherwise than all."""
+    for own in values.values():
+        there = {it: own[it] for it in likes if it in own}
+        counts = Counter(it.plain for it in there.values())
+        if len(counts) != 2 or len(there) < len(likes):
+            continue
+        (usual, _), (odd, number) = counts.most_common()
+        if number == 1:
+            robot = next(it for it in reversed(there) if there[it].plain == odd)
+            yield robot, there[robot], next(it for it in there.values() if it.plain == usual)
+
+
+def _told(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
+    by_node: dict[tuple[str, str, str], list[tuple[_Told, _Told]]] = defaultdict(list)
+    for robot, own, other in odd:
+        by_node[robot, own.node, other.node].append((own, other))
+    for (robot, node, like), pairs in by_node.items():
+        listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
+        beside = {other.name for own, other in pairs} - {own.name for own, _ in pairs}
+        at = f" ({shorten(sorted(beside), SEVERAL)})" if beside else ""
+        yield differs_from_its_likes.finding(
+            f"has {shorten([*listed], SEVERAL)} as {like}{at}",
+            "make them equal, if the two are to be equal",
+            robot=robot, node=node, names=tuple(own.name for own, _ in pairs),
+        )  # fmt: skip
+
+
+@once
+def _parameters(seen: Index) -> _Values:
+    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    for it in seen.system.parameters:
+        robot = seen.robot(it.node)
+        if robot and it.name != SIM_TIME and not _OWN.search(it.name):
+            told = _Told(it.node, it.name, it.value, it.value.replace(robot, "*"))
+            found[seen.plain(it.node), it.name][robot] = told
+    return found
+
+
+@once
+def _types(seen: Index) -> _Values:
+    """Of a topic that all its nodes have with one type: where they differ that is the finding."""
+    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    for it in seen.topics:
+        ends = (*it.publishers, *it.subscribers)
+        if (robot := seen.robot(it.name)) and len({end.type for end in ends}) == 1 and it.type:
+            node = (it.publishers or it.subscribers)[0].node
+            found[(seen.plain(it.name),)][robot] = _Told(node, it.name, it.type, it.type)
+    return found
+
+
+@once
+def _qualities(seen: Index) -> _Values:
+    """Not of Zenoh, which connects any two."""
+    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    zenoh = seen.system.environment.rmw == ZENOH
+    for robot, made in made_of(seen).items() if not zenoh else ():
+        for key, end in made.ends.items():
+            if end.qos:
+                words = _words(end)
+                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
+    return found
+
+
+def _words(end: End) -> str:
+    own = end.qos._asdict() if end.qos else {}
+    return " ".join(str(own[it]) for it in _POLICIES if str(own[it]) not in ("inf", "AUTOMATIC"))
+
+
+def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
+    """The fixed transforms of robots: one sender each, so that they do not change."""
+    for tree in seen.trees:
+        for it in tree.edges:
+            robot = seen.frame_robot(it.child) or seen.robot(it.topic)
+            if robot and it.static and not it.several:
+                yield robot, it
+
+
+@once
+def _parts(seen: Index) -> _Values:
+    """Parents and places of parts."""
+    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    for robot, it in _edges_of(seen):
+        child, parent = seen.plain_frame(it.child), seen.plain_frame(it.parent)
+        found[child, "parent"][robot] = _Told(it.topic, it.child, f"below {it.parent}", parent)
+        if it.transform:
+            at = " ".join(f"{number:.3g}" for number in it.transform[:3])
+            place = str([round(number / _SAME) for number in it.transform])
+            found[child, "place"][robot] = _Told(it.topic, it.child, f"at {at}", place)
+    return found
+
+
+def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
+    by_robot: dict[str, list[tuple[_Told, _Told]]] = defaultdict(list)
+    for robot, own, other in odd:
+        by_robot[robot].append((own, other))
+    for robot, pairs in by_robot.items():
+        listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
+        like = seen.robot(pairs[0][1].node) or seen.frame_robot(pairs[0][1].name)
+        yield differs_from_its_likes.finding(
+            f"{robot} has {shorten([*listed], SEVERAL)} as {like}",
+            "has it another description, or an older one?",
+            robot=robot, names=tuple({own.name: None for own, _ in pairs}),
+        )  # fmt: skip
+
+
+def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
+    """Of a robot that sends some: where it sends none, its robot_state_publisher is the finding."""
+    frames = {robot: it for robot, it in _frames(seen).items() if robot in likes}
+    counts = Counter(it for own in frames.values() for it in own)
+    for robot in likes if len(frames) == len(likes) else ():
+        lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)
+        lost = [it for it in lost if it not in frames[robot]]
+        # Under other names all are lost, which is another finding.
+        few = len(lost) < len(frames[robot])
+        # Of two robots one may have a part more.
+        if lost and few and len(likes) > _TWO:
+            like = next(it for it in likes if it != robot)
+            yield differs_from_its_likes.finding(
+                f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",
+                "has it another description, or an older one?",
+                robot=robot, names=tuple(frames[like][it] for it in lost if it in frames[like]),
+            )  # fmt: skip
+
+
+@once
+def _frames(seen: Index) -> Mapping[str, Mapping[str, str]]:
+    """By robot: its frames by their names without its own."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for robot, it in _edges_of(seen):
+        found[robot][seen.plain_frame(it.child)] = it.child
+    return found
