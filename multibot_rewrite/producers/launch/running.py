@@ -58,6 +58,7 @@ DESCRIPTION = "robot_description"
 UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
+_STATIC = "static_transform_publisher"
 _CLASSIC = ("gazebo_ros", "gzserver")
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
@@ -164,6 +165,9 @@ def _started(
     """A launched node, and the nodes that its code makes in its process."""
     facts = known_node(it, (), known.nodes)
     name = full_name(it, facts)
+    if not it.name and facts and facts.kind == _STATIC:
+        # A name of its own each time (tf2_ros static_transform_broadcaster_node.cpp).
+        name = f"{name}_{process}"
     home = container.remappings if container else () if it.container else it.remappings
     inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.name]
     hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
