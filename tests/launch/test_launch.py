@@ -922,7 +922,7 @@ def test_the_python_of_the_page(
 
 
 def test_the_words_of_the_page_are_those_there_are() -> None:
-    (listed,) = re.findall(r"`\$\(multibot WORD\)` is one of (.*?);", PAGE, re.DOTALL)
+    (listed,) = re.findall(r"`\$\(multibot WORD\)` is one of (.*?)\.\s", PAGE, re.DOTALL)
     words = {it.split()[0] for it in re.findall(r"`(.*?)`", listed)}
     assert words == {*launch.WORDS, launch.FILE}
 
