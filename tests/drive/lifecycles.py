@@ -27,8 +27,8 @@ def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
 
 
 def managed(node: Any) -> list[str]:
-    """The full names of the nodes whose service a manager calls (nav2_lifecycle_manager: relative to its
-    namespace; nav2_util lifecycle_service_client.cpp: as its own rules rename the service)."""
+    """The full names of the nodes whose service a manager calls (nav2_lifecycle_manager: relative to
+    its namespace; nav2_util lifecycle_service_client.cpp: as its own rules rename the service)."""
     if node.what != "lifecycle_manager":
         return []
     # The first rule that matches counts.

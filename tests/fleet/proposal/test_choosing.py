@@ -300,3 +300,14 @@ def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) ->
     fleet = taken(tmp_path)
     assert fleet["srdf"] == "one.srdf.xacro"
     assert fleet["companions"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])
+
+
+@pytest.mark.parametrize("copy", ["model (copy).sdf", "model_copy.sdf", "model (1).sdf"])
+def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
+    """The folder's name has a word of a part; that of the copy is read in the same way."""
+    folder = tmp_path / "x500_lidar_down"
+    folder.mkdir()
+    text = '<sdf version="1.9"><model name="x500"><link name="{}"/><link name="b"/></model></sdf>'
+    (folder / "model.sdf").write_text(text.format("a"))
+    (folder / copy).write_text(text.format("a") + "<!-- old -->")
+    assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"
