@@ -311,3 +311,21 @@ def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
     (folder / "model.sdf").write_text(text.format("a"))
     (folder / copy).write_text(text.format("a") + "<!-- old -->")
     assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"
+
+
+@pytest.mark.more
+def test_the_arguments_of_the_srdf_alone_are_given(tmp_path: Path) -> None:
+    """What has no value anywhere is not made up: then the SRDF is not taken."""
+    (tmp_path / "arm.urdf.xacro").write_text(robot("arm", "turn"))
+    text = (
+        '<robot name="$(arg name)"><group name="$(arg {})_all"><joint name="turn"/></group></robot>'
+    )
+    srdf = tmp_path / "arm.srdf.xacro"
+    srdf.write_text(text.format("name"))
+    fleet = taken(tmp_path)
+    assert fleet["srdf"] == "arm.srdf.xacro"
+    assert fleet["arguments"] == {"name": "arm"}
+    srdf.write_text(text.format("side"))
+    fleet = taken(tmp_path, "--force")
+    assert "srdf" not in fleet
+    assert "arguments" not in fleet
