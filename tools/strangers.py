@@ -186,7 +186,8 @@ def _is_told(why: str, told: str) -> bool:
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}
-    return not said.isdisjoint(bare - {"", "robot1", "robot2"})
+    # That a topic of tf is named somewhere says nothing of a frame.
+    return not said.isdisjoint(bare - {"", "robot1", "robot2", "tf", "tf_static"})
 
 
 def short(why: str, it: Stranger) -> str:
