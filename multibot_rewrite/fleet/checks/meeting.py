@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING
+from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.naming import Naming
@@ -24,27 +24,29 @@ from multibot_rewrite.description.readback.reading import NODE, RuntimeName
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.fleet.robots.member import Member, line_of
-from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
+from multibot_rewrite.fleet.robots.own_values import Written, own_value, sources_of
 from multibot_rewrite.spelling.records import Table
 
-if TYPE_CHECKING:
-    from multibot_rewrite.fleet.file.fleet_file import RobotSpec
+NOTHING: Mapping[str, Written] = MappingProxyType({})
 
 
 def with_meetings(
-    table: Table, members: Sequence[Member], naming: Naming, specs: Sequence[RobotSpec] = ()
+    table: Table,
+    members: Sequence[Member],
+    naming: Naming,
+    written: Mapping[str, Written] = NOTHING,
 ) -> Table:
-    """The table with an error for each name that two robots have and that is not shared; ``specs`` are
-    what the fleet file says of the robots.
+    """The table with an error for each name that two robots have and that is not shared; ``written``
+    are the files of robots, by namespace.
 
     Controllers that a stack names are in the table, with their spawners' rules.
     """
-    found = tuple(dict.fromkeys(_meetings(table, members, naming, specs)))
+    found = tuple(dict.fromkeys(_meetings(table, members, naming, written)))
     return table._replace(problems=(*table.problems, *found))
 
 
 def _meetings(
-    table: Table, members: Sequence[Member], naming: Naming, specs: Sequence[RobotSpec]
+    table: Table, members: Sequence[Member], naming: Naming, written: Mapping[str, Written]
 ) -> Iterator[Finding]:
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.nodes if it.home.is_controller}
@@ -56,9 +58,8 @@ def _meetings(
         yield from (it._replace(level=_level(it.code)) for it in shared if it.code != NOT_TAKEN)
         return
     by_robot = {it.robot: it for it in members}
-    by_name = {it.namespace: it for it in specs}
     for it in meetings(_named(table, members), naming):
-        yield _finding(it, by_robot.get(it.robot), by_name.get(it.robot))
+        yield _finding(it, by_robot.get(it.robot), written.get(it.robot))
 
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
@@ -81,25 +82,25 @@ def _of_table(kind: str, name: str, node: str, type_: str = "") -> RuntimeName:
     return RuntimeName(kind, name, "", 0, node, type=type_)
 
 
-def _finding(met: Meeting, member: Member | None, spec: RobotSpec | None) -> Finding:
+def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
     """At the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name), names=(name.name,))
     if name.tag and member:
-        found = found._replace(hint=_own_value(name, member, spec) or found.hint)
+        found = found._replace(hint=_own_value(name, member, written) or found.hint)
         line = line_of(member.source, name.tag, name.number)
         return found._replace(file=member.source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
 
 
-def _own_value(name: RuntimeName, member: Member, spec: RobotSpec | None) -> str:
+def _own_value(name: RuntimeName, member: Member, written: Written | None) -> str:
     """How each robot gets its own of what only one can open."""
     host = next(islice(member.source.root.iter(name.tag), name.number, None), None)
-    if code_of(name) != OPENED or spec is None or host is None:
+    if code_of(name) != OPENED or written is None or host is None:
         return ""
     there = elements_at(host, split_path(name.path)[0])
-    return own_value(sources_of(spec, member, there))
+    return own_value(sources_of(written, member, there))
 
 
 def _level(code: str) -> str:

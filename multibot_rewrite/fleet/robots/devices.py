@@ -69,7 +69,7 @@ def _own_values(robot: RewrittenRobot, count: Mapping[tuple[str, str], int]) -> 
     """How a robot gets its own of what others have, too."""
     params = robot.member.source.root.iterfind("ros2_control/hardware/param")
     met = [it for it in params if count.get((it.get("name", ""), (it.text or "").strip()), 0) > 1]
-    return own_value(sources_of(robot.spec, robot.member, met))
+    return own_value(sources_of(robot.written, robot.member, met))
 
 
 def _of_nodes(

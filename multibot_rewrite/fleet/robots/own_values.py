@@ -5,8 +5,7 @@ or at which line that has no argument."""
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping
 
 from lxml.etree import _Element
 
@@ -14,14 +13,18 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
-from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.document import attribute_slots
 from multibot_rewrite.fleet.robots.member import Member
 
-if TYPE_CHECKING:
-    from multibot_rewrite.fleet.file.fleet_file import RobotSpec
+
+class Written(NamedTuple):
+    """The file that a robot's description, or its model for the simulator, is made of, and the
+    arguments that it gets."""
+
+    path: str
+    arguments: Mapping[str, str]
 
 
 class Source(NamedTuple):
@@ -31,14 +34,13 @@ class Source(NamedTuple):
     place: str = ""
 
 
-def sources_of(spec: RobotSpec, member: Member, elements: Iterable[_Element]) -> list[Source]:
+def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -> list[Source]:
     """What gives the texts of elements of a robot's description, as it was read; none where it is not
     known: of a file that is no xacro, or that cannot be expanded within bounds."""
-    path = spec.simulated or spec.description
+    path, arguments = written
     if not is_xacro(path):
         return []
     try:
-        arguments = filled(spec.arguments, spec.name)
         read = expand_traced(path, read_file(path), arguments, in_pieces=True)
     except InputError:
         return []

@@ -26,12 +26,13 @@ from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, Reader, job_for, joined_reads, reader
-from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to
+from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to, filled
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.robots.member import Member, member
+from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings
 from multibot_rewrite.spelling.transforms import links_of, tree_of
 from multibot_rewrite.system.records import Edge
@@ -74,6 +75,12 @@ class RewrittenRobot(NamedTuple):
     findings: tuple[Finding, ...]
     simulated: bytes = b""
     world_systems: Mapping[str, str] = NO_SYSTEMS
+
+    @property
+    def written(self) -> Written:
+        """The file that it is made of, and the arguments that it gets."""
+        path = self.spec.simulated or self.spec.description
+        return Written(path, filled(self.spec.arguments, self.spec.name))
 
     @property
     def tree(self) -> list[Edge]:
