@@ -120,7 +120,7 @@ def collide(seen: Index, tree: Tree) -> str:
     senders = [it for it in tree.senders if it not in seen.known.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
-    if bare and not seen.robot(tree.topic):
+    if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
         named = {(seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges}
         nameless = [it for it in robots if any((it, frame) not in named for frame in bare)]
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
@@ -133,6 +133,19 @@ def collide(seen: Index, tree: Tree) -> str:
     if bare and _twice(seen, senders):
         return "two nodes of one name send the same frames"
     return ""
+
+
+def _may_meet(seen: Index, tree: Tree) -> bool:
+    """May two robots have one frame here? So, too, where it is not known whose nodes send it."""
+    owners: dict[str, set[str]] = defaultdict(set)
+    for edge in tree.edges:
+        robots = robots_of(seen, edge.publishers)
+        if not robots and not seen.frame_robot(edge.child):
+            return True
+        owners[edge.child].update(robots)
+        owners[edge.parent].update(robots)
+    shared = (it for it, robots in owners.items() if len(robots) > 1)
+    return any(not seen.frame_robot(it) and it not in WORLD_FRAMES for it in shared)
 
 
 def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
