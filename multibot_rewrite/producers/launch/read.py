@@ -22,7 +22,7 @@ from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, LaunchOrder
-from multibot_rewrite.producers.launch.source_packages import add_empty, add_sources
+from multibot_rewrite.producers.launch.source_packages import add_empty, add_file, add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown
 from multibot_rewrite.producers.launch.visit import visit_all
@@ -55,6 +55,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
         except (Exception, SystemExit) as error:
             package, module = missing_package(error), missing_module(error)
             name = package or module
+            if name in missing and add_file(error, folder):
+                continue
             if not name or name in missing:
                 raise UnreadableError(failure(error)) from error
             if package:

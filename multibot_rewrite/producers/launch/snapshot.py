@@ -18,7 +18,7 @@ from multibot_rewrite.base.rosnames import (
     expand,
     resolve_bound,
 )
-from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
@@ -290,18 +290,13 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
-    """Each transform once, with all who send on its topic."""
-    senders: dict[str, list[str]] = defaultdict(list)
-    times: dict[tuple[str, Edge], int] = defaultdict(int)
+    """Each transform once, with all who send it."""
+    senders: dict[tuple[str, Edge], list[str]] = defaultdict(list)
     for part in parts:
-        for end in part.endpoints:
-            if (end.role, end.type) == (PUBLISHES, TF_TYPE):
-                senders[end.name].append(part.name)
-        for topic, edge in dict.fromkeys(part.edges):
-            times[topic, edge] += 1
-    for (topic, edge), count in times.items():
-        who = tuple(dict.fromkeys(senders[topic]))
-        yield edge._replace(topic=topic, publishers=who, several=count > 1)
+        for it in dict.fromkeys(part.edges):
+            senders[it].append(part.name)
+    for (topic, edge), who in senders.items():
+        yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)
 
 
 def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:

@@ -136,16 +136,14 @@ def collide(seen: Index, tree: Tree) -> str:
 
 
 def _may_meet(seen: Index, tree: Tree) -> bool:
-    """May two robots have one frame here? So, too, where it is not known whose nodes send it."""
+    """May two robots have one frame here? So, too, where it is not known what a node of them sends."""
     owners: dict[str, set[str]] = defaultdict(set)
     for edge in tree.edges:
-        robots = robots_of(seen, edge.publishers)
-        if not robots and not seen.frame_robot(edge.child):
-            return True
-        owners[edge.child].update(robots)
-        owners[edge.parent].update(robots)
-    shared = (it for it, robots in owners.items() if len(robots) > 1)
-    return any(not seen.frame_robot(it) and it not in WORLD_FRAMES for it in shared)
+        for frame in (edge.child, edge.parent):
+            owners[frame].update(robots_of(seen, edge.publishers))
+    known = {node for edge in tree.edges for node in edge.publishers}
+    plain = [it for it in owners if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+    return not known.issuperset(tree.senders) or any(len(owners[it]) != 1 for it in plain)
 
 
 def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
