@@ -414,8 +414,7 @@ def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None
         "robot1/base_link",
         "/robot1/tf",
     )
-    # tf messages do not say who of a topic sent them.
-    assert edge.publishers == ("/robot1/rsp", "/b")
+    assert edge.publishers == ("/b",)
     assert made.environment.caveats == ()
 
 

@@ -337,6 +337,7 @@ from acme_tools import name
 from acme_configs.builders import Builder
 from ament_index_python.packages import get_package_share_directory
 SHARE = get_package_share_directory("acme_files")
+TEXT = open(os.path.join(SHARE, "urdf", "rover.urdf")).read()
 CONFIG = Builder("arm", package="acme").of_file(os.path.join(SHARE, "a.yaml")).made()
 """
 
