@@ -121,6 +121,15 @@ def test_two_of_a_program_whose_name_is_not_known_are_not_two_of_one_name(run: G
     assert codes(run(*[node("acme/spawn.py", "spawner", "/")] * 2)) == {"MG301"}
 
 
+def test_what_another_robots_same_node_sends_is_not_meant(run: Graph) -> None:
+    """slam_toolbox reads a LaserScan and sends one: its twin's is not the scan that it lacks."""
+    slams = [
+        node("slam_toolbox/async_slam_toolbox_node", "slam_toolbox", it)
+        for it in ("/tb_0", "/tb_1")
+    ]
+    assert "MG303" not in codes(run(*slams))
+
+
 def test_what_nothing_in_the_launch_sends_is_told_as_in_a_build(run: Graph) -> None:
     (found,) = diagnose(run(publisher("/robot1"))).findings
     assert (found.code, found.level, found.names) == ("MG316", "note", ("/robot1/joint_states",))

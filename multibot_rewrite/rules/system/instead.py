@@ -266,11 +266,12 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Does another node of the same robot, or of none, send it, and is it not read already?"""
+    """Does a node of another name, of the same robot or of none, send it, and is it not read already?"""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
-    own = ("", seen.robot(end.node))
-    return any(it.node != end.node and seen.robot(it.node) in own for it in _givers(ends))
+    own, twin = ("", seen.robot(end.node)), last_word(end.node)
+    # A node of the same name elsewhere does the same for another robot.
+    return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in _givers(ends))
 
 
 def _givers(ends: Ends) -> Iterable[End]:
