@@ -105,7 +105,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
-        parameters=tuple(_clocks(nodes)),
+        parameters=tuple(_clocks(nodes, graph.notes)),
         lookups=tuple(it for node in nodes for it in _lookups(node)),
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
         interfaces=tuple(interfaces_of(nodes, published, graph)),
@@ -299,10 +299,13 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
         yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)
 
 
-def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
-    """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
-    that hold for ever needs no time."""
+def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
+    """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
+    are known. What sends transforms that hold for ever needs no time."""
+    unknown = {it.place for it in notes if it.parameters}
     for it in nodes:
+        if it.place in unknown and it.value(SIM_TIME) is None:
+            continue
         if it.facts is not None and it.facts.known not in ("", STATIC):
             text = parameter_text(it.value(SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)
