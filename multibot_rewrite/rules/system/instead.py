@@ -266,7 +266,7 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Does a node of another name, of the same robot or of none, send it, and is it not read already?"""
+    """Does a node of another name, of its robot or of none, send it, and is it not read already?"""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
     own, twin = ("", seen.robot(end.node)), last_word(end.node)
