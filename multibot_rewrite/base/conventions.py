@@ -201,7 +201,7 @@ TEAMS = {
         *("*controller_server*", "*behavior_server*", "*recoveries_server*", "*velocity_smoother*"),
         *("*collision_monitor*", "*docking_server*", "*following_server*", "*bt_navigator*"),
         *("*route_server*", "*planner_server*", "*waypoint_follower*", "*lifecycle_manager*"),
-        *("*costmap", "*costmap_client", "*costmap_rclcpp_node"),
+        "*costmap*",
     ),
     "MoveIt": ("*move_group*", "*servo*", "*moveit_*"),
 }

@@ -84,6 +84,8 @@ def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]
     layout, files = fleet
     common = {"plan.yaml", "remappings.yaml", "commands.md", "bridge.yaml"}
     common |= {"fleet.launch.py"}
+    # One set of frames for each robot: a layout of Foxglove shows all.
+    common |= {"foxglove.json"} if layout != "L1" else set()
     own = {
         "scout": {"rover.urdf", "params.yaml", "bridge.yaml", "one_robot.rviz", "start_pose.yaml"},
         "reach": {

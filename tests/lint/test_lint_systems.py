@@ -43,9 +43,9 @@ def gz(inside: str = FILE) -> str:
     return plugin("gz_ros2_control-system", name, inside)
 
 
-def drive(*joints: str) -> str:
+def drive(*joints: str, library: str = "diff-drive", name: str = "DiffDrive") -> str:
     inside = "".join(f"<left_joint>{it}</left_joint>" for it in joints)
-    return plugin("gz-sim-diff-drive-system", "gz::sim::systems::DiffDrive", inside)
+    return plugin(f"gz-sim-{library}-system", f"gz::sim::systems::{name}", inside)
 
 
 def classic(inside: str = FILE) -> str:
@@ -91,7 +91,10 @@ PLANTED = {
     "hardware of Classic in gz": (system(CLASSIC, joint("j")) + gz(), "MB235"),
     "hardware of gz in Classic": (system(GZ, joint("j")) + classic(), "MB235"),
     "a drive beside a controller": (system(GZ, joint("j")) + gz() + drive("j"), "MB236"),
-    "two drives of one joint": (drive("j") + drive("j"), "MB236"),
+    "two drives of one joint": (
+        drive("j") + drive("j", library="ackermann-steering", name="AckermannSteering"),
+        "MB236",
+    ),
     "velocty": (system(MOCK, joint("j", '<command_interface name="velocty"/>' + BOTH)), "MB110"),
     "Position": (system(MOCK, joint("j", '<state_interface name="Position"/>' + BOTH)), "MB110"),
     "torque in simulation": (

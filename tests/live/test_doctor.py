@@ -289,6 +289,8 @@ def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -
     graph, folder = graph._replace(edges=tuple(frames)), tmp_path / "first"
     given = ["check", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
     assert multibot.main(given) == 0
+    (made,) = {it.read_text().partition("\n")[0] for it in folder.rglob("*.urdf")}
+    assert made == '<?xml version="1.0"?>'
     planned = str(tmp_path / "plan.yaml")
     assert multibot.main(["plan", str(folder / "fleet.yaml"), "-o", planned]) == 0
     robot, _ = from_yaml(Path(planned).read_bytes(), planned).robots

@@ -109,6 +109,31 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
     )
 
 
+def test_a_frame_with_the_name_of_a_link_follows_it(tmp_path: Path) -> None:
+    text = (
+        '<robot name="r"><link name="base"/><gazebo reference="base">'
+        '<sensor name="s" type="imu"><gz_frame_id>base</gz_frame_id></sensor></gazebo><gazebo>'
+        '<plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>base</frame_name></plugin>'
+        "</gazebo></robot>"
+    )
+    (tmp_path / "r.urdf").write_text(text)
+    made = rename_symbol("base", "chassis", str(tmp_path))
+    assert next(iter(made.after.values())).decode() == text.replace('"base"', '"chassis"').replace(
+        ">base<", ">chassis<"
+    )
+
+
+def test_a_frame_is_renamed(tmp_path: Path) -> None:
+    text = (
+        '<robot name="r"><link name="base"/><gazebo>'
+        '<plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>ground</frame_name></plugin>'
+        "</gazebo></robot>"
+    )
+    (tmp_path / "r.urdf").write_text(text)
+    made = rename_symbol("ground", "floor", str(tmp_path), kind="frame")
+    assert next(iter(made.after.values())).decode() == text.replace(">ground<", ">floor<")
+
+
 def test_a_topic_is_renamed(tmp_path: Path) -> None:
     text = (
         f'<robot name="r" {SPACE}><link name="base"/><gazebo reference="base">'

@@ -320,7 +320,9 @@ def _given(
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
         lost = missing_package(FileNotFoundError(path))
-        said = f"a parameter file of the package {lost!r}, which is not installed here, is not known"
+        said = (
+            f"a parameter file of the package {lost!r}, which is not installed here, is not known"
+        )
         what = said if lost else f"the parameter file {path!r} is not there"
         here.note(what, parameters=True, file="" if lost else path)
         return

@@ -106,6 +106,8 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
     if len(robots) != 1 or {it[1] if it else b"" for it in names} != robots:
         return
     there = {name for subject in subjects for name in subject.robot.joint}
+    # Of a fleet also by what they are called before an argument makes them the robot's.
+    there |= {*file.context.names.declared.get("joint", ())}
     told: set[str] = set()
     for it in section.given:
         found = _JOINT.match(it.name)

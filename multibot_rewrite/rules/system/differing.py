@@ -178,7 +178,10 @@ def _parts(seen: Index) -> _Values:
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
     for robot, it in _edges_of(seen):
         child, parent = seen.plain_frame(it.child), seen.plain_frame(it.parent)
-        found[child, "parent"][robot] = _Told(it.topic, it.child, f"below {it.parent}", parent)
+        # One in another form than the robot's frames has no words in common with the others'.
+        if parent != it.parent or not seen.frame_robot(it.parent):
+            told = _Told(it.topic, it.child, f"below {it.parent}", parent)
+            found[child, "parent"][robot] = told
         if it.transform:
             at = " ".join(f"{number:.3g}" for number in it.transform[:3])
             place = str([round(number / _SAME) for number in it.transform])

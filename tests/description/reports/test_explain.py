@@ -71,6 +71,21 @@ def test_a_value_that_stays_says_why(line: int, path: str, options: dict, words:
     assert item.new == item.value
 
 
+@pytest.mark.parametrize(
+    ("topic", "new"),
+    [
+        ("scan", "scan/robot1"),
+        ("/clock", "/clock"),
+    ],
+)
+def test_a_topic_is_renamed_unless_it_is_shared(topic: str, new: str) -> None:
+    lidar = f'<sensor name="s" type="gpu_lidar"><topic>{topic}</topic></sensor>'
+    text = f'<robot name="r"><link name="a"/><gazebo reference="a">\n{lidar}</gazebo></robot>'
+    (item,) = (it for it in explain(text.encode(), 2) if it.value == topic)
+    assert item.new == new
+    assert ("a shared topic" in item.reason) is (new == topic), item.reason
+
+
 def test_what_nothing_claims_is_told_apart() -> None:
     found = told(11)
     assert found["robot/gazebo/plugin[libown.so]/place"] == (

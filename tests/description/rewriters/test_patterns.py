@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import shutil
+import string
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,7 @@ from counted_steps import growth
 
 from multibot_rewrite.description.rewriters.patterns import Pattern, PatternError
 
+LETTERS = string.ascii_letters + string.digits + "_"
 GXX = shutil.which("g++")
 REFEREE = """
 #include <iostream>
@@ -29,6 +31,13 @@ int main() {
   }
 }
 """
+
+
+def test_a_letter_digit_or_underscore_means_itself() -> None:
+    for it in LETTERS:
+        pattern = Pattern(f"a(b{it}c|d)")
+        assert pattern.matches(f"ab{it}c") and pattern.matches("ad")
+        assert not pattern.matches(f"ab{it}") and not pattern.matches("abc")
 
 
 @pytest.mark.parametrize(

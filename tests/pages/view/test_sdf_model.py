@@ -72,6 +72,21 @@ def test_a_joint_turns_about_its_axis_and_keeps_its_limits(model: Model) -> None
     assert not [it for it in model.joints if it.name in ("loop", "to_world")]
 
 
+@pytest.mark.parametrize(
+    ("kind", "ends"),
+    [("revolute", (-pi, pi)), ("continuous", (-pi, pi)), ("prismatic", (-10.0, 10.0))],
+)
+def test_a_joint_without_limits_makes_one_turn_or_ten_metres(
+    kind: str, ends: tuple[float, float]
+) -> None:
+    joint = f'<joint name="j" type="{kind}"><parent>a</parent><child>b</child></joint>'
+    text = (
+        f'<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/>{joint}</model></sdf>'
+    )
+    made = of(load(text), "j")
+    assert (made.lower, made.upper) == pytest.approx(ends)
+
+
 def test_shapes_stay_where_their_link_is(model: Model) -> None:
     (box,), (cylinder,) = model.links["base"], model.links["wheel"]
     assert (box.kind, box.size, box.colour) == ("box", (1, 2, 3), (1, 0, 0, 1))
