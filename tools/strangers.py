@@ -36,7 +36,7 @@ LONGEST = 200
 
 
 class Stranger(NamedTuple):
-    """A repository of the list; ``half`` is "work", "last" or "fresh"."""
+    """A repository of the list; ``half`` is "work", "last", "fresh", "more" or "kept"."""
 
     name: str
     kind: str
@@ -186,7 +186,8 @@ def _is_told(why: str, told: str) -> bool:
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}
-    return not said.isdisjoint(bare - {"", "robot1", "robot2"})
+    # That a topic of tf is named somewhere says nothing of a frame.
+    return not said.isdisjoint(bare - {"", "robot1", "robot2", "tf", "tf_static"})
 
 
 def short(why: str, it: Stranger) -> str:
@@ -214,7 +215,7 @@ def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "last", "fresh"), default="work")
+    parser.add_argument("--half", choices=("work", "last", "fresh", "more", "kept"), default="work")
     parser.add_argument("--only", default="", help="a part of the names")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")

@@ -53,6 +53,7 @@ from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robo
 from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.foxglove import to_layout
 from multibot_rewrite.spelling.plan_file import to_yaml
@@ -129,7 +130,8 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from other_hardware(plan.robots)
     yield from named_twice(plan.robots)
     met = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
-    yield from one_device_each(plan.robots, met)
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    yield from one_device_each(plan.robots, plan.evidence_of, known, met)
     for found in plan.evidence.values():
         yield from found.findings
     yield from too_near(plan)

@@ -127,7 +127,7 @@ def _fleet(
         notes += found.findings
     fleet = merge(fleets)
     members = [it.member for it in robots]
-    table = with_meetings(fleet.table, members, naming)
+    table = with_meetings(fleet.table, members, naming, [it.spec for it in robots])
     chosen = [it.member for it in robots if is_chosen(it)]
     real = [it.member for it in robots if it.spec.simulator == REAL]
     wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)

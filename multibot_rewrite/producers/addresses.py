@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from ipaddress import IPv4Address
 
 from lxml.etree import _Element
 
@@ -31,10 +32,11 @@ def of_hardware(root: _Element, node: str, place: Place) -> Iterator[Address]:
         if (hardware.findtext("plugin") or "").strip().startswith(_MOCKS):
             continue
         params = {it.get("name", ""): (it.text or "").strip() for it in hardware.iterfind("param")}
+        kinds = {name: known.get(name, _of_value(value)) for name, value in params.items()}
         found = [
-            Address(known[name], name, value, node, place)
+            Address(kinds[name], name, value, node, place)
             for name, value in params.items()
-            if name in known
+            if kinds[name]
         ]
         if not any(it.kind == DEVICE and it.value in nowhere for it in found):
             yield from (it for it in dict.fromkeys(found) if it.value not in nowhere)
@@ -49,19 +51,32 @@ def of_parameters(
         known = params.get(name)
         if known and known.kind in OWN_KINDS and text.lower() not in _OFF:
             yield Address(OWN, name, text, node, given.place)
-        elif not known and is_held(name, text):
-            yield Address(COMPUTER, name, text, node, given.place)
+        elif not known and (kind := held_by(name, text)):
+            yield Address(kind, name, text, node, given.place)
 
 
-def is_held(name: str, text: str) -> bool:
-    """Does a parameter of a node that is not known name what one process of a computer has: a device, a
-    port, a file that it writes?"""
+def held_by(name: str, text: str) -> str:
+    """The kind of what one process has by a parameter of a node that is not known: a device in a
+    network or by its number; of a computer a device, a port, a file that it writes. Else empty."""
     word = name.rpartition(".")[2]
-    if _DEVICE.fullmatch(text):
-        return True
+    if word in _data()["address"]:
+        numbered = word.startswith("serial_n") and text not in _data()["nowhere"]
+        return DEVICE if numbered or _is_of_network(text) else _of_value(text)
     if word == "port" or word.endswith("_port"):
-        return text.isdecimal() and int(text) >= _FREE_PORTS
-    return bool(text) and word in _data()["written"]
+        return COMPUTER if text.isdecimal() and int(text) >= _FREE_PORTS else _of_value(text)
+    return COMPUTER if text and word in _data()["written"] else _of_value(text)
+
+
+def _of_value(text: str) -> str:
+    return COMPUTER if _DEVICE.fullmatch(text) else ""
+
+
+def _is_of_network(text: str) -> bool:
+    """Is it the address of another computer?"""
+    try:
+        return not (it := IPv4Address(text)).is_loopback and not it.is_unspecified
+    except ValueError:
+        return False
 
 
 def _known() -> Mapping[str, str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -93,4 +93,75 @@ def test_a_file_of_one_robot_keeps_its_port(tmp_path: Path) -> None:
         _of(texts[it], "rosbridge")["port"] for it in ("robot1/params.yaml", "robot2/other.yaml")
     ]
     assert ports == [9090, 9191]
-    assert not [it for it in said if it.code in ("MF845", "MB412")]
+    assert not [it for it in said if it.code == "MF845"]
+    # What both files have is told at the second one, but for the port.
+    told = " ".join(it.message for it in said if it.code == "MB412")
+    same = ("/tmp/photos", "ekf.debug.txt", "/dev/video0", "/tmp/pictures", "8554")
+    assert [word for word in (*same, "9090", "9191") if word in told] == list(same)
+
+
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="ip" default="10.0.0.2"/>
+  <xacro:macro name="hardware" params="address">
+    <ros2_control name="arm" type="system">
+      <hardware>
+        <plugin>{plugin}</plugin>
+        <param name="robot_ip">${{address}}</param>
+        <param name="channel">can0</param>
+      </hardware>
+    </ros2_control>
+  </xacro:macro>
+  <link name="base_link"/>
+  <xacro:hardware address="$(arg ip)"/>
+</robot>
+"""
+DRIVERS = """\
+lidar:
+  ros__parameters: {device_ip: 192.168.1.201, host_ip: 192.168.1.100}
+camera:
+  ros__parameters: {serial_no: "'819612'", ip: 127.0.0.1, hostname: camera}
+"""
+
+
+def _arms(folder: Path, plugin: str, robots: str) -> list[Finding]:
+    (folder / "arm.urdf.xacro").write_text(ARM.format(plugin=plugin))
+    (folder / "drivers.yaml").write_text(DRIVERS)
+    (folder / "own.yaml").write_text(DRIVERS)
+    (folder / "fleet.yaml").write_text(
+        "layout: both\ndistro: jazzy\nsimulator: none\ndescription: arm.urdf.xacro\n"
+        f"robots:\n{robots}"
+    )
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    said = (*plan.fleet.table.problems, *make_outputs(plan, str(folder)).findings)
+    return [it for it in said if it.code == "MB412"]
+
+
+# One whose address the vocabulary knows, and one that nobody has read.
+@pytest.mark.parametrize("plugin", ["ur_robot_driver/URPositionHardwareInterface", "my/Arm"])
+def test_the_argument_of_an_address_is_named(tmp_path: Path, plugin: str) -> None:
+    """It is called otherwise than the parameter; what has no argument is told with its line."""
+    said = _arms(tmp_path, plugin, "  - {name: robot1}\n  - {name: robot2}\n")
+    (address,) = (it for it in said if "10.0.0.2" in it.message)
+    assert "arguments: {ip: ...}" in address.hint
+    (bus,) = (it for it in said if "can0" in it.message)
+    assert "arm.urdf.xacro:8" in bus.hint
+    own = "".join(f"  - {{name: robot{at}, arguments: {{ip: 10.0.0.{at}}}}}\n" for at in (1, 2))
+    (bus,) = _arms(tmp_path, plugin, own)
+    assert "can0" in bus.message
+    assert "arguments" not in bus.hint
+
+
+@pytest.mark.parametrize("files", ["drivers.yaml drivers.yaml", "drivers.yaml own.yaml"])
+def test_two_robots_with_one_device_in_a_network(tmp_path: Path, files: str) -> None:
+    """In one file for both, also where their descriptions differ, and in a file of each."""
+    robots = "".join(
+        f"  - {{name: robot{at}, arguments: {{ip: 10.0.0.{at}}}, companions: {{params: {file}}}}}\n"
+        for at, file in enumerate(files.split(), 1)
+    )
+    said = [it for it in _arms(tmp_path, "my/Arm", robots) if "can0" not in it.message]
+    told = " ".join(it.message for it in said)
+    assert "device_ip 192.168.1.201" in told
+    assert "serial_no '819612'" in told
+    assert {it.level for it in said} == {WARNING}
+    assert not [word for word in ("host_ip", "127.0.0.1", "hostname") if word in told]

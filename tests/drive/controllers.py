@@ -56,7 +56,8 @@ def read(
         for name in names_of(start["arguments"]) if fits else ():
             robot, inside = fits[0].robot, fits[0].inside
             has = exported(roots.get(robot), joints.get(robot) if inside else None)
-            controller(found, who, fits[0], name, has, given.release)
+            manager = with_files(fits[0], name, files_of(start["arguments"]))
+            controller(found, who, manager, name, has, given.release)
     return found
 
 
@@ -96,6 +97,25 @@ def names_of(words: list[str]) -> list[str]:
     """The controllers among a spawner's arguments: the words before its options."""
     at = next((at for at, it in enumerate(words) if it.startswith("-")), len(words))
     return words[:at]
+
+
+def files_of(words: list[str]) -> list[Mapping[str, Any]]:
+    """What the parameter files of a spawner hold."""
+    names = (words[at + 1] for at, it in enumerate(words[:-1]) if it in ("-p", "--param-file"))
+    files = [Path(it) for it in names]
+    return [yaml.safe_load(it.read_text()) or {} for it in files if it.is_file()]
+
+
+def with_files(manager: Manager, name: str, files: list[Mapping[str, Any]]) -> Manager:
+    """The manager with what a spawner tells it of a controller: its files, and the type that the
+    controller's own section in them has (controller_manager_services.py,
+    set_controller_parameters_from_param_files)."""
+    fqn = f"{manager.namespace.rstrip('/')}/{name}"
+    kind = programs.parameters_of(fqn, files).get("type")
+    told = {manager.name: {"ros__parameters": {f"{name}.type": kind}}} if kind else {}
+    below = manager.namespace.strip("/")
+    section = {f"/{below}": told} if below else told
+    return manager._replace(sections=[*manager.sections, *files, section])
 
 
 def controller(

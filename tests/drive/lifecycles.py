@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 CONFIGURE, ACTIVATE = 1, 3
+CHANGE = "/change_state"
 
 
 def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
@@ -26,11 +27,18 @@ def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
 
 
 def managed(node: Any) -> list[str]:
-    """The full names that a manager asks for (nav2_lifecycle_manager: relative to its namespace)."""
+    """The full names of the nodes whose service a manager calls (nav2_lifecycle_manager: relative to
+    its namespace; nav2_util lifecycle_service_client.cpp: as its own rules rename the service)."""
     if node.what != "lifecycle_manager":
         return []
-    names = [str(it) for it in node.values.get("node_names", ())]
-    return [it if it.startswith("/") else f"{node.namespace.rstrip('/')}/{it}" for it in names]
+    # The first rule that matches counts.
+    rules = {below(node, old): below(node, new) for old, new in reversed(node.rules)}
+    calls = [below(node, f"{it}{CHANGE}") for it in node.values.get("node_names", ())]
+    return [rules.get(it, it).removesuffix(CHANGE) for it in calls]
+
+
+def below(node: Any, name: str) -> str:
+    return name if name.startswith("/") else f"{node.namespace.rstrip('/')}/{name}"
 
 
 def is_managed(node: Any) -> bool:

@@ -156,3 +156,35 @@ def test_robots_that_launch_files_of_their_own_have_them(
         (it.robot, it.name) for it in plan.fleet.table.nodes if it.node in ("drive", "steer")
     }
     assert controllers == {("robot1", "drive"), ("robot2", "steer")}
+
+
+EKF = "/ekf_filter_node:\n  ros__parameters: {{{}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("values", "params", "told"),
+    [
+        ("base_link_frame: chassis, world_frame: ground", "", "base_link_frame, world_frame"),
+        # A default, what is no name, and what a file has as well.
+        ("base_link_frame: base_link, frequency: 20.0", "", ""),
+        ("base_link_frame: chassis", "ekf.yaml", ""),
+    ],
+)
+def test_names_that_the_launch_itself_gives_are_told(
+    values: str, params: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """robot_localization's ekf_node is started by what build writes, with parameter files alone."""
+    given = ParameterText("", EKF.format(values))
+    (tmp_path / "ekf.yaml").write_text(EKF.format("base_link_frame: chassis"))
+    node = LaunchedNode(
+        "robot_localization", "ekf_node", "ekf_filter_node", "/", (), (given,), "", (), "", AT
+    )
+    monkeypatch.setattr(launched_robot, "launch_graph", lambda _: LaunchGraph((node,)))
+    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
+    (tmp_path / "bringup.launch.py").write_text("")
+    (tmp_path / "fleet.yaml").write_text(FLEET.format(params=params))
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    said = [it for it in plan.fleet.table.problems if it.code == "MF824"]
+    assert [it.message.partition(" ekf_filter_node ")[2].partition(":")[0] for it in said] == (
+        [told] if told else []
+    )

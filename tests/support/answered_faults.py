@@ -39,7 +39,7 @@ def header_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a camera whose frame no node sends", nav, heard("/robot1/front/image_raw", "thermal"),
-            "MG412", ("/robot1/camera_driver", "send a transform"), WARNING,
+            "MG412", ("/robot1/camera_driver", "camera_optical_frame"), WARNING,
         ),
         Fault(
             "odometry in the other robot's odom", shared_tf, heard("/robot1/odom", "odom/robot2"),

@@ -5,6 +5,8 @@ remap table, for what no description starts."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.naming import Naming
@@ -19,22 +21,31 @@ from multibot_rewrite.description.readback.meeting import (
     said,
 )
 from multibot_rewrite.description.readback.reading import NODE, RuntimeName
-from multibot_rewrite.description.sources.known_arguments import known_arguments
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.readback.xml import elements_at
+from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.fleet.robots.member import Member, line_of
+from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.spelling.records import Table
 
+if TYPE_CHECKING:
+    from multibot_rewrite.fleet.file.fleet_file import RobotSpec
 
-def with_meetings(table: Table, members: Sequence[Member], naming: Naming) -> Table:
-    """The table with an error for each name that two robots have and that is not shared.
+
+def with_meetings(
+    table: Table, members: Sequence[Member], naming: Naming, specs: Sequence[RobotSpec] = ()
+) -> Table:
+    """The table with an error for each name that two robots have and that is not shared; ``specs`` are
+    what the fleet file says of the robots.
 
     Controllers that a stack names are in the table, with their spawners' rules.
     """
-    found = tuple(dict.fromkeys(_meetings(table, members, naming)))
+    found = tuple(dict.fromkeys(_meetings(table, members, naming, specs)))
     return table._replace(problems=(*table.problems, *found))
 
 
-def _meetings(table: Table, members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
+def _meetings(
+    table: Table, members: Sequence[Member], naming: Naming, specs: Sequence[RobotSpec]
+) -> Iterator[Finding]:
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.nodes if it.home.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -45,8 +56,9 @@ def _meetings(table: Table, members: Sequence[Member], naming: Naming) -> Iterat
         yield from (it._replace(level=_level(it.code)) for it in shared if it.code != NOT_TAKEN)
         return
     by_robot = {it.robot: it for it in members}
+    by_name = {it.namespace: it for it in specs}
     for it in meetings(_named(table, members), naming):
-        yield _finding(it, by_robot.get(it.robot))
+        yield _finding(it, by_robot.get(it.robot), by_name.get(it.robot))
 
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
@@ -69,24 +81,25 @@ def _of_table(kind: str, name: str, node: str, type_: str = "") -> RuntimeName:
     return RuntimeName(kind, name, "", 0, node, type=type_)
 
 
-def _finding(met: Meeting, member: Member | None) -> Finding:
+def _finding(met: Meeting, member: Member | None, spec: RobotSpec | None) -> Finding:
     """At the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name), names=(name.name,))
     if name.tag and member:
-        found = found._replace(hint=_by_argument(name, member) or found.hint)
+        found = found._replace(hint=_own_value(name, member, spec) or found.hint)
         line = line_of(member.source, name.tag, name.number)
         return found._replace(file=member.source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
 
 
-def _by_argument(name: RuntimeName, member: Member) -> str:
-    """What to do where an argument of the xacro is called as the parameter that has the value."""
-    word = name.path.rpartition("=")[2].rstrip("]")
-    if code_of(name) != OPENED or word not in known_arguments(map(read_file, member.read)).names:
+def _own_value(name: RuntimeName, member: Member, spec: RobotSpec | None) -> str:
+    """How each robot gets its own of what only one can open."""
+    host = next(islice(member.source.root.iter(name.tag), name.number, None), None)
+    if code_of(name) != OPENED or spec is None or host is None:
         return ""
-    return f"give each robot its own in the fleet file: arguments: {{{word}: ...}}"
+    there = elements_at(host, split_path(name.path)[0])
+    return own_value(sources_of(spec, member, there))
 
 
 def _level(code: str) -> str:

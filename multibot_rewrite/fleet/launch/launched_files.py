@@ -16,10 +16,14 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
+from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.system.records import Place
 
@@ -30,6 +34,9 @@ _SPAWNER = (
     "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n      exec: spawner\n"
 )
 _DRIVE = "drive:\n  ros__parameters: {type: diff_drive_controller/DiffDriveController}\n"
+# Of these kinds a value that is lost leads to another name; the nodes of managers are written anyway.
+_NAMES = frozenset({"frame", "link", "joint", "topic", "service"})
+_MANAGER = "lifecycle_manager"
 _FLEET = """\
 companions: {params: PARAMS}
 launch: system_model.yaml
@@ -42,10 +49,12 @@ NOT_REWRITTEN = declare(
     "launched-parameters-not-rewritten",
     NOTE,
     what="A launch file gives a node a parameter file that is not rewritten: the robot has another "
-    "file of that name (a note), or the launch writes a robot's name in it, or more (a warning).",
+    "file of that name (a note), or the launch writes a robot's name in it, or more (a warning). Or it "
+    "gives a node frames or topics itself, without a file (a warning).",
     why="Robots that are launched with it all read the same frames, joints and topics.",
     fix="Nothing, if the launch is to get the file that is written in its place; else give one of them "
-    "another name. Write a file with $(var ...) out for one robot, and list that under `params`.",
+    "another name. Write a file with $(var ...) out for one robot, and list that under `params`. "
+    "What the launch sets itself goes into a file as well.",
     bad=_FLEET.replace("PARAMS", "drive.yaml"),
     good=_FLEET.replace("PARAMS", "config/drive.yaml"),
     line=3,
@@ -120,6 +129,32 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
             notes.append(_unfilled(it))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
     return spec._replace(companions=companions, filled=tuple(filled)), notes
+
+
+def set_by_launch(
+    given: Sequence[GivenNode], started: Mapping[str, LaunchedNode], known: KnownNodes
+) -> Iterator[Finding]:
+    """The names that launch files themselves give to known nodes which they start: what build writes
+    starts these nodes, too, and has only what stands in parameter files."""
+    for node in given:
+        launched = started.get(node.name)
+        if launched is None or node.known not in known.nodes or node.known == _MANAGER:
+            continue
+        lost = list(_lost(node, known.nodes[node.known].params.values(), launched.place.file))
+        if lost:
+            message = f"the launch file itself gives {node.name} {shorten(lost)}"
+            hint = "write them into a parameter file of that node, and list it under params"
+            own = {"file": launched.place.file, "line": launched.place.line, "column": 1}
+            said = f"{message}: what build writes has them not"
+            yield NOT_REWRITTEN.finding(said, hint, level=WARNING, **own)
+
+
+def _lost(node: GivenNode, params: Collection[Param], launch: str) -> Iterator[str]:
+    for name, it in node.values.items():
+        param = next((one for one in params if is_called(one, name)), None)
+        named = param is not None and param.kind in _NAMES and str(it.value) != param.default
+        if named and it.place.file == launch:
+            yield name
 
 
 def _written(spec: RobotSpec) -> Iterator[str]:

@@ -55,9 +55,12 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
                 made = _made(plan, group, kind, path)
                 evidence = plan.evidence_of(group.robots[0])
                 made.file.memo[Beside] = Beside(evidence.given, evidence.known)
-                found = (*made.findings, *judged_once(of_fleet(plan, made.file, group.robots)))
-                yield from (_with_names_of(group.robots[0], it) for it in found)
                 numbers = _numbers(plan, key, path)
+                file = of_fleet(plan, made.file, group.robots)
+                # Robots that differ in their descriptions may have one file.
+                file = file._replace(is_for_one=file.is_for_one and len(numbers) == 1)
+                found = (*made.findings, *judged_once(file))
+                yield from (_with_names_of(group.robots[0], it) for it in found)
                 yield from _numbered(made.file, numbers)
                 for robot in group.robots:
                     spec = robot.spec

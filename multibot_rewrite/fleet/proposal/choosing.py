@@ -20,6 +20,8 @@ from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, text_
 _PART = lazy_compile(
     r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
 )
+# What a file manager calls a copy of a file.
+_COPY = lazy_compile(r"[ (_-]+copy\b\)?|\s*\(\d+\)")
 # With a share of its names that is so many times as large, files are for this description.
 _MORE = 2
 
@@ -79,9 +81,11 @@ def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
 
 
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, launched, named; then what is for a simulator, has ``<ros2_control>``, a short path."""
+    """By kind, launched, named; then what is no copy, for a simulator, has ``<ros2_control>``, a short
+    path."""
     robot = it.robot
-    more = robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
+    is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
+    more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
     return *it.kind, not it.launched, -it.named, *more
 
 
@@ -131,7 +135,8 @@ def _package(path: str) -> str:
 def _stem(path: str) -> str:
     """What a description is called: by its file, a model by its folder."""
     stem = os.path.basename(path).partition(".")[0]
-    return os.path.basename(os.path.dirname(path)) if stem == "model" else stem
+    is_model = _COPY.sub("", stem).strip() == "model"
+    return os.path.basename(os.path.dirname(path)) if is_model else stem
 
 
 def _links(it: Looked) -> Iterator[str]:

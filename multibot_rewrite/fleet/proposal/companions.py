@@ -92,6 +92,12 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     return Companions(chosen, "".join(srdf), dict(_stacks(robot, nodes, "".join(srdf))), left)
 
 
+def srdf_of(robot: Looked, found: Found) -> str:
+    """The SRDF with most of the robot's names; empty for none."""
+    named = without(found, {**of_others(robot, found), **_with_others_names(robot, found)})
+    return "".join(_best_known(robot, named.srdf)[:1])
+
+
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
     """The files of controllers of the real robot, whose simulated one is driven by other plugins, and
     those beside a description that has nothing for them to move."""

@@ -105,6 +105,28 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     return it._replace(arguments=tuple({**kept, **own}.items()))
 
 
+def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: NeededValues) -> Looked:
+    """The same with what its SRDF cannot be expanded without, where a value is known."""
+    more: dict[str, str] = {}
+    for _ in range(MOST_ARGUMENTS if srdf.endswith(".xacro") else 0):
+        given = {**more, **dict(it.arguments)}
+        try:
+            expand(srdf, filled(given, ANY), None, reach)
+        except InputError as error:
+            needed = _NEEDED.search(str(error))
+            if not needed or needed[1] in given:
+                return it
+            # MoveIt wants the name of the model.
+            value = it.name if needed[1] == "name" else values.of(needed[1])
+            if not value:
+                return it
+            more[needed[1]] = value
+            continue
+        arguments = (*it.arguments, *more.items())
+        return it._replace(arguments=arguments, needed=(*it.needed, *more))
+    return it
+
+
 def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
     """The same with the arguments that name robots empty, but for those that were ``given`` or that it
     cannot do without."""

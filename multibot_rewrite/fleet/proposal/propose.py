@@ -16,7 +16,7 @@ from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.fleet_file import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
-from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
+from multibot_rewrite.fleet.proposal.companions import Companions, companions_of, srdf_of
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     NO_SIMULATOR,
@@ -28,6 +28,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     look,
     with_model,
     with_own_arguments,
+    with_semantic_arguments,
 )
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of, without
 
@@ -256,9 +257,14 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     reach = Reach(trust=wanted.trust)
     own = [with_own_arguments(it, tree, reach) for it in robots]
     launched = any(it in text_of(path) for path in found.launch for it in _SIMULATORS)
-    return [
+    made = [
         in_its_world(it, _is_simulated(it, wanted) or (launched and not wanted.simulator), reach)
         for it in own
+    ]
+    values = NeededValues(found.launch)
+    return [
+        with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
+        for it in made
     ]
 
 

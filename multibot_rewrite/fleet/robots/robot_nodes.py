@@ -16,6 +16,7 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
+from multibot_rewrite.fleet.launch.launched_files import set_by_launch
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
     launched_robot,
@@ -88,9 +89,10 @@ def robot_nodes(
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
-    said = (*notes, *findings, *shared)
-    started = launched.started.values() if launched else ()
-    arguments = tuple(word for it in started for word in it.arguments)
+    started = launched.started if launched else {}
+    lost = set_by_launch(given, started, parameters)
+    said = (*notes, *findings, *shared, *lost)
+    arguments = tuple(word for it in started.values() for word in it.arguments)
     return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
 
 

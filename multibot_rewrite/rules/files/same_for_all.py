@@ -19,10 +19,11 @@ from multibot_rewrite.companions.rviz.read_config import GRAPH_NAMESPACE, RvizIt
 from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
-from multibot_rewrite.producers.addresses import is_held
+from multibot_rewrite.producers.addresses import held_by
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.given import given_in
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark, remark_at
+from multibot_rewrite.system.records import COMPUTER
 
 _TWO = ("robot1", "robot2")
 # Patterns that match everything or nothing hold no robot's name.
@@ -45,9 +46,14 @@ def _exclusive(file: NamedFile) -> Iterator[Remark]:
     for section, _ in file.pages:
         for key, value in () if section.shared else scalars(section.body):
             text = str(value.value)
-            if value.start_mark.index not in known and is_held(key.value, text):
+            kind = "" if value.start_mark.index in known else held_by(key.value, text)
+            if kind == COMPUTER:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
                 yield remark_at(value, _same(key.value, text), hint, NOTE)
+            elif kind:
+                yield remark_at(
+                    value, _same(key.value, text), f"one device has one driver: {_OWN_VALUE}"
+                )
 
 
 def _same(key: str, text: str) -> str:

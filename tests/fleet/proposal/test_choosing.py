@@ -300,3 +300,32 @@ def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) ->
     fleet = taken(tmp_path)
     assert fleet["srdf"] == "one.srdf.xacro"
     assert fleet["companions"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])
+
+
+@pytest.mark.parametrize("copy", ["model (copy).sdf", "model_copy.sdf", "model (1).sdf"])
+def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
+    """The folder's name has a word of a part; that of the copy is read in the same way."""
+    folder = tmp_path / "x500_lidar_down"
+    folder.mkdir()
+    text = '<sdf version="1.9"><model name="x500"><link name="{}"/><link name="b"/></model></sdf>'
+    (folder / "model.sdf").write_text(text.format("a"))
+    (folder / copy).write_text(text.format("a") + "<!-- old -->")
+    assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"
+
+
+@pytest.mark.more
+def test_the_arguments_of_the_srdf_alone_are_given(tmp_path: Path) -> None:
+    """What has no value anywhere is not made up: then the SRDF is not taken."""
+    (tmp_path / "arm.urdf.xacro").write_text(robot("arm", "turn"))
+    text = (
+        '<robot name="$(arg name)"><group name="$(arg {})_all"><joint name="turn"/></group></robot>'
+    )
+    srdf = tmp_path / "arm.srdf.xacro"
+    srdf.write_text(text.format("name"))
+    fleet = taken(tmp_path)
+    assert fleet["srdf"] == "arm.srdf.xacro"
+    assert fleet["arguments"] == {"name": "arm"}
+    srdf.write_text(text.format("side"))
+    fleet = taken(tmp_path, "--force")
+    assert "srdf" not in fleet
+    assert "arguments" not in fleet
