@@ -104,6 +104,32 @@ def test_two_robots_on_one_tf_collide_before_anything_starts(run: Graph) -> None
     assert codes(run(*prefixed, *joints)) == set()
 
 
+def test_robots_whose_frames_all_differ_may_share_one_tf(run: Graph) -> None:
+    """tf2 joins trees by the names of frames alone; a parent that both have joins them."""
+    mine = URDF.replace("base_link", "base1_link").replace("laser", "lidar")
+    assert "MG402" not in codes(
+        run(publisher("/robot1", robot_description=mine), publisher("/robot2"))
+    )
+    mine = URDF.replace("laser", "lidar")
+    assert "MG402" in codes(run(publisher("/robot1", robot_description=mine), publisher("/robot2")))
+
+
+def test_two_of_a_program_whose_name_is_not_known_are_not_two_of_one_name(run: Graph) -> None:
+    """The code of spawn.py names it: `create_node("entity_spawner")`. A name given twice counts."""
+    assert not codes(made := run(*[node("acme/spawn.py", "", "/")] * 2))
+    assert not [it for it in made.environment.caveats if "rcl refuses" in it.message]
+    assert codes(run(*[node("acme/spawn.py", "spawner", "/")] * 2)) == {"MG301"}
+
+
+def test_what_another_robots_same_node_sends_is_not_meant(run: Graph) -> None:
+    """slam_toolbox reads a LaserScan and sends one: its twin's is not the scan that it lacks."""
+    slams = [
+        node("slam_toolbox/async_slam_toolbox_node", "slam_toolbox", it)
+        for it in ("/tb_0", "/tb_1")
+    ]
+    assert "MG303" not in codes(run(*slams))
+
+
 def test_what_nothing_in_the_launch_sends_is_told_as_in_a_build(run: Graph) -> None:
     (found,) = diagnose(run(publisher("/robot1"))).findings
     assert (found.code, found.level, found.names) == ("MG316", "note", ("/robot1/joint_states",))
@@ -397,8 +423,7 @@ def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None
         "robot1/base_link",
         "/robot1/tf",
     )
-    # tf messages do not say who of a topic sent them.
-    assert edge.publishers == ("/robot1/rsp", "/b")
+    assert edge.publishers == ("/b",)
     assert made.environment.caveats == ()
 
 

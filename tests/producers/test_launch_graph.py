@@ -337,8 +337,27 @@ from acme_tools import name
 from acme_configs.builders import Builder
 from ament_index_python.packages import get_package_share_directory
 SHARE = get_package_share_directory("acme_files")
+TEXT = open(os.path.join(SHARE, "urdf", "rover.urdf")).read()
 CONFIG = Builder("arm", package="acme").of_file(os.path.join(SHARE, "a.yaml")).made()
 """
+
+
+def test_a_package_that_a_function_misses_costs_its_part(tmp_path: Path) -> None:
+    """Nodes that the function starts besides are read; the package is named once."""
+    (tmp_path / "bringup.launch.py").write_text(
+        HEAD.replace(
+            "def generate_launch_description",
+            "from launch.actions import OpaqueFunction\n"
+            "from ament_index_python.packages import get_package_share_directory as share\n\n\n"
+            "def later(context):\n"
+            '    return [Node(package="acme", executable=share("acme_files") and "d")]\n\n\n'
+            "def generate_launch_description",
+        )
+        + "        OpaqueFunction(function=later),\n    ])\n"
+    )
+    graph = launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.py"), trusted=True))
+    assert [it.executable for it in graph.nodes] == ["d"]
+    assert ["acme_files" in it.message for it in graph.notes] == [True] and not graph.whole
 
 
 def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:

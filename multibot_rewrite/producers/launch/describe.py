@@ -82,6 +82,9 @@ def failure(error: BaseException) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
+NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
+
+
 def not_installed(name: str) -> str:
     """What is said of a package that is missing."""
     return f"package {name!r} is not installed here; {ROOTS}"

@@ -22,7 +22,7 @@ def own_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
 
 def last_word(it: LaunchedNode) -> str:
     """The program, or the class of a component, without its namespace."""
-    return it.executable.rpartition(":")[2]
+    return it.executable.rpartition(":")[2].removesuffix(".py")
 
 
 def _snake(name: str) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
 from multibot_rewrite.producers.launch.describe import (
+    NOT_THERE,
     Visit,
     failure,
     missing_module,
@@ -22,7 +23,7 @@ from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, LaunchOrder
-from multibot_rewrite.producers.launch.source_packages import add_empty, add_sources
+from multibot_rewrite.producers.launch.source_packages import add_empty, add_file, add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown
 from multibot_rewrite.producers.launch.visit import visit_all
@@ -51,10 +52,18 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     while True:
         try:
             graph = _visited(_included(order), order)
-            break
+            # A function of a launch file goes on without them, as the file does.
+            lost = [it for it in _lost(graph.notes) if it not in missing]
+            for name in lost:
+                add_empty(name, folder)
+            missing += lost
+            if not lost:
+                break
         except (Exception, SystemExit) as error:
             package, module = missing_package(error), missing_module(error)
             name = package or module
+            if name in missing and add_file(error, folder):
+                continue
             if not name or name in missing:
                 raise UnreadableError(failure(error)) from error
             if package:
@@ -63,7 +72,14 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
                 add_unknown(module)
             missing.append(name)
     files = (*graph.files, *descriptions_in(reads))
-    return graph._replace(notes=(*graph.notes, *_not_there(order, missing)), files=files)
+    unsaid = [it for it in missing if it not in _lost(graph.notes)]
+    return graph._replace(notes=(*graph.notes, *_not_there(order, unsaid)), files=files)
+
+
+def _lost(notes: Iterable[LaunchNote]) -> list[str]:
+    """The packages that are missing where something was started."""
+    found = (NOT_THERE.search(it.message) for it in notes)
+    return list(dict.fromkeys(it[1] for it in found if it))
 
 
 def _not_there(order: LaunchOrder, missing: Iterable[str]) -> Iterator[LaunchNote]:

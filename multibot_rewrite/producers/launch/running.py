@@ -7,7 +7,8 @@ file that is wrong is to be seen as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from multibot_rewrite.base.conventions import CLOCK
@@ -90,6 +91,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     found: list[RunningNode] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
+    found = [*_apart(found, {full_name(it, None) for it in started if not it.name})]
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
@@ -105,6 +107,14 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     lost = [it for it in spawned if it.manager not in by_name]
     nodes, more = (*found, *controllers), (*notes, *_without_manager(lost))
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
+
+
+def _apart(found: Sequence[RunningNode], unnamed: Collection[str]) -> Iterator[RunningNode]:
+    """Two of one unknown program whose name only its code has: that they share one is not known."""
+    times = Counter(it.full_name for it in found)
+    for it in found:
+        guessed = it.facts is None and it.full_name in unnamed and times[it.full_name] > 1
+        yield it._replace(name=f"{it.name}_{it.process}") if guessed else it
 
 
 def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:

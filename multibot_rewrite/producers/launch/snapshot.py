@@ -18,7 +18,7 @@ from multibot_rewrite.base.rosnames import (
     expand,
     resolve_bound,
 )
-from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
@@ -105,7 +105,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
-        parameters=tuple(_clocks(nodes)),
+        parameters=tuple(_clocks(nodes, graph.notes)),
         lookups=tuple(it for node in nodes for it in _lookups(node)),
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
         interfaces=tuple(interfaces_of(nodes, published, graph)),
@@ -290,24 +290,22 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
-    """Each transform once, with all who send on its topic."""
-    senders: dict[str, list[str]] = defaultdict(list)
-    times: dict[tuple[str, Edge], int] = defaultdict(int)
+    """Each transform once, with all who send it."""
+    senders: dict[tuple[str, Edge], list[str]] = defaultdict(list)
     for part in parts:
-        for end in part.endpoints:
-            if (end.role, end.type) == (PUBLISHES, TF_TYPE):
-                senders[end.name].append(part.name)
-        for topic, edge in dict.fromkeys(part.edges):
-            times[topic, edge] += 1
-    for (topic, edge), count in times.items():
-        who = tuple(dict.fromkeys(senders[topic]))
-        yield edge._replace(topic=topic, publishers=who, several=count > 1)
+        for it in dict.fromkeys(part.edges):
+            senders[it].append(part.name)
+    for (topic, edge), who in senders.items():
+        yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)
 
 
-def _clocks(nodes: Iterable[RunningNode]) -> Iterator[Parameter]:
-    """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
-    that hold for ever needs no time."""
+def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
+    """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
+    are known. What sends transforms that hold for ever needs no time."""
+    unknown = {it.place for it in notes if it.parameters}
     for it in nodes:
+        if it.place in unknown and it.value(SIM_TIME) is None:
+            continue
         if it.facts is not None and it.facts.known not in ("", STATIC):
             text = parameter_text(it.value(SIM_TIME) is True)
             yield Parameter(it.full_name, SIM_TIME, text)

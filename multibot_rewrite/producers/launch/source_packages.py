@@ -44,6 +44,18 @@ def add_empty(name: str, folder: str) -> None:
     _search(prefix)
 
 
+def add_file(error: BaseException, folder: str) -> bool:
+    """Make the file empty that could not be read of such a package: what is in it is not known. False
+    for another error."""
+    path = str(getattr(error, "filename", None) or "")
+    share = os.path.join(folder, NOT_INSTALLED, "share", "")
+    if not isinstance(error, FileNotFoundError) or not path.startswith(share):
+        return False
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "xb"):
+        return True
+
+
 def _search(prefix: str) -> None:
     paths = os.environ.get(_PATH, "").split(os.pathsep)
     os.environ[_PATH] = os.pathsep.join(dict.fromkeys(filter(None, (*paths, prefix))))

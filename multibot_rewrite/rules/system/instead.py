@@ -66,7 +66,7 @@ def _orphan(seen: Index, end: End) -> Ends | None:
     given = [
         it
         for it in _unread(seen).get((end.type, robot), ())
-        if end.node not in (one.node for one in it.publishers)
+        if last_word(end.node) not in (last_word(one.node) for one in it.publishers)
         and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
     ]
     akin = [it for it in given if _words(seen, it.name) & _words(seen, end.name)]
@@ -156,7 +156,7 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
     robot = seen.robot(end.node) or seen.robot(end.name)
     commands = words.moves(ends.name, ends.type)
     return any(
-        it.node != end.node
+        last_word(it.node) != last_word(end.node)
         and seen.robot(it.node) == robot
         and (not chooses(it.node) if commands else team(it.node) == it.node)
         for it in at_work(_givers(ends))
@@ -266,11 +266,12 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Does another node of the same robot, or of none, send it, and is it not read already?"""
+    """Does a node of another name, of its robot or of none, send it, and is it not read already?"""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
-    own = ("", seen.robot(end.node))
-    return any(it.node != end.node and seen.robot(it.node) in own for it in _givers(ends))
+    own, twin = ("", seen.robot(end.node)), last_word(end.node)
+    # A node of the same name elsewhere does the same for another robot.
+    return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in _givers(ends))
 
 
 def _givers(ends: Ends) -> Iterable[End]:

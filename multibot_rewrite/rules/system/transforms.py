@@ -120,7 +120,7 @@ def collide(seen: Index, tree: Tree) -> str:
     senders = [it for it in tree.senders if it not in seen.known.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
-    if bare and not seen.robot(tree.topic):
+    if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
         named = {(seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges}
         nameless = [it for it in robots if any((it, frame) not in named for frame in bare)]
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
@@ -133,6 +133,17 @@ def collide(seen: Index, tree: Tree) -> str:
     if bare and _twice(seen, senders):
         return "two nodes of one name send the same frames"
     return ""
+
+
+def _may_meet(seen: Index, tree: Tree) -> bool:
+    """May two robots have one frame here? So, too, where it is not known what a node of them sends."""
+    owners: dict[str, set[str]] = defaultdict(set)
+    for edge in tree.edges:
+        for frame in (edge.child, edge.parent):
+            owners[frame].update(robots_of(seen, edge.publishers))
+    known = {node for edge in tree.edges for node in edge.publishers}
+    plain = [it for it in owners if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+    return not known.issuperset(tree.senders) or any(len(owners[it]) != 1 for it in plain)
 
 
 def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
