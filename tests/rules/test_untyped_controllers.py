@@ -38,6 +38,7 @@ def _codes(folder: Path, capsys: pytest.CaptureFixture[str], *words: str) -> lis
     return [it.split()[2] for it in capsys.readouterr().out.splitlines() if " MG7" in it]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("name", "space", "given", "file", "more", "found"),
     [
@@ -79,6 +80,7 @@ def test_its_type_is_a_parameter_of_its_manager(
     assert _codes(tmp_path, capsys) == found
 
 
+@pytest.mark.more
 def test_a_manager_that_is_started_elsewhere_may_have_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

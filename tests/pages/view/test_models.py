@@ -182,6 +182,7 @@ def written(path: Path, data: str | bytes) -> str:
     return str(path)
 
 
+@pytest.mark.more
 def test_a_mesh_is_its_corners_and_triangles(tmp_path: Path) -> None:
     plain = load_mesh(written(tmp_path / "a.ply", PLY.format("", "", "", colours="")))
     assert isinstance(plain, Mesh)
