@@ -43,6 +43,8 @@ from multibot_rewrite.system.records import Place
 _REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
 # What Gazebo leaves out, or a plugin does not find there.
 _LEFT_OUT = ("MB211", "MB603", "MB610")
+# What is wrong as soon as a second model has it, too.
+_AGAIN = "MB416"
 # Names that are like one that the node has, and values of another type.
 _OF_VALUES = ("MB110", "MB120")
 _FOR_ALL = "/**:"
@@ -54,7 +56,7 @@ _NAMING = make_naming("tf-per-robot")
 def named_findings(launched: Launched) -> list[Finding]:
     """What is wrong with the files that a launch file names, each once."""
     found = (
-        *(*_descriptions(launched), *_parameters(launched)),
+        *(*_descriptions(launched), *_loaded_again(launched), *_parameters(launched)),
         *(*_values(launched), *_bridges(launched)),
     )
     return list(dict.fromkeys(found))
@@ -71,6 +73,18 @@ def _descriptions(launched: Launched) -> Iterator[Finding]:
             ):
                 told = one if file else _at_launch(one, it.place)
                 yield told._replace(level=ERROR)
+
+
+def _loaded_again(launched: Launched) -> Iterator[Finding]:
+    """Systems of the world in the descriptions of two models or more."""
+    settings = Settings(select=(_AGAIN,), distro=launched.release, simulated=True)
+    found: list[list[Finding]] = []
+    for it in (one for one in launched.models.found if one.spawned):
+        file = file_of(launched.graph, it.text)
+        told = lint_data(file or "robot.urdf", it.text.encode(), settings)
+        found += [[one if file else _at_launch(one, it.place) for one in told]] if told else []
+    if len(found) > 1:
+        yield from (one for own in found for one in own)
 
 
 def _at_launch(it: Finding, place: Place) -> Finding:

@@ -175,3 +175,33 @@ namespace='robot1', parameters=[{'use_sim_time': True, 'robot_description': \
 '<robot name=\"r\"><link name=\"a\"/></robot>'}])"
 CLOCK = "Node(package='ros_gz_bridge', executable='parameter_bridge', \
 arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock'])"
+
+
+SPAWN = """\
+from pathlib import Path
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def one(name, x):
+    file = str(Path(__file__).parent / f"{name}.urdf")
+    return Node(package="ros_gz_sim", executable="create",
+                arguments=["-name", name, "-file", file, "-x", x])
+def generate_launch_description():
+    return LaunchDescription([one("r1", "1"), one("r2", "3")])
+"""
+ROBOT = """<robot name="{}"><link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0"
+iyy="1" iyz="0" izz="1"/></inertial></link><gazebo>{}</gazebo></robot>"""
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("loading", [(), ("r2",), ("r1", "r2")])
+def test_a_system_of_the_world_in_two_models(
+    loading: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """gz-sim makes one for each (SystemManager.cc): two of Sensors end it, one is as it should be."""
+    plugin = SYSTEM.format("sensors", "Sensors") + "/>"
+    for name in ("r1", "r2"):
+        text = ROBOT.format(name, plugin if name in loading else "")
+        (tmp_path / f"{name}.urdf").write_text(text)
+    (tmp_path / LAUNCH).write_text(SPAWN)
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == "MB416" for it in found) is (len(loading) > 1)
