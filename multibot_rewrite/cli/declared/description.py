@@ -126,7 +126,7 @@ LINT = Command(
         Example("urdf-lint rover.urdf --robots robot1,robot2 --layout frames-per-robot"),
         Example("urdf-lint urdf/ --format sarif -o out/lint.sarif"),
         Example("urdf-lint rover.urdf --fix --diff", "show what --fix would change"),
-        Example("multibot explain MB202", "what a finding is, why, the fix"),
+        Example("multibot inspect MB202", "what a finding is, why, the fix"),
     ),
     (
         OptionGroup(
