@@ -367,6 +367,34 @@ def test_help_imports_nothing_heavy(name: str) -> None:
     assert there & (heavy | {f"multibot_rewrite.{room}" for room in rooms}) == set()
 
 
+def test_nothing_is_imported_before_ctrl_c_is_quiet() -> None:
+    """Ctrl-C while a module is imported is a traceback, until the program's first line."""
+    code = (
+        "import __future__, sys\nbefore = {*sys.modules}\nimport multibot_rewrite.cli.entry\n"
+        "print(*sorted({*sys.modules} - before))"
+    )
+    own = {f"multibot_rewrite{it}" for it in ("", ".version", ".cli", ".cli.entry")}
+    assert {*python(code).split()} - {*sys.builtin_module_names} == own
+
+
+@pytest.mark.slow
+def test_ctrl_c_that_python_would_lose_ends_the_command() -> None:
+    """In a callback of a weak reference an exception is printed and forgotten."""
+    code = (
+        "import signal, time, weakref\nfrom multibot_rewrite.cli.process import guarded\n"
+        "def run():\n"
+        "    gone = weakref.ref(type('A', (), {})(), lambda _: signal.raise_signal(signal.SIGINT))\n"
+        "    time.sleep(20)\n"
+        "    return 0\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "guarded('multibot', run, True)"
+    )
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=15)
+    told = "multibot: interrupted; no half-written file is left\n"
+    assert (done.returncode, done.stderr) == (130, told)
+
+
 # ---------------------------------------------------------------- counts and colour
 
 
