@@ -7,14 +7,14 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.editors import schema_line
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.knowledge.node_library import FILE, NodeLibrary
+from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
@@ -54,9 +54,7 @@ def write(options: argparse.Namespace, graph: System) -> int:
     if as_nodl:
         remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
     else:
-        line = schema_line(
-            "multibot_rewrite.knowledge", FILE, os.path.dirname(options.output or "")
-        )
+        line = editors.schema_line(editors.NODES, os.path.dirname(options.output or ""))
         deliver(options, f"{line}\n{to_yaml(learned, stack, library)}".encode())
     for remark in remarks:
         note(options, f"note: {remark}")
