@@ -80,7 +80,10 @@ POSTFIX = Command(
         OptionGroup(
             "output",
             (
-                output("write the result there; {robot} stands for the robot's name"),
+                output(
+                    "write the result there; {robot} stands for the robot's name, a folder for"
+                    " FOLDER/{robot}/NAME"
+                ),
                 IN_PLACE,
                 switch("--diff", about="print a unified diff instead of the result"),
                 path_option("--changes", "write every change as JSON"),
