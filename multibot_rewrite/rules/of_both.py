@@ -11,11 +11,12 @@ NOT_EXPORTED = declare(
     "MB229",
     "interface-not-exported",
     WARNING,
-    what="A controller claims an interface that no <ros2_control> of its robot exports. A note where "
-    "a planning group of an SRDF has a joint that none of MoveIt's controllers moves. Where the files "
-    "before a rewrite agreed, `build` says it as an error. Of a description alone the controllers are "
-    "in the file that it loads, or, if it loads none, in the one file called *controllers*.yaml in its "
-    "folder; of a joint whose interface an argument of xacro chooses nothing is said.",
+    what="A controller claims an interface that no <ros2_control> of its robot exports. A note "
+    "where a planning group of an SRDF has a joint that none of MoveIt's controllers moves. "
+    "Where the files before a rewrite agreed, `build` says it as an error. Of a description "
+    "alone the controllers are in the file that it loads, or, if it loads none, in the one "
+    "file called *controllers*.yaml in its folder. Of a joint whose interface an argument of "
+    "xacro chooses nothing is said.",
     why="The controller manager does not activate a controller whose interfaces do not exist. MoveIt "
     "plans for the group and cannot execute: no set of controllers moves all its joints.",
     fix="Name an interface that the description has, or add it to its <ros2_control>; add the joint to "
@@ -54,11 +55,12 @@ ONE_DEVICE = declare(
     "MB412",
     "one-device",
     WARNING,
-    what="Two robots have one device: an address, serial number or calibration of their hardware, a "
-    "port or file that only one process can have. A note for what two computers can both have (a "
-    "device /dev/ttyUSB0, a port or a folder for output of a node that is not known), for a "
-    "description alone, whose <ros2_control> has a fixed serial port, CAN interface or IP address, and "
-    "for a parameter file that names the calibration of a camera.",
+    what="Two robots have one device: an address, serial number or calibration of their hardware, "
+    "a port or file that only one process can have. It is a note for what two computers can "
+    "both have: a device /dev/ttyUSB0, a port or a folder for output of a node that is not "
+    "known. It is one, too, for a description alone, whose <ros2_control> has a fixed serial "
+    "port, CAN interface or IP address. So it is for a parameter file that names the "
+    "calibration of a camera.",
     why="Both drivers command one arm, or the second one is refused; both nodes write into one file "
     "and damage it. With another arm's calibration the tool is millimetres from where tf has it; with "
     "another camera's one robot measures wrongly.",

@@ -202,9 +202,10 @@ PREFIXED_LATER = declare(
     "moveit-with-frame-prefix",
     ERROR,
     what="A robot runs MoveIt in layout frame-prefix: links have a prefix in tf, and none in the URDF.",
-    why="MoveIt looks up in tf what the URDF calls its root link, which no robot has there: it cannot "
-    "place goals in other frames, sensors or objects, its displays in RViz stand at the origin, two "
-    "arms look the same. No parameter of MoveIt puts a prefix before links.",
+    why="MoveIt looks up in tf what the URDF calls its root link, which no robot has there. So it"
+    " cannot place goals in other frames, sensors or objects. Its displays in RViz stand at "
+    "the origin, and two arms look the same. No parameter of MoveIt puts a prefix before "
+    "links.",
     fix="Take layout frames-per-robot with affix prefix: links have the same names in URDF, SRDF "
     "and tf. Leave frame_prefix of robot_state_publisher empty then.",
     bad=_FLEET.replace("LAYOUT", "frame-prefix"),

@@ -41,9 +41,9 @@ broken_suppression = declare(
     "MB003",
     "broken-suppression",
     ERROR,
-    what="A `urdf-lint:` comment is not understood: an unknown word, no code or only a part of "
-    "one, a code that does not exist or cannot be suppressed, a reason without a dash before it, "
-    "or an ignore-file after the first element.",
+    what="A `urdf-lint:` comment is not understood. It has an unknown word, no code or only a part"
+    " of one, or a code that does not exist or cannot be suppressed. Or a reason has no dash "
+    "before it, or an ignore-file is after the first element.",
     why="It suppresses nothing, or less than intended.",
     fix="Write `urdf-lint: ignore CODE, CODE - reason` or `urdf-lint: ignore-file CODE - reason`.",
     bad='<!-- urdf-lint: disable MB501 -->\n<link name="a"/>',

@@ -92,8 +92,9 @@ unknown_hardware_class = rule(
     NOTE,
     what="A ros2_control hardware class is not in the vocabulary, or its section does not say what it "
     "opens.",
-    why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
-    "it stays as it is for every robot; and its code may open topics that are the same for all.",
+    why="One of its parameters may be a name, or a prefix that the driver puts in front of names:"
+    " it stays as it is for every robot. And its code may open topics that are the same for "
+    "all.",
     fix="Add a section for it to a vocabulary file; where it opens nothing, `opens: nothing`.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"

@@ -54,9 +54,9 @@ def _costmap(lines: str) -> str:
     "MB895",
     "costmap-robot-size",
     WARNING,
-    what="The robot_radius or footprint of a costmap does not fit the rest: the inflation is smaller "
-    "than the robot, a radius stands beside a footprint of another size, or is more than three times "
-    "or less than an eighth of what the description reaches.",
+    what="The robot_radius or footprint of a costmap does not fit the rest. The inflation is "
+    "smaller than the robot, or a radius stands beside a footprint of another size. Or the "
+    "radius is more than three times or less than an eighth of what the description reaches.",
     why="With an inflation below the robot's radius the planner drives the robot into "
     "obstacles. Beside a footprint the radius has no effect. A robot that is too large "
     "finds no path, one that is too small hits what it does not clear.",

@@ -49,9 +49,10 @@ def _command(buttons: str) -> str:
     "MB897",
     "joystick-command",
     ERROR,
-    what="A command of joy_teleop is not whole: no known type, no type of its interface, no name, "
-    "nothing that starts it, neither or both of message_value and axis_mappings, an axis without scale "
-    "or offset, or a field that its message does not have.",
+    what="A command of joy_teleop is not whole. It has no known type, no type of its interface, no"
+    " name, or nothing that starts it. Or it has neither or both of message_value and "
+    "axis_mappings, an axis without scale or offset, or a field that its message does not "
+    "have.",
     why="joy_teleop raises an exception for it and ends; none of its commands works.",
     fix="Add what is missing, or correct it.",
     bad=_command(""),

@@ -39,9 +39,10 @@ ABSENT = "is that robot started, and is its name right?"
     "topic-names-miss",
     ERROR,
     absence=True,
-    what="A node subscribes to a topic that no node publishes, while nearly the same name is published:"
-    " with or without the robot's namespace, below another namespace or the node's own name, or"
-    " misspelled; or the robot sends data of that kind under another name, which is a warning.",
+    what="A node subscribes to a topic that no node publishes, while nearly the same name is "
+    "published. The namespace of the robot is missing or too much, it is another namespace or"
+    " the node's own name, or the name is misspelled. It is a warning where the robot sends "
+    "data of that kind under another name.",
     why="The two sides never connect, and there is no error message.",
     fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
     bad="""\
@@ -198,10 +199,10 @@ def _missed_topic(
     "server-names-miss",
     ERROR,
     absence=True,
-    what="A node calls a service or action that no node serves, while nearly the same name is served:"
-    " with or without the robot's namespace, or misspelled; or a lifecycle manager lists a node that"
-    " does not run. In a namespace without any node, and where the type alone is the same, it is a"
-    " warning.",
+    what="A node calls a service or action that no node serves, while nearly the same name is "
+    "served: with or without the robot's namespace, or misspelled. Or a lifecycle manager "
+    "lists a node that does not run. In a namespace without any node, and where the type "
+    "alone is the same, it is a warning.",
     why="The client waits for ever: no goal arrives, no node is activated.",
     fix="Write the name as the server has it, or start the client in the robot's namespace.",
     bad="""\

@@ -29,9 +29,9 @@ def own_namespace(seen: Index, name: str, robot: str) -> str:
     ERROR,
     drawn="leak",
     meant=(PUBLISHES, SUBSCRIBES),
-    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description on"
-    " the same topic, or read what one body measures from it; or a robot's node uses a topic that is"
-    " of no robot and not shared by the plan.",
+    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description"
+    " on the same topic, or read what one body measures from it. Or a robot's node uses a "
+    "topic that is of no robot and not shared by the plan.",
     why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
     " follows two plans.",
     fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own. If"

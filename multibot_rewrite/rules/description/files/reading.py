@@ -102,12 +102,13 @@ package_not_found = declare(
     "MB105",
     "placeholder-left",
     WARNING,
-    what="A description that is not named .xacro holds xacro elements or ${...} and $(arg ...). Or a "
-    "file beside it holds a placeholder, such as $(var area) or <area>, in a section or a name, that "
-    "does not stand for the robot, and stays; it is a note where only the file is looked at.",
-    why="A program that loads it as it is does not expand it: urdfdom rejects the joint, and with it "
-    "the robot, where ${...} is in place of a number; in a file no node has the section, and what a "
-    "launch file puts there does not get the robot's name from the build.",
+    what="A description that is not named .xacro holds xacro elements or ${...} and $(arg ...). Or"
+    " a file beside it holds a placeholder, such as $(var area) or <area>, in a section or a "
+    "name. It does not stand for the robot, and stays. It is a note where only the file is "
+    "looked at.",
+    why="A program that loads it as it is does not expand it. urdfdom rejects the joint, and with"
+    " it the robot, where ${...} is in place of a number. In a file no node has the section, "
+    "and what a launch file puts there does not get the robot's name from the build.",
     fix="Name a description .urdf.xacro and load it through xacro. In a file write "
     "<robot_namespace>, <robot_name>, $(var namespace) or the like for the robot: these "
     "are filled in. Let the launch file replace any other placeholder (ParameterFile, "

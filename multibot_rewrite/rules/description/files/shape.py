@@ -25,9 +25,10 @@ from multibot_rewrite.rules.subject import Subject
     "MB110",
     "misspelt",
     WARNING,
-    what="A name is not known where it is, and is almost one that is: of an element or attribute "
-    "of a URDF or SRDF or below <gazebo>, of a parameter of a plugin, of ros2_control hardware or "
-    "of a node, of a library, a hardware class or an interface of ros2_control.",
+    what="A name is not known where it is, and is almost one that is known there. It is the name "
+    "of an element or attribute of a URDF or SRDF or below <gazebo>. Or it names a parameter "
+    "of a plugin, of ros2_control hardware or of a node, a library, a hardware class or an "
+    "interface of ros2_control.",
     why="Readers skip what they do not know, without a word: the link has no mass, the joint no limit, "
     "the plugin or node its default. A library or class is not found, an interface is claimed by none.",
     fix="Correct the name. Parameters of a node come from the generate_parameter_library files of the "
@@ -89,12 +90,13 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
     "MB115",
     "missing",
     ERROR,
-    what="A required attribute, child element or parameter is missing or empty: of a URDF or SRDF, "
-    "below <gazebo>, of a plugin or of ros2_control hardware; in parameters the class of a listed "
-    "plugin or the type of a controller, and, as a warning, what goes with a listed source.",
-    why="urdfdom rejects the whole file for a part of a joint; in a link it drops every visual and "
-    "collision from the fault on. libsdformat does not load the model, srdfdom skips the element, and "
-    "a plugin or hardware is not loaded.",
+    what="A required attribute, child element or parameter is missing or empty: of a URDF or SRDF,"
+    " below <gazebo>, of a plugin or of ros2_control hardware. In parameters it is the class "
+    "of a listed plugin or the type of a controller. What goes with a listed source is a "
+    "warning.",
+    why="urdfdom rejects the whole file for a part of a joint. In a link it drops every visual "
+    "and collision from the fault on. libsdformat does not load the model, srdfdom skips the "
+    "element, and a plugin or hardware is not loaded.",
     fix="Add what is missing, or delete the element that needs it.",
     bad='<link name="a"><visual><geometry><cylinder radius="1"/></geometry></visual></link>',
     good='<link name="a">\n'

@@ -34,15 +34,16 @@ def _imu(inside: str) -> str:
     "MB120",
     "unreadable-value",
     ERROR,
-    what="A value is not what its place asks for: no number, too many or too few of them, a unit "
-    "or a decimal comma, nan, a space or line break after a number, a word that is neither true "
-    "nor false, a parameter of another type than its node declares. It is a warning where a part "
-    "is read, in a colour of a URDF and in parameters that another release takes.",
+    what="A value is not what its place asks for. Examples are no number, too many or too few of "
+    "them, a unit or a decimal comma, nan, a space or line break after a number. Others are a"
+    " word that is neither true nor false, and a parameter of another type than its node "
+    "declares. It is a warning where a part is read, in a colour of a URDF and in parameters "
+    "that another release takes.",
     why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
-    "collisions if it is in a link. Below <gazebo> the model is not loaded; a plugin reads 0,5 as "
-    "0, and anything but true, false, 1 and 0 as false. ros2_control hardware and rclcpp throw: "
-    "the node does not come up, or its controller is not loaded. MoveIt ignores a joint in a "
-    "state.",
+    "collisions if it is in a link. Below <gazebo> the model is not loaded. A plugin reads "
+    "0,5 as 0, and anything but true, false, 1 and 0 as false. ros2_control hardware and "
+    "rclcpp throw: the node does not come up, or its controller is not loaded. MoveIt ignores"
+    " a joint in a state.",
     fix="Write plain numbers with a decimal point, separated by spaces, in metres, radians and "
     "kilograms, as many as the place has; true or false; colours from 0 to 1. A double of a node "
     "needs a point.",
@@ -60,10 +61,11 @@ unknown_word = rule(
     "MB124",
     "unknown-word",
     ERROR,
-    what="A value is not one of the words that its reader knows: the type of a joint, of a sensor, "
-    "of a ros2_control or a virtual joint, a version of URDF, the name of a joint property, the class "
-    "of a plugin or controller in parameters. It is a warning for a parameter of a plugin, where it is "
-    "nearly such a word, and for a class that another release has.",
+    what="A value is not one of the words that its reader knows. It is the type of a joint, of a "
+    "sensor, of a ros2_control or a virtual joint, or a version of URDF. Or it is the name of"
+    " a joint property, or the class of a plugin or controller in parameters. It is a warning"
+    " for a parameter of a plugin, where it is nearly such a word, and for a class that "
+    "another release has.",
     why="urdfdom rejects the file ('has no known type'), or the sensor or hardware does not "
     "exist. srdfdom takes a virtual joint for fixed, and a plugin takes its default. "
     "pluginlib throws for a class that no package registers: a server of Nav2 does not "
@@ -83,10 +85,10 @@ unknown_word = rule(
     "MB125",
     "out-of-range",
     ERROR,
-    what="A number is outside of what its reader takes: a negative mass or limit, a shape with a "
-    "size of 0 or less, a value below <gazebo> outside of the range of SDF, a parameter of a "
-    "plugin or node outside of what its code checks. It is a warning for parameters, and in shapes "
-    "and limits before URDF 1.2.",
+    what="A number is outside of what its reader takes: a negative mass or limit, or a shape with "
+    "a size of 0 or less. Or a value below <gazebo> is outside of the range of SDF, a "
+    "parameter of a plugin or node outside of what its code checks. It is a warning for "
+    "parameters, and in shapes and limits before URDF 1.2.",
     why="From URDF 1.2 on urdfdom rejects the file for a limit and drops the shapes of the link; "
     "sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
     "the model ('greater than the maximum allowed value'), a plugin divides by it, and "
@@ -108,8 +110,9 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
     "MB170",
     "angle-in-degrees",
     WARNING,
-    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin, a "
-    "round number in the rpy of an <origin>; or a limit of a revolute joint looks like degrees.",
+    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin,"
+    " or a round number in the rpy of an <origin>. Or a limit of a revolute joint looks like "
+    "degrees.",
     why="URDF, SDF and plugins have radians: a scan from -180 to 180 goes round 57 times, a joint "
     "turns many times before it reaches such a limit, and a steering limit of 30 limits nothing.",
     fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',

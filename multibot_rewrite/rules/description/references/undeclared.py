@@ -22,9 +22,9 @@ undeclared_link = rule(
     "MB202",
     "undeclared-link",
     ERROR,
-    what="A name that has to be a link is not declared: of a joint's parent or child, of a <gazebo "
-    "reference>, of a parameter of a plugin or hardware class, of a sensor or gripper, or a model. "
-    "It is an error in a joint.",
+    what="A name that has to be a link is not declared. It is that of a joint's parent or child, "
+    "of a <gazebo reference>, of a parameter of a plugin or hardware class, of a sensor or "
+    "gripper, or a model. It is an error in a joint.",
     why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf. "
     "Gazebo silently drops the block, with its friction, sensors and plugins; a plugin looks the "
     "link up and does not run: gazebo_ros_p3d reports 'body_name: ... does not exist'.",
