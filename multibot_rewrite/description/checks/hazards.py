@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, POSTFIX, PREFIX, TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.description.checks.problem import Problem, about
@@ -132,11 +134,16 @@ def world_systems(inventory: Inventory) -> Iterator[Problem]:
         above = host.element.getparent()
         if WORLD not in section.opens or (above is not None and above.tag in WITH_WORLD):
             continue
-        file = host.element.get("filename", "").rpartition("/")[2]
-        key = library_key(file) or host.element.get("name", "")
+        key = system_key(host.element)
         why = section.about or "what it opens is the world's"
         message = f"{key} is loaded again with every robot: {why}"
-        yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
+        hint = "write its <plugin> into the <world>, once, and use --world-systems leave"
+        yield Problem(host.element, message, "filename", hint, (), "MB416")
+
+
+def system_key(plugin: _Element) -> str:
+    """What a system is called, as messages say it."""
+    return library_key(plugin.get("filename", "").rpartition("/")[2]) or plugin.get("name", "")
 
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

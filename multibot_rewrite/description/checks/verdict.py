@@ -52,10 +52,13 @@ REASONS = {
 GIVEN = {NOT_TAKEN: "where each controller is spawned with its rules"}
 
 
-def given(findings: Iterable[Finding]) -> str:
-    """What the word ``proved`` takes for granted; empty where that is nothing."""
+def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
+    """What the word ``proved`` takes for granted: of controllers, and of the systems that were left to
+    the world; empty where that is nothing."""
     codes = {it.code for it in findings}
-    return ", ".join(words for code, words in GIVEN.items() if code in codes)
+    said = [words for code, words in GIVEN.items() if code in codes]
+    systems = ", ".join(sorted(set(of_world)))
+    return " and ".join([*said, *([f"where the world loads {systems}"] if systems else [])])
 
 
 def not_proved(findings: Iterable[Finding]) -> tuple[str, ...]:
