@@ -35,9 +35,11 @@ def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, 
     """
     now = _by_place(after.names)
     old, new = ({it.name for it in names} for names in (before.names, now.values()))
+    cameras = {(it.tag, it.number) for it in before.names if it.name == _info_of(it.name)}
     for place, name in _by_place(before.names).items():
         beside = _info_of(name.name)
-        is_image = beside != name.name and (name.tag == "sensor" or "image" in name.name)
+        is_camera = name.tag == "sensor" and (name.tag, name.number) in cameras
+        is_image = beside != name.name and (is_camera or "image" in name.name)
         if is_image and beside in old and place in now and _info_of(now[place].name) not in new:
             yield now[place], _info_of(now[place].name)
 
