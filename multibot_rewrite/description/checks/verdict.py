@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.description.checks.meeting import NO_LINK, PARTED, SAME_TEXT
+from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PARTED, SAME_TEXT
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,
     DATA,
@@ -49,7 +49,10 @@ REASONS = {
 }
 
 # What is proved of a description and hangs on what starts it: a code, and how the summary says it.
-GIVEN = {NOT_TAKEN: "where each controller is spawned with its rules"}
+GIVEN = {
+    NOT_TAKEN: "where each controller is spawned with its rules",
+    ELSEWHERE: "where what shows an image has the rule for its camera_info",
+}
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:

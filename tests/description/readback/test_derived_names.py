@@ -22,7 +22,7 @@ def codes(text: str, **options: str) -> list[str]:
     ("topic", "options", "found"),
     [
         # camera_common.cpp getCameraInfoTopic: the last segment of the image's topic is replaced.
-        ("/cam/image", {}, ["MB438"]),
+        ("/cam/image", {}, ["MB439"]),
         ("/cam/image", {"topics": "prefix"}, []),
         ("/cam/image", {"topics": "namespace"}, []),
         ("/cam/image", {"layout": "both"}, []),
@@ -37,7 +37,7 @@ def test_a_camera_keeps_its_info_beside_its_image(
 def test_an_image_without_info_beside_it_loses_none() -> None:
     info = "<camera><camera_info_topic>/else/info</camera_info_topic></camera>"
     text = CAMERA.replace("</sensor>", f"{info}</sensor>").format("/cam/image")
-    assert "MB438" not in codes(text)
+    assert "MB439" not in codes(text)
 
 
 @pytest.mark.parametrize(
