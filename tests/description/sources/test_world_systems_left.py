@@ -12,7 +12,7 @@ from lxml import etree
 
 from multibot_rewrite import rewrite, strip
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.cli.urdf_postfix import main
 
 ROBOT = """<robot name="rover"><link name="base"/>
 <gazebo reference="base"><sensor name="eye" type="gpu_lidar"><topic>scan</topic></sensor></gazebo>
@@ -84,12 +84,12 @@ def test_the_command_follows_its_hint(tmp_path: Path, capsys: pytest.CaptureFixt
     """MB416 names the option, and says what the world has to load."""
     file, made = tmp_path / "rover.urdf", tmp_path / "r1.urdf"
     file.write_text(ROBOT.format(SENSORS + IMU))
-    words = ["rewrite", str(file), "r1", "--distro", "jazzy", "-o", str(made)]
+    words = [str(file), "r1", "--distro", "jazzy", "-o", str(made)]
     assert main(words) == 0
     assert "--world-systems leave" in capsys.readouterr().err
     assert main([*words, "--world-systems", "leave"]) == 0
     end = "proved where the world loads gz-sim-imu-system, gz-sim-sensors-system (ROS 2 jazzy)"
     assert capsys.readouterr().err.strip().endswith(end)
-    again = ["rewrite", str(made), "r1", "--distro", "jazzy", "--strip", "--in-place"]
+    again = [str(made), "r1", "--distro", "jazzy", "--strip", "--in-place"]
     assert main([*again, "--world-systems", "leave"]) == 0
     assert made.read_text() == file.read_text()
