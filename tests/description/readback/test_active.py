@@ -183,7 +183,7 @@ def test_a_bounding_box_camera_has_an_own_camera_info() -> None:
     # Its image is a_image, and image_transport looks beside it.
     assert made.not_proved == () and [it.code for it in made.findings] == ["MB439"]
     assert "its camera_info" in given(made.findings)
-    assert '"/boxes/camera_info:=/boxes/camera_info/ROBOT"' in made.findings[0].hint
+    assert '"/boxes/a/camera_info:=/boxes/camera_info/ROBOT"' in made.findings[0].hint
 
 
 # ---------------------------------------------------------------- controllers
