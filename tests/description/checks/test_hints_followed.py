@@ -40,7 +40,8 @@ PARAM = (
 )
 LIDAR = (
     '<joint name="uwl/uwl_base_swivel_joint" type="fixed"><parent link="base"/>'
-    '<child link="eye"/></joint><link name="eye"/><gazebo><plugin name="l" filename="libdave_pulse_lidar_plugin.so">'
+    '<child link="eye"/></joint><link name="eye"/>'
+    '<gazebo><plugin name="l" filename="libdave_pulse_lidar_plugin.so">'
     "<robot_namespace>uwl</robot_namespace></plugin></gazebo>"
 )
 ESTOP = (
