@@ -13,10 +13,10 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_link, check_target
+from multibot_rewrite.companions.join import Joined, join, split
 from multibot_rewrite.description.joining.from_file import parts_of
-from multibot_rewrite.description.joining.part import ZERO, Part
+from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
-from multibot_rewrite.refactor.join import Joined, join, split
 
 # Options that are written for each part.
 _OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers")
@@ -53,12 +53,7 @@ def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -
         return
     stem = options.output.removesuffix(".urdf")
     items = [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)]
-    _write(options, items, [*options.words, *_files(parts)])
-
-
-def _files(parts: Sequence[Part]) -> Iterator[str]:
-    for it in parts:
-        yield from map(str, filter(None, (it.description, it.srdf, *it.controllers)))
+    _write(options, items, [*options.words, *(file for it in parts for file in files_of(it))])
 
 
 def _write(

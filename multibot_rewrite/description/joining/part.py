@@ -6,6 +6,7 @@ Sources: urdfdom model.cpp (``initTree``, ``initRoot``: one root, one joint abov
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -67,6 +68,13 @@ class Part(NamedTuple):
     xacro_args: Mapping[str, str] = {}
     srdf: Source | None = None
     controllers: Sequence[str] = ()
+
+
+def files_of(part: Part) -> Iterator[str]:
+    """The files that a part names."""
+    for it in (part.description, part.srdf, *part.controllers):
+        if isinstance(it, str | os.PathLike) and not str(it).lstrip().startswith("<"):
+            yield os.fspath(it)
 
 
 class ReadPart(NamedTuple):

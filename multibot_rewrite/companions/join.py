@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
 from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, prefixing
 from multibot_rewrite.description.joining.proof import split_text
@@ -79,10 +80,27 @@ def join(
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
     made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
+    found = _with_beside(given, made, tree, trust)
+    return found._replace(notes=(*_unread(given, texts), *found.notes))
+
+
+def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
+    """The same for what reads the result at once: without comments of the join, and refused where a
+    name has no prefix. Raises InputError that names ``place``."""
+    given, _ = plain_texts(parts, trust)
+    try:
+        made = join_texts(given, tree)
+        found = _with_beside(parts, made, tree, trust)
+    except UsageError as error:
+        raise InputError(f"{place}: {error}") from None
+    return found._replace(data=plain_text(made, place))
+
+
+def _with_beside(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> Joined:
+    """With the files beside the parts."""
     semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
     names = tuple(it.part.name for it in made.parts)
-    told = (*_unread(given, texts), *_relative(made))
-    notes = (*told, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
+    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
     return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
 
 
