@@ -10,6 +10,7 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
@@ -105,7 +106,8 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFiles:
             for what in _added(first.body, one.body, f"{first.path}."):
                 notes.append(f"{it.file}: {what}")
     root = yaml.MappingNode("tag:yaml.org,2002:map", [_written(it) for it in sections.values()])
-    names = ", ".join(it.file for it in files)
+    # The same from every working directory.
+    names = ", ".join(dict.fromkeys(os.path.basename(it.file) for it in files))
     text = f"# joined by multibot from {names}\n{yaml.serialize(root, width=200)}"
     return JoinedFiles(text.encode(), tuple(notes))
 

@@ -16,6 +16,7 @@ from multibot_rewrite.base.releases import chosen_release
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
+from multibot_rewrite.description.sources.read import JOIN as LIST
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.checked_yaml import Path
 from multibot_rewrite.fleet.file.fleet_data import (
@@ -97,10 +98,10 @@ class RobotSpec(NamedTuple):
     @property
     def files(self) -> Iterator[str]:
         """Every file of a disk that it is made of."""
-        made = dict(self.filled) if self.parts else {}
+        made = {self.description, *dict(self.filled)} if self.parts else set()
         own = (self.description, self.srdf, self.simulated)
         beside = (path for paths in self.companions.values() for path in paths)
-        yield from (it for it in (*own, *beside) if it and it not in made)
+        yield from (it for it in (*own, *beside) if it and (it not in made or it.endswith(LIST)))
         yield from (it for part in self.parts for it in files_of(part))
         yield from (it.file for it in self.launch)
 
