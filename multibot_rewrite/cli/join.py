@@ -19,7 +19,7 @@ from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
 
 # Options that are written for each part.
-_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers")
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "one_system")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -30,8 +30,15 @@ def run(options: argparse.Namespace) -> int:
 
 def _join(options: argparse.Namespace) -> int:
     parts = list(_parts(options))
+    samples = options.samples or 0
+    if samples and not any(it.srdf for it in parts):
+        raise UsageError("--samples is for an SRDF: give --srdf, too")
     made = join(
-        parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
+        parts,
+        vocabulary=options.vocabulary,
+        trust=options.trust,
+        distro=options.distro or "",
+        samples=samples,
     )
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
@@ -69,9 +76,9 @@ def _write(
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
         raise UsageError("--split takes one file, which multibot join made")
-    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
+    given = next((it for it in ("output", "samples", *_OF_PARTS) if getattr(options, it)), None)
     if given:
-        raise UsageError(f"--{given} is for joining, it cannot go with --split")
+        raise UsageError(f"{_option(given)} is for joining, it cannot go with --split")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
@@ -102,15 +109,20 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     every = zip(files, ends, poses, prefixes, srdfs, controllers, strict=True)
     for (file, given), at, pose, prefix, srdf, yaml in every:
         where = at, _numbers(pose), prefix
-        yield Part(file, *where, "", given, srdf or None, tuple(filter(None, yaml.split(","))))
+        beside = srdf or None, tuple(filter(None, yaml.split(",")))
+        yield Part(file, *where, "", given, *beside, options.one_system)
 
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:
     """The parts that a file lists, which says everything of them."""
-    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
+    more = [*options.words[1:], *(_option(it) for it in _OF_PARTS if getattr(options, it))]
     if more:
         raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
     return parts_of(options.words[0])
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:

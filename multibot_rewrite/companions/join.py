@@ -64,11 +64,17 @@ class Joined(NamedTuple):
 
 @checked
 def join(
-    parts: Iterable[Part], *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+    parts: Iterable[Part],
+    *,
+    vocabulary: Iterable[str] = (),
+    trust: bool = False,
+    distro: str = "",
+    samples: int = 0,
 ) -> Joined:
     """Join descriptions: each part after the first is fixed to a link of those before it.
 
-    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Raises
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. With
+    ``samples`` random poses pinocchio tells which links of two parts never touch, for the SRDF. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
     """
@@ -80,7 +86,7 @@ def join(
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
     made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
-    found = _with_beside(given, made, tree, trust)
+    found = _with_beside(given, made, tree, trust, samples)
     return found._replace(notes=(*_unread(given, texts), *found.notes))
 
 
@@ -96,9 +102,12 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
     return found._replace(data=plain_text(made, place))
 
 
-def _with_beside(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> Joined:
+def _with_beside(
+    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
+) -> Joined:
     """With the files beside the parts."""
-    semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
+    semantics = _semantics(given, made, tree, trust, samples)
+    files = _controllers(given, made, tree)
     names = tuple(it.part.name for it in made.parts)
     notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
     return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
@@ -132,7 +141,9 @@ def _relative(made: JoinedText) -> Iterator[str]:
             yield f"{what}{more}; write package://NAME/..."
 
 
-def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:
+def _semantics(
+    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int
+) -> JoinedSemantics:
     if not any(it.srdf for it in given):
         return JoinedSemantics(b"", ())
     parts = []
@@ -142,7 +153,7 @@ def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool)
             continue
         read_in = read_whole(it.srdf, args_for(it.srdf, it.description, it.xacro_args), trust)
         parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
-    return joined_srdf(parts, made.data)
+    return joined_srdf(parts, made.data, samples)
 
 
 def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:

@@ -309,6 +309,26 @@ JOIN = Command(
             ),
         ),
         OptionGroup(
+            "the whole",
+            (
+                rare(
+                    value(
+                        "--samples",
+                        metavar="COUNT",
+                        about="disable collisions of links of two parts that never or always touch in"
+                        " so many random poses, by pinocchio; MoveIt's Setup Assistant takes 10000",
+                        type=values.count,
+                    )
+                ),
+                rare(
+                    switch(
+                        "--one-system",
+                        about="put joints of parts with the same hardware into one ros2_control",
+                    )
+                ),
+            ),
+        ),
+        OptionGroup(
             "output",
             (
                 output("write the result there"),

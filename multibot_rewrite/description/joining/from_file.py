@@ -25,6 +25,7 @@ from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alo
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
+    flag_of,
     read_yaml_with_lines,
     table,
     table_of,
@@ -36,7 +37,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 
 # Files beside a description, of which a part may have several.
 BESIDE = ("controllers",)
-_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", *BESIDE)
+_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
@@ -104,6 +105,7 @@ def _part(item: YamlItem, folder: str) -> Part:
     given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
     given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf")}
     given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
+    given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
     given["arguments"] = dict(_arguments(table_of(keys, "arguments")))
     try:
@@ -129,7 +131,8 @@ def part_of(keys: Mapping[str, Any]) -> Part:
         # YAML's true is xacro's true.
         {name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in arguments},
         keys.get("srdf") or None,
-        *(tuple(_listed(keys.get(key, ()))) for key in BESIDE),
+        controllers=tuple(_listed(keys.get("controllers", ()))),
+        one_system=keys.get("one_system", False),
     )
 
 

@@ -57,7 +57,8 @@ class Part(NamedTuple):
     none. ``pose`` is where its root is in that link: x, y, z, roll, pitch, yaw in metres and radians.
     ``prefix`` goes before its own names. ``name`` is what messages, the new joint and ``split`` call
     it; default: its prefix, or its file. ``srdf`` is its SRDF, ``controllers`` are parameter files of
-    its controllers.
+    its controllers. With ``one_system`` its ros2_control is put into an earlier one of the same
+    hardware.
     """
 
     description: Source
@@ -68,6 +69,7 @@ class Part(NamedTuple):
     xacro_args: Mapping[str, str] = {}
     srdf: Source | None = None
     controllers: Sequence[str] = ()
+    one_system: bool = False
 
 
 def files_of(part: Part) -> Iterator[str]:

@@ -55,8 +55,8 @@ def _meetings(
         yield from (it for it in shared if it.code == NOT_TAKEN)
     if len(members) == 1:
         # There is no second robot: what a rewrite says of any two of them. An address is right for one.
-        for it in (it for it in shared if it.code != NOT_TAKEN):
-            yield it._replace(level=WARNING if it.code == OPENED else _level(it.code))
+        for one in (one for one in shared if one.code != NOT_TAKEN):
+            yield one._replace(level=WARNING if one.code == OPENED else _level(one.code))
         return
     by_robot = {it.robot: it for it in members}
     for it in meetings(_named(table, members), naming):
