@@ -19,7 +19,7 @@ from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
 
 # Options that are written for each part.
-_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "one_system")
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "moveit", "one_system")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -51,7 +51,8 @@ def _join(options: argparse.Namespace) -> int:
 
 def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
     """The description, with the files that belong to it beside it."""
-    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
+    moveit = ((f"_{name}", data) for name, data in made.moveit.items())
+    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), *moveit)
     more = [(ending, data) for ending, data in beside if data]
     if more and not goes_to_file(options):
         raise UsageError("several files are made: name the description with -o robot.urdf")
@@ -106,11 +107,12 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
     srdfs = _of_each("--srdf", options.srdf, many)
     controllers = _of_each("--controllers", options.controllers, many)
-    every = zip(files, ends, poses, prefixes, srdfs, controllers, strict=True)
-    for (file, given), at, pose, prefix, srdf, yaml in every:
+    moveit = _of_each("--moveit", options.moveit, many)
+    every = zip(files, ends, poses, prefixes, srdfs, controllers, moveit, strict=True)
+    for (file, given), at, pose, prefix, srdf, yaml, plans in every:
         where = at, _numbers(pose), prefix
-        beside = srdf or None, tuple(filter(None, yaml.split(",")))
-        yield Part(file, *where, "", given, *beside, options.one_system)
+        some, others = (tuple(filter(None, it.split(","))) for it in (yaml, plans))
+        yield Part(file, *where, "", given, srdf or None, some, options.one_system, others)
 
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:

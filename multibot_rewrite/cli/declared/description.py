@@ -306,6 +306,9 @@ JOIN = Command(
             (
                 rare(each("--srdf", "FILE", "the SRDF of the part")),
                 rare(each("--controllers", "A,B", "parameter files of its controllers")),
+                rare(
+                    each("--moveit", "A,B", "MoveIt's files for it: kinematics, joint limits ...")
+                ),
             ),
         ),
         OptionGroup(

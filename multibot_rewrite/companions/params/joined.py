@@ -103,7 +103,7 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFiles:
                 sections[key] = one
                 continue
             first = sections[key]
-            for what in _added(first.body, one.body, f"{first.path}."):
+            for what in added(first.body, one.body, f"{first.path}."):
                 notes.append(f"{it.file}: {what}")
     root = yaml.MappingNode("tag:yaml.org,2002:map", [_written(it) for it in sections.values()])
     # The same from every working directory.
@@ -130,7 +130,7 @@ def _written(it: RawSection) -> tuple[yaml.Node, yaml.Node]:
     return yaml.ScalarNode("tag:yaml.org,2002:str", key), body
 
 
-def _added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
+def added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
     """Add parameters, lists behind each other; tells those with two values."""
     known: Mapping[str, yaml.Node] = {key.value: value for key, value in pairs(into)}
     for key, value in pairs(more):
@@ -139,7 +139,7 @@ def _added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[
         if first is None:
             into.value.append((key, value))
         elif isinstance(first, yaml.MappingNode) and isinstance(value, yaml.MappingNode):
-            yield from _added(first, value, f"{name}.")
+            yield from added(first, value, f"{name}.")
         elif isinstance(first, yaml.SequenceNode) and isinstance(value, yaml.SequenceNode):
             there = {_plain(it) for it in first.value}
             first.value += [it for it in value.value if _plain(it) not in there]

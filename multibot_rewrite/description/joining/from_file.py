@@ -36,7 +36,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 
 # Files beside a description, of which a part may have several.
-BESIDE = ("controllers",)
+BESIDE = ("controllers", "moveit")
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _AT = ("parent", "pose")
@@ -133,6 +133,7 @@ def part_of(keys: Mapping[str, Any]) -> Part:
         keys.get("srdf") or None,
         controllers=tuple(_listed(keys.get("controllers", ()))),
         one_system=keys.get("one_system", False),
+        moveit=tuple(_listed(keys.get("moveit", ()))),
     )
 
 

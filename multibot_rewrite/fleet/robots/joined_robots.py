@@ -6,11 +6,13 @@ They are texts of files that are on no disk; what reads a file of a robot takes 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.join import Joined, join_plain
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
@@ -81,16 +83,19 @@ def _with_arguments(part: Part, robot: RobotSpec) -> Part:
 
 def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
     """The robot with its texts; an SRDF of its own is taken instead of the parts'."""
-    stem = robot.description.removesuffix(JOIN).removesuffix(".urdf")
-    texts = {robot.description: made.data}
-    companions = dict(robot.companions)
+    folder, name = os.path.split(robot.description)
+    below = robot.description if name.endswith(JOIN) else folder
+    stem = os.path.join(below, name.removesuffix(JOIN).removesuffix(".urdf"))
+    beside = {f"{stem}_controllers.yaml": made.controllers} if made.controllers else {}
+    moveit = {os.path.join(below, it): data for it, data in made.moveit.items()}
+    texts = {robot.description: made.data, **beside, **moveit}
     if made.srdf and not robot.srdf:
         robot = robot._replace(srdf=f"{stem}.srdf")
         texts[robot.srdf] = made.srdf
-    if made.controllers:
-        path = f"{stem}_controllers.yaml"
-        companions["params"] = (path, *companions.get("params", ()))
-        texts[path] = made.controllers
+    companions = dict(robot.companions)
+    for kind, more in ((PARAMS, beside), (MOVEIT, moveit)):
+        if more:
+            companions[kind] = (*more, *companions.get(kind, ()))
     filled_in = ((path, data.decode()) for path, data in texts.items())
     return robot._replace(companions=companions, filled=(*robot.filled, *filled_in))
 
