@@ -62,7 +62,7 @@ MANY = 20
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
 
     Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. In
@@ -71,16 +71,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     names = [item.nodeid.partition("[")[0] for item in items]
     rows, seen = Counter(names), Counter[str]()
     for item, name in zip(items, names, strict=True):
-        sample, at = item.get_closest_marker("sample"), seen[name]
-        left_out = at % -(-rows[name] // (1 if sample else FEW))
-        if left_out and not any(map(item.get_closest_marker, ("slow", "live", "deep"))):
-            item.add_marker("more")
-        usual = sample.args[0] if sample else -(-rows[name] // MANY)
-        if left_out and at % usual:
-            item.add_marker("deep")
-        if any(map(item.get_closest_marker, ("deep", "more"))):
-            item.add_marker("slow")
+        marks, at = {it.name: it for it in item.iter_markers()}, seen[name]
         seen[name] += 1
+        sample = marks.get("sample")
+        left_out = at % -(-rows[name] // (1 if sample else FEW))
+        more = left_out and marks.keys().isdisjoint(("slow", "live", "deep"))
+        usual = sample.args[0] if sample else -(-rows[name] // MANY)
+        deep = left_out and at % usual
+        slow = more or deep or {"more", "deep"} & marks.keys()
+        for mark, has in (("more", more), ("deep", deep), ("slow", slow)):
+            if has:
+                item.add_marker(mark)
+    # Before others sort and mark thousands of tests that nobody asked for.
+    config.pluginmanager.getplugin("mark").pytest_collection_modifyitems(items, config)
 
 
 def pytest_collection_finish() -> None:

@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.rehearsal import StubNode, split_over_processes, to_order
+from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
@@ -56,8 +57,15 @@ def staged(
         for _ in range(LOOKS):
             graph = observe(request, environ)
             if _has_all(graph, started):
-                break
+                return _nothing_is_late(graph), started.replaced
     return graph, started.replaced
+
+
+def _nothing_is_late(graph: System) -> System:
+    """The graph without what is said of a busy machine: all nodes that run here were seen whole."""
+    here = graph.environment
+    caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
+    return graph._replace(environment=here._replace(caveats=caveats))
 
 
 def _has_all(graph: System, started: Started) -> bool:

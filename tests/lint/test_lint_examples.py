@@ -12,7 +12,9 @@ from rule_examples import found
 
 from multibot_rewrite.lint import catalogue
 
-EXAMPLES: list[dict[str, Any]] = yaml.safe_load((FIXTURES / "lint" / "examples.yaml").read_text())
+EXAMPLES: list[dict[str, Any]] = yaml.load(
+    (FIXTURES / "lint" / "examples.yaml").read_bytes(), yaml.CSafeLoader
+)
 
 
 @pytest.mark.sample(1)

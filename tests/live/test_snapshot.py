@@ -339,7 +339,7 @@ def test_every_caveat_is_documented() -> None:
     files = (it for room in rooms for it in (root / "multibot_rewrite" / room).rglob("*.py"))
     source = "".join(it.read_text() for it in files)
     page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
-    assert set(re.findall(r'Caveat\(\s*"([\w-]+)"', source)) == set(
+    assert set(re.findall(r'(?:Caveat\(\s*|BUSY_MACHINE = )"([\w-]+)"', source)) == set(
         re.findall(r"`([a-z]+-[\w-]+)`", page)
     )
 
@@ -369,6 +369,21 @@ def test_when_the_observation_ends(
     now: float, changed_: tuple[float, float], complete: bool, why: str
 ) -> None:
     assert why_settled(now, LastChange(*changed_), complete, 9.0) == why
+
+
+def test_a_look_without_a_processor_is_not_quiet() -> None:
+    changed_ = LastChange(0.0, 0.0)
+    found = [why_settled(it, changed_, False, 9.0, starved=True) for it in (3.5, 8.9, 9.0)]
+    assert found == ["", "", TIMEOUT]
+
+
+def test_only_what_comes_after_the_last_change_is_starved() -> None:
+    at_change = late_by(*[0.3] * 40)
+    clock = at_change
+    for _ in range(40):
+        clock = clock.after(clock.last + 0.1, 0.1)
+    assert [*clock.starved()] and not [*clock.since(at_change).starved()]
+    assert clock.since(at_change).observed == pytest.approx(4.0)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any
 
 import pytest
@@ -175,14 +176,16 @@ def test_json_has_a_robot_a_line() -> None:
     assert lines[-2:] == [" }", "}"]
 
 
+VALUE = yaml.load(to_yaml(PLAN), yaml.CSafeLoader)
+
+
 def without(*path: str) -> dict[str, Any]:
     return changed(path, None, drop=True)
 
 
 def changed(path: tuple[Any, ...], value: object, drop: bool = False) -> dict[str, Any]:
     """The plan's value with another one at the path."""
-    copy = yaml.safe_load(to_yaml(PLAN))
-    at = copy
+    at = copy = deepcopy(VALUE)
     for key in path[:-1]:
         at = at[key]
     at.pop(path[-1]) if drop else at.__setitem__(path[-1], value)

@@ -106,7 +106,7 @@ def _options(installed: Path) -> list[str]:
         f"-DPYTHON_EXECUTABLE={sys.executable}",
         f"-DPYTHON_FOLDERS={sysconfig.get_path('include')};{numpy.get_include()}",
         f"-DCMAKE_INSTALL_PREFIX={installed}",
-        "-DCMAKE_BUILD_TYPE=Debug",
+        "-DCMAKE_BUILD_TYPE=None",
     ]
 
 

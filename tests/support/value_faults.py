@@ -42,7 +42,9 @@ class Fault(NamedTuple):
 
 def faults(name: str) -> list[Fault]:
     """The faults of a list."""
-    entries: Mapping[str, list[str]] = yaml.safe_load((DEFECTS / f"{name}.yaml").read_text("utf-8"))
+    entries: Mapping[str, list[str]] = yaml.load(
+        (DEFECTS / f"{name}.yaml").read_bytes(), yaml.CSafeLoader
+    )
     return [Fault(key, *map(str, entry)) for key, entry in entries.items()]
 
 

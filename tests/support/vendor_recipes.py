@@ -61,7 +61,10 @@ class Recipe(NamedTuple):
 
 def read_recipes() -> dict[str, Recipe]:
     """All recipes by the names of their pages."""
-    found = {it.stem: yaml.safe_load(it.read_text()) for it in HERE.glob("vendors/recipes/*.yaml")}
+    found = {
+        it.stem: yaml.load(it.read_bytes(), yaml.CSafeLoader)
+        for it in HERE.glob("vendors/recipes/*.yaml")
+    }
     return {name: Recipe(**found[name]) for name in sorted(found)}
 
 

@@ -32,7 +32,7 @@ from multibot_rewrite.spelling.table import parsed
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-SYSTEMS = yaml.safe_load((FIXTURES / "arm_systems.yaml").read_text())
+SYSTEMS = yaml.load((FIXTURES / "arm_systems.yaml").read_bytes(), yaml.CSafeLoader)
 CASES = [(name, release) for name, it in SYSTEMS.items() for release in it["releases"]]
 ROBOTS = ("left", "right")
 PUBLISHER = "robot_state_publisher"

@@ -32,6 +32,7 @@ ALL_KNOWN_SECONDS = 1.5
 DELAY_SECONDS = 0.5
 # So much of its time a look may wait for a processor.
 STARVED = 1 / 3
+BUSY_MACHINE = "busy-machine"
 # The endpoints of one participant arrive together; a busy machine may pause in between.
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
@@ -79,6 +80,12 @@ class ObservationClock(NamedTuple):
         late = min(max(0.0, passed - planned), DELAY_SECONDS)
         return ObservationClock(self.observed + min(passed, planned), now, self.delayed + late)
 
+    def since(self, other: ObservationClock) -> ObservationClock:
+        """What was observed, and delayed, after ``other``."""
+        return ObservationClock(
+            self.observed - other.observed, self.last, self.delayed - other.delayed
+        )
+
     def starved(self) -> Iterator[Caveat]:
         """Where a look waited for a processor so long that nodes may have come too late."""
         part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
@@ -87,7 +94,7 @@ class ObservationClock(NamedTuple):
                 f"this machine was too busy: the look waited for a processor in {part:.0%} of its time,"
                 " so what is missing may only be late; look again when the machine is less busy"
             )
-            yield Caveat("busy-machine", True, text)
+            yield Caveat(BUSY_MACHINE, True, text)
 
 
 def cut_short() -> Iterator[Caveat]:
@@ -97,15 +104,22 @@ def cut_short() -> Iterator[Caveat]:
 
 
 def why_settled(
-    now: float, changed: LastChange, complete: bool, timeout: float, quiet: float = QUIET_SECONDS
+    now: float,
+    changed: LastChange,
+    complete: bool,
+    timeout: float,
+    quiet: float = QUIET_SECONDS,
+    *,
+    starved: bool = False,
 ) -> str:
     """Why the observation can end, or an empty string; times are seconds since its start.
 
-    ``complete``: all that is expected is there; ``quiet``: so long without a change suffices.
+    ``complete``: all that is expected is there; ``quiet``: so long without a change suffices, unless
+    the look was ``starved`` meanwhile.
     """
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
-    if now - changed.all >= quiet:
+    if now - changed.all >= quiet and not starved:
         return QUIET
     return TIMEOUT if now >= timeout else ""
 

@@ -186,12 +186,13 @@ def _overview(session: GraphSession) -> tuple[list[str], list[End]]:
 def _wait_until_settled(
     session: GraphSession, cache: queries.TopicCache, ears: _Ears
 ) -> tuple[str, assemble.ObservationClock]:
-    """Wait until the graph is settled; returns why it is, empty if the observation was stopped.
+    """Wait until the graph is settled; returns why it is, empty if the observation was stopped, and
+    the time since the last change: what is late on a busy machine has had the time before.
 
     The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
     """
     request = session.request
-    times = _ChangeTimes()
+    times, last_change = _ChangeTimes(), assemble.ObservationClock()
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
@@ -201,6 +202,8 @@ def _wait_until_settled(
         view = _overview(session)
         changed = times.update(now, view, request)
         # While it changes the moment of the last change is wanted.
+        if changed.all == now:
+            last_change = clock
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         known = _all_are_known(session)
@@ -209,9 +212,11 @@ def _wait_until_settled(
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
         timeout = request.timeout - (session.now() - now)
-        why = assemble.why_settled(now, changed, request.is_met(view[1]), timeout, quiet)
+        unchanged = clock.since(last_change)
+        met, starved = request.is_met(view[1]), any(unchanged.starved())
+        why = assemble.why_settled(now, changed, met, timeout, quiet, starved=starved)
         if why:
-            return why, clock
+            return why, unchanged
         still = SHORT_IDLE_SECONDS if known else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != view:

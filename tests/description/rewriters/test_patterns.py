@@ -143,7 +143,7 @@ def test_it_agrees_with_std_regex(tmp_path: Path) -> None:
     rng = random.Random(13)
     pairs = [
         (pattern, "".join(rng.choice("abc_1./]}é-") for _ in range(rng.randint(0, 5))))
-        for pattern in (made(rng) for _ in range(1_000))
+        for pattern in (made(rng) for _ in range(400))
         for _ in range(3)
     ]
     asked = "".join(f"{pattern}\n{name}\n" for pattern, name in pairs)
@@ -153,4 +153,4 @@ def test_it_agrees_with_std_regex(tmp_path: Path) -> None:
     said = run.stdout.decode().split()
     found = [(*pair, verdict(*pair)) for pair in pairs]
     assert found == [(*pair, word) for pair, word in zip(pairs, said, strict=True)]
-    assert min(said.count(word) for word in ("0", "1", "error")) > 100
+    assert min(said.count(word) for word in ("0", "1", "error")) > 40
