@@ -37,6 +37,13 @@ class Launches(NamedTuple):
     left: tuple[Left, ...]
 
 
+class _Verdict(NamedTuple):
+    """What is wrong with a launch file, or why it cannot be read; both empty where it is proved."""
+
+    fault: str
+    unread: str
+
+
 def with_launches(
     folder: str,
     launches: Collection[str],
@@ -58,16 +65,21 @@ def with_launches(
     if not trust:
         why = f"it gets {argument}, which is proved with --trust alone: a launch file is a program"
         return Launches(made, (), (*left, *(Left(it, why) for it in made)))
-    faults = dict(_faults(folder, {**after, **made}, made, argument, prefix)) if made else {}
-    left += (Left(path, f"it does not hand {argument} on: {why}") for path, why in faults.items())
-    kept = {path: data for path, data in made.items() if path not in faults}
-    return Launches(kept, tuple(kept), tuple(left))
+    read = dict(_read(folder, {**after, **made}, made, argument, prefix)) if made else {}
+    for path, it in read.items():
+        if it.fault:
+            left.append(Left(path, f"it does not hand {argument} on: {it.fault}"))
+        elif it.unread:
+            left.append(Left(path, f"it gets {argument}, which is not proved: {it.unread}"))
+    kept = {path: data for path, data in made.items() if not read[path].fault}
+    proved = tuple(path for path in kept if not read[path].unread)
+    return Launches(kept, proved, tuple(left))
 
 
-def _faults(
+def _read(
     folder: str, files: Mapping[str, bytes], launches: Collection[str], argument: str, prefix: str
-) -> Iterator[tuple[str, str]]:
-    """What is wrong with each launch file in a copy of the package."""
+) -> Iterator[tuple[str, _Verdict]]:
+    """Each launch file in a copy of the package."""
     home = (package_of(os.path.join(folder, "x")) or ("", os.path.abspath(folder)))[1]
     with TemporaryDirectory(prefix="multibot_") as above:
         root = os.path.join(above, os.path.basename(home))
@@ -76,9 +88,8 @@ def _faults(
             copy = os.path.join(
                 root, os.path.relpath(os.path.realpath(path), os.path.realpath(home))
             )
-            why = _fault(LaunchOrder(copy, (), (above,), True), argument, prefix)
-            if why:
-                yield path, why.replace(f"{root}/", "")
+            found = _verdict(LaunchOrder(copy, (), (above,), True), argument, prefix)
+            yield path, _Verdict(*(it.replace(f"{root}/", "") for it in found))
 
 
 def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
@@ -97,18 +108,20 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _fault(order: LaunchOrder, argument: str, prefix: str) -> str:
+def _verdict(order: LaunchOrder, argument: str, prefix: str) -> _Verdict:
     try:
         plain = _links(launch_graph(order))
+    except InputError as error:
+        return _Verdict("", str(error))
+    if not plain:
+        return _Verdict("", "no node of it gets a robot_description that is known")
+    try:
         given = _links(launch_graph(order._replace(arguments=((argument, prefix),))))
     except InputError as error:
-        return str(error)
-    if not plain:
-        return "no node of it gets a robot_description that is known"
-    wanted = [it if it == WORLD else f"{prefix}{it}" for it in plain]
-    return (
-        "" if given == wanted else f"with {argument}:={prefix} the links are {', '.join(given[:3])}"
-    )
+        return _Verdict(str(error), "")
+    if given == [it if it == WORLD else f"{prefix}{it}" for it in plain]:
+        return _Verdict("", "")
+    return _Verdict(f"with {argument}:={prefix} its links are {', '.join(given[:3])}", "")
 
 
 def _links(graph: LaunchGraph) -> list[str]:

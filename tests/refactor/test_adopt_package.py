@@ -9,6 +9,7 @@ import pytest
 from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.producers.launch.door import missing
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
@@ -56,8 +57,12 @@ def package(tmp_path: Path) -> Path:
     return tmp_path / "r"
 
 
+NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
+FILES = [("a.launch.py", LAUNCH), pytest.param("a.launch.xml", XML, marks=NEEDS_LAUNCH)]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "text"), [("a.launch.py", LAUNCH), ("a.launch.xml", XML)])
+@pytest.mark.parametrize(("name", "text"), FILES)
 def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text: str) -> None:
     path = package / "launch" / name
     path.write_text(text)
@@ -77,6 +82,15 @@ def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     assert str(path) not in made.after
     (why,) = [it.why for it in made.left if it.place == str(path)]
     assert why.startswith("it does not hand prefix on")
+
+
+@pytest.mark.slow
+def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path) -> None:
+    path = package / "launch/a.launch.py"
+    path.write_text(f"raise RuntimeError(1)\n{LAUNCH}")
+    made = adopt(str(package), trust=True)
+    assert (str(path) in made.after, made.launches) == (True, ())
+    assert any("not proved" in it.why for it in made.left if it.place == str(path))
 
 
 def test_without_trust_no_program_runs_and_it_is_said(package: Path) -> None:
