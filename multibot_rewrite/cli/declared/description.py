@@ -318,6 +318,29 @@ JOIN = Command(
             (
                 rare(each("--srdf", "FILE", "the SRDF of the part")),
                 rare(each("--controllers", "A,B", "parameter files of its controllers")),
+                rare(
+                    each("--moveit", "A,B", "MoveIt's files for it: kinematics, joint limits ...")
+                ),
+            ),
+        ),
+        OptionGroup(
+            "the whole",
+            (
+                rare(
+                    value(
+                        "--samples",
+                        metavar="COUNT",
+                        about="disable collisions of links of two parts that never or always touch in"
+                        " so many random poses, by pinocchio; MoveIt's Setup Assistant takes 10000",
+                        type=values.count,
+                    )
+                ),
+                rare(
+                    switch(
+                        "--one-system",
+                        about="put joints of parts with the same hardware into one ros2_control",
+                    )
+                ),
             ),
         ),
         OptionGroup(
