@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
+    from multibot_rewrite.companions.join import Joined, join, split
     from multibot_rewrite.description.joining.part import Part
     from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.fleet.file.system_sources import (
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
     from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.refactor.adopt import Adopted, adopt
-    from multibot_rewrite.refactor.join import Joined, join, split
     from multibot_rewrite.refactor.rename import Renaming, rename_symbol
     from multibot_rewrite.system.records import System
 
@@ -88,7 +88,7 @@ _HOMES = {
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
     **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
     **dict.fromkeys(("Adopted", "adopt"), "refactor.adopt"),
-    **dict.fromkeys(("Joined", "join", "split"), "refactor.join"),
+    **dict.fromkeys(("Joined", "join", "split"), "companions.join"),
     "Part": "description.joining.part",
     **dict.fromkeys(("Renaming", "rename_symbol"), "refactor.rename"),
     "LoadedRobot": "fleet.robots.loaded_robot",

@@ -81,7 +81,8 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
-    file, given = input_name(options), rewriting(options)
+    file = input_name(options)
+    given = {**rewriting(options), "world_systems": options.world_systems}
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
     rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
@@ -103,7 +104,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
-    given = rewriting(options)
+    given = {**rewriting(options), "world_systems": options.world_systems}
     if not options.xacro:
         given["xacro_args"] = None
     return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
@@ -143,7 +144,7 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
-    proved = " ".join(filter(None, ["proved", given(first.findings)]))
+    proved = " ".join(filter(None, ["proved", given(first.findings, first.prepared.job.aside)]))
     end = f"rewritten, not proved: {', '.join(why)}" if why else proved
     end += facts_of_release(first.distro, first.prepared.job.why)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -169,7 +169,9 @@ SURVEY = Survey(
         MentionPlace("robot/c", False): TALLY._replace(times=2),
     },
 )  # fmt: skip
-REPORT = coverage.CoverageReport(SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy")
+REPORT = coverage.CoverageReport(
+    SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy", []
+)
 
 
 def test_how_much_is_known() -> None:
@@ -215,6 +217,7 @@ def test_the_same_as_json() -> None:
                 {"path": "robot/b", **place, "count": 1, "value": "base  link"},
             ],
         },
+        "spawners": [],
     }  # fmt: skip
     assert list(made["claims"]) == ["frame", "joint", "link"]
 

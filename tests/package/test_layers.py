@@ -119,7 +119,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
         "fleet/scripts.py",
         "fleet/file/system_sources.py",
         "refactor/adopt.py",
-        "refactor/join.py",
+        "companions/join.py",
         "refactor/rename.py",
         "description/joining/part.py",
         "description/library.py",
