@@ -7,6 +7,7 @@ complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling
 complete -c urdf-postfix -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
 complete -c urdf-postfix -s o -l output -r -d 'write the result there'
 complete -c urdf-postfix -l in-place -d 'write the result over the input'
+complete -c urdf-postfix -l world-systems -r -f -a 'keep leave' -d 'systems of the whole world, as Sensors: keep (default), or leave them to the world, which has to load each once'
 complete -c urdf-postfix -l diff -d 'print a unified diff instead of the result'
 complete -c urdf-postfix -l changes -r -d 'write every change as JSON'
 complete -c urdf-postfix -l strip -d 'undo a rewrite'
