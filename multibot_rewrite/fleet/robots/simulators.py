@@ -74,8 +74,8 @@ OTHER_HARDWARE = declare(
     "MF843",
     "hardware-of-real-robot-simulated",
     ERROR,
-    what="The robots are simulated, and the hardware class of their `<ros2_control>` is a real robot's "
-    "driver; or they are real, and the class is a simulator's.",
+    what="The robots are simulated, and the hardware class of their `<ros2_control>` is a real "
+    "robot's driver. Or they are real, and the class is a simulator's.",
     why="The simulator's plugin looks for its own classes, ros2_control_node for drivers: neither "
     "finds the other's, and no controller comes up.",
     fix="Give the xacro the argument that switches it, often `use_sim` or `sim_gazebo`; the hint has "

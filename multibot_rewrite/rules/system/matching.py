@@ -194,8 +194,9 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
     "MG309",
     "not-latched",
     ERROR,
-    what="A map, a description or `tf_static` is offered without `transient_local`, or read without it"
-    " (a warning); or a publisher offers another QoS than `qos` of its topic in the plan.",
+    what="A map, a description or `tf_static` is offered without `transient_local`, or read "
+    "without it (a warning). Or a publisher offers another QoS than `qos` of its topic in the"
+    " plan.",
     why="Who starts later, or asks for more, never gets it.",
     fix="Publish and read it with durability transient local: by the node's parameter, or a"
     " qos_overrides parameter; or correct the plan.",

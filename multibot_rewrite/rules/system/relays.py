@@ -80,9 +80,9 @@ def _of_bodies(seen: Index) -> Iterator[Ends]:
     "limits-left-out",
     ERROR,
     meant=(PUBLISHES, SUBSCRIBES),
-    what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or"
-    " collision_monitor sends them, after it has limited them; or a driver reads an input of twist_mux,"
-    " and no node reads its output.",
+    what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or "
+    "collision_monitor sends them, after it has limited them. Or a driver reads an input of "
+    "twist_mux, and no node reads its output.",
     why="The robot obeys what was not limited or chosen: nothing stops it before an obstacle.",
     fix="Pass the remap rule cmd_vel:=cmd_vel_nav to controller_server, as Nav2's launch files do; give"
     " the driver the output of twist_mux.",
@@ -145,8 +145,8 @@ def _velocities(seen: Index) -> Iterator[Ends]:
     "data-in-a-circle",
     ERROR,
     meant=(PUBLISHES, SUBSCRIBES),
-    what="A node reads velocities, odometry, a scan or IMU data on the topic on which it sends them; or"
-    " one relay gives them to a second one, which sends them back.",
+    what="A node reads velocities, odometry, a scan or IMU data on the topic on which it sends "
+    "them. Or one relay gives them to a second one, which sends them back.",
     why="Each message comes round again: a filter believes itself, a command never ends.",
     fix="Let it read, or send, on another topic: the remap rule of one of the two names.",
     bad="""\

@@ -24,10 +24,11 @@ _BODY = """\
     "MB144",
     "argument-not-read",
     WARNING,
-    what="A xacro argument is given (NAME:=VALUE, xacro_args, arguments of a fleet file) that neither "
-    "the file nor one that it includes declares or reads. An argument that is only read, by "
-    "$(arg NAME), is known. Of several files that urdf-lint looks at together, one has to know it; "
-    "if none does, it is reported at those that have an argument of a similar name.",
+    what="A xacro argument is given (NAME:=VALUE, xacro_args, arguments of a fleet file) that "
+    "neither the file nor one that it includes declares or reads. An argument that is only "
+    "read, by $(arg NAME), is known. Of several files that urdf-lint looks at together, one "
+    "has to know it. If none does, it is reported at those that have an argument of a similar"
+    " name.",
     why="xacro ignores it without a word: the description is as if it were not given, and a prefix or "
     "a namespace that was meant for one robot is missing from all its names.",
     fix="Correct the name; the message says what may be meant. Where the file should take it, declare "

@@ -61,7 +61,7 @@ def _visual(shape: str, *more: str) -> str:
     ERROR,
     what="An <origin> has both rpy and quat_xyzw, in a file of URDF 1.1 or 1.2.",
     why="urdfdom rejects the file if it is in a joint ('Both rpy and quat_xyzw orientations are "
-    "defined'); in a link it drops the inertial, or the remaining visuals and collisions.",
+    "defined'). In a link it drops the inertial, or the remaining visuals and collisions.",
     fix="Keep one of them; --fix does where they are the same rotation.",
     bad=_robot("1.1", _joint('<origin rpy="0 0 0" quat_xyzw="0 0 0 1"/>')),
     good=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 1"/>')),
@@ -101,8 +101,8 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
     "needs-later-version",
     WARNING,
     what="A quat_xyzw or <capsule> in a file of URDF 1.0, which is one without a version, too.",
-    why="urdfdom reads no rotation: the joint or shape is in another pose at run time, with a warning "
-    "only; of a link it drops the capsule and the visuals and collisions after it.",
+    why="urdfdom reads no rotation: the joint or shape is in another pose at run time, with a "
+    "warning only. Of a link it drops the capsule and the visuals and collisions after it.",
     fix='Write version="1.1" in <robot> where the release reads it, else rpy, a cylinder and spheres. '
     "--fix does.",
     bad='<robot name="r">\n' + _joint(_TURNED) + "</robot>\n",

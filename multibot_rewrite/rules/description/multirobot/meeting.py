@@ -107,8 +107,8 @@ sensor_names_collide = rule(
     WARNING,
     what="A plugin looks up a sensor, link or light by its bare name in the whole world, and "
     "each robot has one of that name.",
-    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
-    "none if two have it: the second robot reads the first one's data, or nothing.",
+    why="gz_ros2_control takes the first IMU with that name. The realsense and kobuki plugins "
+    "find none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Use the layout called both (L3), which renames sensors for each robot.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'

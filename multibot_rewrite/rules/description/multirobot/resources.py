@@ -101,8 +101,8 @@ one_device = of_both.ONE_DEVICE._replace(
     "sensor-found-by-bare-name",
     NOTE,
     what="A plugin looks sensors up by their bare name in the whole world.",
-    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
-    "none if two have it: the second robot reads the first one's data, or nothing.",
+    why="gz_ros2_control takes the first IMU with that name. The realsense and kobuki plugins "
+    "find none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
     "both.",
     bad='<link name="a"/>\n'

@@ -72,8 +72,9 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     what="The inertia of a link is physically impossible: about some axis it is negative, or one "
     "principal moment is larger than the sum of the two others. It is a warning where simulators "
     "merge the link with others.",
-    why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum; and so does "
-    "MuJoCo ('inertia must have positive eigenvalues', 'inertia must satisfy A + B >= C').",
+    why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum. And so"
+    " does MuJoCo ('inertia must have positive eigenvalues', 'inertia must satisfy A + B >= "
+    "C').",
     fix="Export the values from the CAD program again: in kg m2, about the centre of mass. Look "
     "for a wrong sign, or for off-diagonal values in another unit.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.2"))),

@@ -33,8 +33,8 @@ from multibot_rewrite.rules.subject import Subject
     "repeated-interface",
     ERROR,
     what="A joint, sensor or gpio of a <ros2_control> has one command or state interface twice.",
-    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing key' and "
-    "has no hardware; in Humble a handle of the first is lost.",
+    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing "
+    "key' and has no hardware. In Humble a handle of the first is lost.",
     fix="Delete one.",
     bad=ARM + hardware_system("p/P", block('<joint name="j">', VELOCITY, VELOCITY)),
     good=ARM + hardware_system("p/P", driven()),

@@ -25,9 +25,9 @@ undeclared_link = rule(
     what="A name that has to be a link is not declared. It is that of a joint's parent or child, "
     "of a <gazebo reference>, of a parameter of a plugin or hardware class, of a sensor or "
     "gripper, or a model. It is an error in a joint.",
-    why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf. "
-    "Gazebo silently drops the block, with its friction, sensors and plugins; a plugin looks the "
-    "link up and does not run: gazebo_ros_p3d reports 'body_name: ... does not exist'.",
+    why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf."
+    " Gazebo silently drops the block, with its friction, sensors and plugins. A plugin looks"
+    " the link up and does not run: gazebo_ros_p3d reports 'body_name: ... does not exist'.",
     fix="Correct the name, declare the link, or delete the block.",
     bad='<link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>',
     good='<link name="a"/>\n'
@@ -57,8 +57,8 @@ undeclared_sdf_name = rule(
     WARNING,
     what="An SDF frame, joint or pose names something that its model does not have, or a scoped "
     "name a::b is not found.",
-    why="libsdformat rejects the model for a frame, joint or link ('does not match a nested model, "
-    "link, joint, or frame name'); a sensor's pose is not resolved.",
+    why="libsdformat rejects the model for a frame, joint or link ('does not match a nested "
+    "model, link, joint, or frame name'). A sensor's pose is not resolved.",
     fix="Correct the name; names of an included model need its scope.",
     bad='<link name="a"/><gazebo><frame name="f" attached_to="b"/></gazebo>',
     good='<link name="a"/><gazebo><frame name="f" attached_to="a"/></gazebo>',

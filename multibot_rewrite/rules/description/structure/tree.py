@@ -83,7 +83,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="Joints close a loop: a link is below itself.",
     why="urdfdom accepts a loop beside the tree: its links get no frame in tf, and pinocchio "
-    "leaves them out; if all links are in loops it rejects the file ('No root link found').",
+    "leaves them out. If all links are in loops it rejects the file ('No root link found').",
     fix="Reverse or delete one joint; close a real loop in the simulator.",
     bad=a_link("a")
     + a_link("b")
