@@ -68,6 +68,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.simulators",
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",
+            "fleet.robots.joined_robots",
             "fleet.robots.own_ports",
             "fleet.outputs.given_world",
             "fleet.robots.robot_nodes",

@@ -163,7 +163,8 @@ def test_words_that_stand_for_a_robot() -> None:
     [
         (
             other_words.COMMANDS,
-            """arguments coverage vocabulary explain learn doctor diagnose lint remap zenoh rewrite postfix prefix
+            """arguments coverage vocabulary explain learn doctor diagnose lint remap zenoh rewrite
+            postfix prefix
             strip undo clean new create generate make launch run start up simulate test
             verify watch report graph record show visualize rviz""",
         ),
