@@ -81,10 +81,7 @@ POSTFIX = Command(
         OptionGroup(
             "output",
             (
-                output(
-                    "write the result there; {robot} stands for the robot's name, a folder for"
-                    " FOLDER/{robot}/NAME"
-                ),
+                output("write it there; {robot} is the robot's name, FOLDER/ its {robot}/NAME"),
                 IN_PLACE,
                 choice(
                     "--world-systems",
