@@ -191,7 +191,7 @@ def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measur
     ]
     most = SKIDDING if several else 1 + slack
     low, high = min(found) * (1 - slack) - ROUNDING, max(found) * most + ROUNDING
-    return Measured(low, high, found[0]) if found[0] > 0 else None
+    return Measured(low, high, found[0]) if found[0] > ROUNDING else None
 
 
 def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
