@@ -177,3 +177,12 @@ def rover(
 def test_the_drive_of_a_model_is_measured(text: str, codes: list[str]) -> None:
     settings = JAZZY._replace(select=("MB620", "MB622"))
     assert [it.code for it in lint_data("m.sdf", text.encode(), settings)] == codes
+
+
+@pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
+def test_a_mass_of_nothing_hurts_no_static_model_of_classic(distro: str, level: str) -> None:
+    text = model("0", "0.02").replace('<model name="m">', '<model name="m"><static>1</static>')
+    settings = Settings(distro=distro, select=("MB606",))
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+    moving = text.replace("<static>1</static>", "")
+    assert [it.level for it in lint_data("m.sdf", moving.encode(), settings)] == ["error"]

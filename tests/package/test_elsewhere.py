@@ -35,7 +35,8 @@ sys.exit(main(sys.argv[1:]))
 """
 XACRO = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>'
-    '<xacro:property name="n" value="b"/><joint name="j" type="fixed"><parent link="a"/><child link="${n}"/></joint></robot>'
+    '<xacro:property name="n" value="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="${n}"/></joint></robot>'
 )
 
 
