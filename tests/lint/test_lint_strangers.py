@@ -37,6 +37,7 @@ collision_monitor:
     observation_sources: frnt
     front: {type: scan, topic: scan}
 """
+MANAGER = "controller_manager: {ros__parameters: {update_rate: 100, arm: {%s}}}\n"
 ROS_1_DISPLAY = "Visualization Manager:\n  Displays: [{Class: rviz/Grid}]\n"
 CATKIN = "<package><name>arm</name><buildtool_depend>catkin</buildtool_depend></package>"
 AMENT = "<package><name>arm</name><buildtool_depend>ament_cmake</buildtool_depend></package>"
@@ -63,9 +64,19 @@ CASES = {
         {"package.xml": AMENT, "../md80_hardware_interface/package.xml": "<package/>"},
         [],
     ),
+    "hardware of a package elsewhere in the repository": (
+        *("MB110", "urdf/a.urdf", robot(HARDWARE % OWN)),
+        {
+            **{"package.xml": AMENT, "../../.git/HEAD": ""},
+            "../../hw/md80_hardware_interface/package.xml": "<package/>",
+        },
+        [],
+    ),
     "hardware of no package": ("MB110", "a.urdf", robot(HARDWARE % OWN), {}, ["warning"]),
     "the name of a <geometry>": ("MB901", "a.urdf", robot(""), {}, []),
     "a joint of a controller": ("MB877", "c.yaml", TRICYCLE, {}, []),
+    "a controller without type": ("MB115", "c.yaml", MANAGER % "joints: [a]", {}, ["error"]),
+    "hardware of no controller": ("MB115", "c.yaml", MANAGER % "plugin: own/Hardware", {}, []),
     "a list in a text": ("MB877", "c.yaml", SOURCES, {}, ["warning"]),
     "RViz of ROS 1 there": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": CATKIN}, ["note"]),
     "RViz of ROS 1 in ROS 2": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": AMENT}, ["error"]),

@@ -15,7 +15,11 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.description.sources.packages import package_folder
+from multibot_rewrite.description.sources.packages import (
+    package_folder,
+    packages_below,
+    sources_around,
+)
 from multibot_rewrite.rules.facts.simulators import library_of, simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
@@ -118,7 +122,9 @@ def _is_own(subject: Subject, name: str, known: Iterable[str]) -> bool:
     package = name.partition("/")[0]
     if any(it.startswith(f"{package}/") for it in known):
         return False
-    return bool(package_folder(package, subject.document.file, subject.settings.roots))
+    file = subject.document.file
+    around = packages_below((sources_around(file), *subject.settings.roots))
+    return package in around or bool(package_folder(package, file, subject.settings.roots))
 
 
 @rule(
