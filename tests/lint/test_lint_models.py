@@ -186,3 +186,15 @@ def test_a_mass_of_nothing_hurts_no_static_model_of_classic(distro: str, level: 
     assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
     moving = text.replace("<static>1</static>", "")
     assert [it.level for it in lint_data("m.sdf", moving.encode(), settings)] == ["error"]
+
+
+@pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
+def test_a_range_that_classic_does_not_know_is_a_note_there(distro: str, level: str) -> None:
+    friction = "<surface><friction><ode><mu>-1</mu></ode></friction></surface>"
+    collision = f'<collision name="c"><geometry><box/></geometry>{friction}</collision>'
+    text = world(f'<model name="m"><link name="a">{collision}</link></model>')
+    settings = Settings(distro=distro, select=("MB125",))
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+    system = '<plugin filename="ignition-gazebo-physics-system" name="Physics"/></world>'
+    other = text.replace("</world>", system)
+    assert [it.level for it in lint_data("m.sdf", other.encode(), settings)] == ["error"]

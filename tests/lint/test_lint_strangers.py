@@ -37,7 +37,7 @@ collision_monitor:
     observation_sources: frnt
     front: {type: scan, topic: scan}
 """
-MANAGER = "controller_manager: {ros__parameters: {update_rate: 100, arm: {%s}}}\n"
+MANAGER = "controller_manager:\n  ros__parameters:\n    update_rate: 100\n    arm: {%s}\n"
 ROS_1_DISPLAY = "Visualization Manager:\n  Displays: [{Class: rviz/Grid}]\n"
 CATKIN = "<package><name>arm</name><buildtool_depend>catkin</buildtool_depend></package>"
 AMENT = "<package><name>arm</name><buildtool_depend>ament_cmake</buildtool_depend></package>"
