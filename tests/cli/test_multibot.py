@@ -527,8 +527,8 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
 @pytest.mark.slow
 def test_the_list_has_every_section(multibot: Multibot) -> None:
     sections = load_vocabulary((), "").sections(*TYPES)
-    listed = multibot("inspect").out.splitlines()
-    assert len(listed) == len(sections) + 1
+    listed, codes = multibot("inspect").out.split("\n\n")
+    assert len(listed.splitlines()) == len(sections) + 1 and codes.startswith("code ")
     table = [it for it in multibot.json("inspect")["sections"] if it["type"] == "hardware"]
     assert {section["type"] for section in table} == {"hardware"}
     assert len(table) == len(load_vocabulary((), NEWEST_LTS).sections("hardware"))
