@@ -182,8 +182,10 @@ def _package(folder: Path, checkout: Path) -> str:
 
 
 def _is_told(why: str, told: str) -> bool:
-    """Does the build name the topic, node or frame that this is about, as a whole word?"""
-    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", why)
+    """Does the build name the topic, controller or frame that this is about, as a whole word? That the
+    node is named that reads or sends it says nothing of it."""
+    about = re.sub(r"^/\S+ |\b\w+/msg/\w+", "", why)
+    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", about)
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}

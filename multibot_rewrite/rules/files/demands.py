@@ -132,7 +132,8 @@ def value_of(section: Section, name: str) -> Value | None:
     WARNING,
     what="A parameter has no effect, or fails, with the value of another one of its node: an initial "
     "pose without set_initial_pose, the config of an input that is not there, frames of an EKF that "
-    "have to differ, a transform from a frame to itself, a world_frame that is neither map_frame nor odom_frame.",
+    "have to differ, a transform from a frame to itself, a world_frame that is neither map_frame nor "
+    "odom_frame.",
     why="The node says little or nothing: amcl waits for a pose, an EKF fuses nothing or sends no "
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
