@@ -63,8 +63,8 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
     if it.launched:
         yield ""
-        yield "# Launch files give nodes what is not carried into the fleet: write parameters into a file"
-        yield "# of params; a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
+        yield "# Launch files give nodes what is not carried into the fleet: write the values into a"
+        yield "# file of params; a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
         yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in it.launched)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"

@@ -1,4 +1,4 @@
-"""What launch files themselves give to nodes that a fleet starts: init says it, the fleet has it not."""
+"""What launch files themselves give to nodes that a fleet starts: init says what it does not carry."""
 
 from __future__ import annotations
 
