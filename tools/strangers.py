@@ -184,6 +184,9 @@ def _package(folder: Path, checkout: Path) -> str:
 def _is_told(why: str, told: str) -> bool:
     """Does the build name the topic, controller or frame that this is about, as a whole word? That the
     node is named that reads or sends it says nothing of it."""
+    if " looks for " in why:
+        node = why.partition(" ")[0].rpartition("/")[2]
+        return any(node in line and "frame" in line for line in told.splitlines())
     about = re.sub(r"^/\S+ |\b\w+/msg/\w+", "", why)
     names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", about)
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
