@@ -129,7 +129,7 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
     "it. A <transmission> is for ROS 1.",
     bad=ARM + _LOADS,
     good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=6,
+    line=7,
     beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
 )
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
