@@ -142,16 +142,17 @@ def _has(it: Description, tree: Tree, how: Expanding) -> str:
 
 
 def _is_prefix(it: Argument) -> bool:
-    """Is it before links? ``world`` and some that were forgotten may lack it."""
+    """Is it before links, for each robot another word? ``world`` and some that were forgotten may lack
+    it."""
     links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
-    return it.is_empty and any(2 * use.names >= use.total for use in links)
+    return bool(it.value) and any(2 * use.names >= use.total for use in links)
 
 
 def _names(found: Iterable[Description]) -> Iterator[str]:
     """What gets the prefix."""
-    for it in found:
-        for kind in PREFIXED:
-            yield from it.inventory.declared.get(kind, ())
+    shared = prefixing().shared_frames
+    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
+    yield from (name for names in declared for name in names if name not in shared)
 
 
 def _as_xacros(

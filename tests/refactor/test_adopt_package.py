@@ -149,6 +149,21 @@ def test_a_description_that_takes_one_stays(
     assert f"it has such an argument already: {name}" in capsys.readouterr().err
 
 
+def test_an_argument_with_the_name_of_the_robot_is_one(package: Path) -> None:
+    own = '<xacro:arg name="robot_name" default="lbr"/>'
+    text = ROBOT.format(JOINT).replace("<link", f"{own}<link", 1)
+    for it in ("base", "arm", "j"):
+        text = text.replace(f'"{it}"', f'"$(arg robot_name)_{it}"')
+    (package / "urdf/r.urdf.xacro").write_text(text)
+    assert list(adopt(str(package)).already.values()) == ["robot_name"]
+
+
+def test_the_world_is_no_name_of_the_robot(package: Path) -> None:
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format('  <link name="world"/>\n'))
+    (package / "config/c.yaml").write_text("a: {frame: world, other: base}\n")
+    assert [it.why.split()[2] for it in adopt(str(package)).left] == ["'base',"]
+
+
 def test_an_argument_for_something_else_is_none(package: Path) -> None:
     own = '<xacro:arg name="prefix" default=""/><gazebo reference="$(arg prefix)base"/>\n'
     (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(own))
