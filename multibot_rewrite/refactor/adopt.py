@@ -115,10 +115,10 @@ def adopt(
     for it in found:
         _prove(it, wanted[it.path], after, argument, how)
     after = as_named(after, found)
-    given = package.found.launch
-    launches = with_launches(folder, given, argument, after, TRIED, trust)
+    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust)
     left += launches.left
-    looked_at = {os.path.realpath(it) for it in (*texts, *given, *launches.after)}
+    # A plain description that becomes a xacro is one of them.
+    looked_at = {*texts, *(it.removesuffix(".xacro") for it in texts)}
     left += named_elsewhere(folder, set(_names(found)), looked_at)
     before = {path: data for path, data in as_named(texts, found).items() if path in after}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")

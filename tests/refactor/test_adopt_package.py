@@ -113,6 +113,7 @@ def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
     assert '<group name="g"><joint name="${prefix}j"/>' in text
     assert 'link1="${prefix}base" link2="${prefix}arm"' in text
     assert str(srdf) not in made.after
+    assert made.left == ()
     Path(f"{srdf}.xacro").write_text(text)
     assert b'link1="base"' in expand(f"{srdf}.xacro", {})
 
