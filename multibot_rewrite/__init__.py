@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
 from multibot_rewrite.version import __version__ as __version__
 
-# For checkers of types, as typing has it: Ctrl-C is not quiet before the command begins, and to import
-# typing takes longer than all else until then.
+# For checkers of types, as typing has it. Nothing is imported here: Ctrl-C is not quiet before the
+# command begins, and to import typing or importlib takes longer than all else until then.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
@@ -110,5 +108,7 @@ def __getattr__(name: str) -> object:
     # A command loads what it needs: each of them starts by importing this package.
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     module = import_module(f"{__name__}.{_HOMES.get(name, 'base.model')}")
     return getattr(module, name)
