@@ -227,6 +227,7 @@ def test_the_same_as_json() -> None:
                 {"path": "robot/b", **place, "count": 1, "value": "base  link"},
             ],
         },
+        "spawners": [],
     }  # fmt: skip
     assert list(made["claims"]) == ["frame", "joint", "link"]
 
