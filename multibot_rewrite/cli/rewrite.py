@@ -18,6 +18,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
+    below,
     check_unread,
     check_use,
     deliver,
@@ -43,7 +44,8 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import why
 
         return why.run(options)
-    options.output = None if options.output == STANDARD else options.output
+    output = None if options.output == STANDARD else options.output
+    options.output = below(output, options.input or "")
     options.silent = serves_a_program(options)
     names = robots(options)
     check_use(options, names)
