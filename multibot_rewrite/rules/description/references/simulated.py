@@ -131,6 +131,34 @@ def _is_for_xacro(document: Document) -> bool:
 
 
 @rule(
+    "MB242",
+    "nothing-to-control",
+    ERROR,
+    what="A plugin makes the controller manager in a simulator, and the description has no "
+    "<ros2_control>.",
+    why="The plugin gets no hardware: it reports 'no ros2_control tag' and is not active, so no joint "
+    "moves and spawners wait for /controller_manager in vain.",
+    fix="Add a <ros2_control> with the simulator's class and the joints, or include the xacro that has "
+    "it. A <transmission> is for ROS 1.",
+    bad=ARM + _LOADS,
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=7,
+    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
+)
+def nothing_to_control(subject: Subject) -> Iterator[Problem]:
+    """Plugins of the two simulators in a whole description without a system: component_parser.cpp
+    throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch it."""
+    if not subject.robot.links or subject.elements.every("ros2_control"):
+        return
+    for plugin in manager_plugins(subject):
+        found = (it for it in SIMULATORS if library_of(plugin) in it.plugins)
+        for simulator in () if subject.document.root.tag == "sdf" else found:
+            message = f"{library_of(plugin)} is not active: the description has no <ros2_control>"
+            hint = f"add one with the class {simulator.hardware[0]} and the joints"
+            yield Problem(plugin, message, "filename", hint)
+
+
+@rule(
     "MB235",
     "hardware-of-other-simulator",
     ERROR,
