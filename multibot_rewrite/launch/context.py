@@ -132,8 +132,11 @@ def number_of(count: str) -> int:
 def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
     """A robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
     _, enclosing = here(context)
-    name = enclosing if of.robot is None else perform(context, of.robot)
-    return fleet_of(context, of.fleet).robot(name or _said(context, ROBOT, "robot"))
+    if of.robot is None:
+        name = enclosing or _said(context, ROBOT, "robot")
+    else:
+        name = perform(context, of.robot)
+    return fleet_of(context, of.fleet).robot(name)
 
 
 def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
