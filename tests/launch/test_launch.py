@@ -368,7 +368,10 @@ def test_the_program_of_a_node_is_that_of_its_stack(fleet: str, context: Any) ->
         return made.options.get("package"), made.options["executable"]
 
     assert program(launch.node("amcl", **where)) == ("nav2_amcl", "amcl")
-    assert program(launch.lifecycle_node("map_server", **where)) == ("nav2_map_server", "map_server")
+    assert program(launch.lifecycle_node("map_server", **where)) == (
+        "nav2_map_server",
+        "map_server",
+    )
     # What is said counts.
     assert program(launch.node("amcl", executable="/x", **where)) == (None, "/x")
     assert program(launch.node("amcl", package="my_amcl", **where)) == ("my_amcl", "amcl")
@@ -642,7 +645,9 @@ def test_warnings_are_logged_once(
 
 def test_a_note_is_no_warning(context: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[str] = []
-    log = type("Log", (), {it: lambda _, text, it=it: told.append(it) for it in ("info", "warning")})
+    log = type(
+        "Log", (), {it: lambda _, text, it=it: told.append(it) for it in ("info", "warning")}
+    )
     monkeypatch.setattr(importlib.import_module("launch.logging"), "get_logger", lambda name: log())
     levels = ("note", "warning", "error")
     launch_context._warn(context, [Finding("MB100", it, "said") for it in levels])
