@@ -301,10 +301,13 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
 
 def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
-    are known. What sends transforms that hold for ever needs no time."""
+    are known. What sends transforms that hold for ever needs no time, and a bridge passes on the time
+    that is in the data."""
     unknown = {it.place for it in notes if it.parameters}
     for it in nodes:
-        if it.place in unknown and it.value(SIM_TIME) is None:
+        if it.value(SIM_TIME) is None and (it.place in unknown or SIM_TIME in it.untold):
+            continue
+        if is_bridge(it):
             continue
         if it.facts is not None and it.facts.known not in ("", STATIC):
             text = parameter_text(it.value(SIM_TIME) is True)

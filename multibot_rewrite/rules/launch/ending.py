@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of a launch file that end as soon as they start.
 
-Source: robot_state_publisher jazzy robot_state_publisher.cpp (an empty or unreadable robot_description);
-rcl node_name validation (rmw validate_node_name.c); ros_gz_sim jazzy create.cpp (gflags: a double).
+Source: robot_state_publisher jazzy robot_state_publisher.cpp (its robot_description is XML); rmw
+validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double).
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def ends(launched: Launched) -> Iterator[Finding]:
     for it in launched.graph.nodes:
         fault = check_node_name(it.name) if it.name else None
         if fault:
-            message = f"node {it.name!r} of {it.package} has a name that ROS refuses: {fault.reason}"
+            message = (
+                f"node {it.name!r} of {it.package} has a name that ROS refuses: {fault.reason}"
+            )
             yield at(ends, it.place, message, "write it with letters, digits and underscores")
         if f"{it.package}/{it.executable}" in programs().spawners:
             for flag, word in pairwise(it.arguments):
@@ -54,14 +56,16 @@ def ends(launched: Launched) -> Iterator[Finding]:
 
 
 def _described(it: RunningNode) -> Iterator[Finding]:
-    if it.facts is None or it.facts.known != STATE_PUBLISHER or it.arguments:
+    """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
+    is_one = it.facts is not None and it.facts.known == STATE_PUBLISHER
+    if not is_one or it.arguments or "robot_description" in it.untold:
         return
     given = it.value("robot_description")
     text = given.strip() if isinstance(given, str) else given
-    if text is None or text == "":
+    if text is None:
         message = f"{it.full_name} gets no robot_description, and ends"
         yield at(ends, it.place, message, "give it robot_description, the text of the URDF")
-    elif isinstance(text, str) and "<" not in text:
+    elif isinstance(text, str) and text and "<" not in text:
         message = f"{it.full_name}: robot_description is {text[:60]!r}, and no XML"
         yield at(ends, it.place, message, "give it the text of the file, not its path")
 
