@@ -284,6 +284,9 @@ class Handler:
     def handle(self, event: Any, context: Any) -> str:
         return f"{event} of {launch.robot_of(context).name}"
 
+    def matches(self, event: Any) -> bool:
+        return False
+
 
 def later_on(context: Any, handler: Any, event: str) -> Any:
     """What a handler says when its event comes, as a launch asks it (launch_service.py)."""

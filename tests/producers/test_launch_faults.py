@@ -67,6 +67,25 @@ FAULTS = {
     "a namespace twice": Fault(
         LAUNCH, *for_two("f'/{name}/robot_description'", "'/robot2/robot2/robot_description'"), "MG724"
     ),
+    "a description that is a path": Fault(
+        LAUNCH, *for_two("text(f'{name}/rover.urdf')", "file(f'{name}/rover.urdf')"), "MG729"
+    ),
+    "no description": Fault(
+        LAUNCH, "{'robot_description': text(f'{name}/rover.urdf')},",
+        "*([] if name == 'robot2' else [{'robot_description': text(f'{name}/rover.urdf')}]),", "MG729",
+    ),
+    "a name with a dash": Fault(LAUNCH, "name='start_pose'", "name='start-pose'", "MG729"),
+    "a pose that is a word": Fault(LAUNCH, "'-x', str(x)", "'-x', 'near'", "MG729"),
+    "a spawner that is misspelt": Fault(LAUNCH, "executable='create'", "executable='creat'", "MG714"),
+    "odometry that only the other robot has": Fault(
+        BRIDGE, 'ros_topic_name: "/robot2/odom"\n  gz_topic_name: "/robot2/odom"',
+        'ros_topic_name: "/elsewhere"\n  gz_topic_name: "/elsewhere"', "MG707",
+    ),
+    "a quaternion of zeros": Fault(
+        LAUNCH, "'--roll', '0.0',\n                '--pitch', '0.0',\n                '--yaw', '0.0',",
+        "'--qx', '0', '--qy', '0', '--qz', '0', '--qw', '0',", "MG711",
+    ),
+    "a direction that no bridge has": Fault(BRIDGE, "ROS_TO_GZ", "ROS_TO_GAZEBO", "MB855", BRIDGE),
     "an angle in degrees": Fault(LAUNCH, "'--yaw', '0.0'", "'--yaw', '90'", "MG711"),
     "a frame above itself": Fault(LAUNCH, "f'{name}/odom'", "'map'", "MG711"),
     "a program that is misspelt": Fault(
@@ -205,3 +224,65 @@ def test_a_system_of_the_world_in_two_models(
     (tmp_path / LAUNCH).write_text(SPAWN)
     _, found = found_in(tmp_path, capsys)
     assert any(it["code"] == "MB416" for it in found) is (len(loading) > 1)
+
+
+STATE = """\
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([Node(package="robot_state_publisher",
+        executable="robot_state_publisher", parameters=[{}])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "wrong"),
+    [
+        ("{'rate': 5}", True),
+        ("{'robot_description': Command(['made_by_a_program ', 'x'])}", False),
+        ("{'robot_description': Command(['xacro ', '/nowhere.xacro'])}", False),
+        ("{'robot_description': {}['x'] if False else object()}", False),
+        ("{'robot_description': '<robot name=\"r\"><link name=\"a\"/></robot>'}", False),
+        ("{'robot_description': '/opt/r.urdf'}", True),
+        ("'/opt/not/here.yaml'", False),
+    ],
+)
+def test_a_state_publisher_without_a_description(
+    given: str, wrong: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What only a run tells is no fault."""
+    (tmp_path / LAUNCH).write_text(
+        STATE.format(given) if "{}" not in given else STATE.replace("[{}]", f"[{given}]")
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == "MG729" for it in found) is wrong
+
+
+CLOCKS = """\
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="nav2_amcl", executable="amcl", namespace="r1", name="amcl",
+             parameters=[{"use_sim_time": True}]),
+        Node(package="nav2_map_server", executable="map_server", namespace="r1", name="map_server",
+             parameters=[{"use_sim_time": GIVEN}]),
+        Node(package="ros_gz_bridge", executable="parameter_bridge", namespace="r1", name="mine",
+             arguments=["/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "differs"),
+    [("True", False), ("False", True), ("object()", False), ("Command(['which_time'])", False)],
+)
+def test_a_time_that_only_a_run_tells_differs_from_none(
+    given: str, differs: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nor does the bridge, which stamps nothing."""
+    (tmp_path / LAUNCH).write_text(CLOCKS.replace("GIVEN", given))
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] in ("MG503", "MG514") for it in found) is differs

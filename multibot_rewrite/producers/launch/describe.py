@@ -86,6 +86,8 @@ def failure(error: BaseException) -> str:
 
 def _variable(error: BaseException) -> str:
     """The environment variable that os.environ has not; empty for another fault."""
+    # launch has an error of its own around it.
+    error = error.__cause__ or error
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next
