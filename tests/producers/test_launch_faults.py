@@ -14,6 +14,7 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.producers.launch import source_packages
 
 LAUNCH, BRIDGE = "fleet.launch.py", "robot2/bridge.yaml"
 ROVER, WORLD = "robot2/rover.urdf", "world.sdf"
@@ -286,3 +287,70 @@ def test_a_time_that_only_a_run_tells_differs_from_none(
     (tmp_path / LAUNCH).write_text(CLOCKS.replace("GIVEN", given))
     _, found = found_in(tmp_path, capsys)
     assert any(it["code"] in ("MG503", "MG514") for it in found) is differs
+
+
+def of_nodes(folder: Path, *nodes: str, head: str = "") -> None:
+    lines = "".join(f"        {it},\n" for it in nodes)
+    text = "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n" + head
+    text += "def generate_launch_description():\n    return LaunchDescription([\n"
+    (folder / LAUNCH).write_text(f"{text}{lines}    ])\n")
+
+
+@pytest.mark.parametrize(("topic", "deaf"), [("/world_poses", False), ("/r1/tf", True)])
+def test_what_is_not_called_tf_is_no_tree_for_rviz(
+    topic: str, deaf: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """totwjfakd/multi_robot_sim: poses of the world, from which a node of its own makes tf."""
+    row = f"{topic}@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
+    of_nodes(
+        tmp_path,
+        'Node(package="rviz2", executable="rviz2", name="rviz2")',
+        f'Node(package="ros_gz_bridge", executable="parameter_bridge", name="b", arguments=["{row}"])',
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == "MG405" for it in found) is deaf
+
+
+COSTMAP = """\
+/r1/global_costmap/global_costmap:
+  ros__parameters:
+    plugins: [static_layer]
+    static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
+"""
+
+
+def test_a_costmap_is_no_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Alvar007/multi_robot_ros2: the map comes from another launch file."""
+    (tmp_path / "p.yaml").write_text(COSTMAP)
+    file = f"parameters=[{str(tmp_path / 'p.yaml')!r}]"
+    of_nodes(
+        tmp_path,
+        *(
+            f'Node(package="nav2_{it}", executable="{it}_server", namespace="r1", {file})'
+            for it in ("planner", "controller")
+        ),
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert not [it for it in found if it["code"] == "MG303" and "costmap/costmap" in str(it)]
+
+
+def test_a_variable_that_is_not_set_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
+    of_nodes(tmp_path, head="import os\nMODEL = os.environ['TURTLEBOT3_MODEL']\n")
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 2
+    said = "the environment variable TURTLEBOT3_MODEL is not set here; set it as for ros2 launch"
+    assert said in capsys.readouterr().err
+    of_nodes(tmp_path, head="import os\nMODEL = {}['TURTLEBOT3_MODEL']\n")
+    main(["check-launch", str(tmp_path / LAUNCH)])
+    assert "environment variable" not in capsys.readouterr().err
+
+
+def test_a_file_that_is_lost_is_found_behind_the_error_of_launch(tmp_path: Path) -> None:
+    lost = tmp_path / source_packages.NOT_INSTALLED / "share" / "acme" / "a.yaml"
+    outer = RuntimeError("Caught exception when trying to load file of format [py]")
+    outer.__cause__ = FileNotFoundError(2, "No such file", str(lost))
+    assert source_packages.add_file(outer, str(tmp_path))
+    assert lost.read_bytes() == b""
+    assert not source_packages.add_file(RuntimeError("other"), str(tmp_path))
