@@ -47,7 +47,7 @@ def with_program(
     """The options, with the program that the node's stack says where they say none; raises UsageError
     where neither does. ``component``: it is loaded into a container."""
     word = "plugin" if component else "executable"
-    if word in options or "executable" in options:
+    if word in options:
         return dict(options)
     program = robot.program(name)
     if program is None or not getattr(program, word):

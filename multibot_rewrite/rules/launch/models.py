@@ -200,9 +200,8 @@ def not_brought(launched: Launched) -> Iterator[Finding]:
 
 
 def _sent(model: InSimulator) -> Iterator[tuple[str, str]]:
-    """What it sends; transforms of all may have one topic."""
     for it in model.topics:
-        if it.direction != _INTO_GAZEBO and it.ros_type != TF_TYPE:
+        if it.direction != _INTO_GAZEBO:
             yield it.ros_type, f"/{it.gz.lstrip('/')}"
 
 
