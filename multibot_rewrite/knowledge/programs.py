@@ -43,6 +43,14 @@ def program_of(node: NodeFacts, release: str) -> Program | None:
     return Program(node.package, next(iter(node.programs), known), node.component)
 
 
+def started_as(node: NodeFacts, release: str) -> Program | None:
+    """The same, and the class of one that is only a component: its executable is empty."""
+    alone = program_of(node, release)
+    if alone is None and node.package and node.component:
+        return Program(node.package, "", node.component)
+    return alone
+
+
 def known_program(name: str, release: str) -> Program:
     """The program of a node of ``NAV2`` that the release has."""
     program = program_of(built_in(release).nodes[name], release)

@@ -15,29 +15,28 @@ from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
-    FLEET,
-    ROBOT,
     ROBOTS,
     SIM_TIME,
     Action,
     Context,
+    Here,
     RobotRef,
     Text,
+    entered,
     fleet_of,
+    here,
     listed,
-    made_for,
     node_file_of,
     perform,
-    reference,
     robot_of,
     sim_time,
     written,
 )
-from multibot_rewrite.launch.node_options import check_options, node_options
+from multibot_rewrite.launch.node_options import check_options, node_options, with_program
 from multibot_rewrite.launch.node_options import listed as option_list
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
-Make = Callable[[LoadedRobot], Iterable[Action]]
+Make = Callable[[LoadedRobot], "Iterable[Action] | Action"]
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})
 PLACER = ("tf2_ros", "static_transform_publisher")
 # The file of a node's description, start pose and clock.
@@ -45,7 +44,8 @@ _OWN = "multibot.yaml"
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
-    """An action that runs what ``make`` returns for every robot, each robot in its own group.
+    """An action that runs what ``make`` returns for every robot, each robot in its own group: actions,
+    or one.
 
     ``robots`` are some robots' names, with commas, or robots in place of those of the file with their
     poses, as Nav2 writes them (``robot1={x: 1.0}; robot2={}``); ``action`` are options such as a
@@ -65,47 +65,52 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
     return of_launch("actions").OpaqueFunction(function=groups, **action)
 
 
-def node(name: Text, **options: Any) -> Action:
-    """A node of a robot's stacks: launch_ros's Node with its names, remappings and parameters.
+def node(of_stack: Text = "", **options: Any) -> Action:
+    """A node of a robot's stacks: launch_ros's Node with its program, names, remappings and
+    parameters.
 
     For a controller it is that of its spawner, with its parameter files as ``-p``; a component is
     loaded into its container.
-    ``name`` is its name in the stack; ``files`` are parameter files of the fleet, with commas or as
+    ``of_stack`` is its name in the stack; ``files`` are parameter files of the fleet, with commas or as
     a list; ``describe`` adds ``robot_description``; ``robot`` and ``fleet`` say whose it is,
     ``use_sim_time`` which clock it has. All others are Node's own, and override. Raises
     UsageError for a name or a namespace, which the fleet has.
     """
-    return _node(node_class(), name, options)
+    return _node("node", node_class(), of_stack, options)
 
 
-def lifecycle_node(name: Text, **options: Any) -> Action:
+def lifecycle_node(of_stack: Text = "", **options: Any) -> Action:
     """The same as launch_ros's LifecycleNode, for events that change its state."""
-    return _node(of_launch_ros("actions").LifecycleNode, name, options)
+    return _node("lifecycle_node", of_launch_ros("actions").LifecycleNode, of_stack, options)
 
 
-def container(name: Text, **options: Any) -> Action:
+def container(of_stack: Text = "", **options: Any) -> Action:
     """The same as launch_ros's ComposableNodeContainer.
 
     It takes the rules and parameter files of all nodes in its process, also of those that its
     components make, such as costmaps: give it the files of its components, too.
     """
-    return _node(of_launch_ros("actions").ComposableNodeContainer, name, options)
+    base = of_launch_ros("actions").ComposableNodeContainer
+    return _node("container", base, of_stack, options)
 
 
-def composable_node(name: Text, **options: Any) -> Any:
+def composable_node(of_stack: Text = "", **options: Any) -> Any:
     """A component: launch_ros's ComposableNode, for containers and LoadComposableNodes."""
-    own, first = _taken("composable_node", options)
+    own, first = _taken("composable_node", of_stack, options)
 
     def made(context: Context) -> dict[str, Any]:
-        return _made(context, perform(context, name), own, first)
+        name, its = perform(context, of_stack), robot_of(context, own["of"])
+        return _made(context, name, own, with_program(its, name, first, component=True))
 
-    return later.component(of_launch_ros("descriptions").ComposableNode, made, first)
+    placeholders = {"package": "later", "plugin": "later"}
+    base = of_launch_ros("descriptions").ComposableNode
+    return later.component(base, made, {**placeholders, **first})
 
 
 def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     """A robot's spawner: ``gz`` for ros_gz_sim, ``classic`` for gazebo_ros; ``options`` of Node."""
 
-    of = reference(robot, fleet)
+    of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
         called = perform(context, simulator)
@@ -120,7 +125,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: An
 def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     """The static transform of a robot's start pose, if one is needed; ``options`` of Node."""
     check_options("place", options)
-    of = reference(robot, fleet)
+    of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
         return PLACER, robot_of(context, of).transform_arguments
@@ -133,27 +138,34 @@ def node_class() -> Any:
     return of_launch_ros("actions").Node
 
 
-def _node(base: Any, name: Text, options: Mapping[str, Any]) -> Action:
+def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> Action:
     """An action of the class ``base`` for a node of a stack."""
-    own, first = _taken("node", options)
+    own, first = _taken(word, of_stack, options)
 
     def made(context: Context) -> later.Made:
-        called = perform(context, name)
-        given = _made(context, called, own, first)
-        box = robot_of(context, own["of"]).table.container(called)
-        return _loaded(box, given, first) if box else given
+        called, its = perform(context, of_stack), robot_of(context, own["of"])
+        if its.table.is_controller(called):
+            return _made(context, called, own, first)
+        box = its.table.container(called)
+        programmed = with_program(its, called, first, component=bool(box))
+        given = _made(context, called, own, programmed)
+        return _loaded(box, given, programmed) if box else given
 
     known = {key: it for key, it in first.items() if key != "plugin"}
-    placeholders = {} if base is node_class() else {"name": "later", "namespace": ""}
-    return later.action(base, made, {"executable": "later", **placeholders, **known})
+    named = {} if base is node_class() else {"name": "later", "namespace": "", "package": "later"}
+    return later.action(base, made, {"executable": "later", **named, **known})
 
 
-def _taken(word: str, options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _taken(
+    word: str, of_stack: Text, options: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """The options that are ours, and launch_ros's."""
     check_options(word, options)
+    if not of_stack:
+        raise UsageError(f'{word}: which node? Write its name in the stack: {word}("amcl")')
     rest = dict(options)
     own = {key: rest.pop(key, None) for key in ("files", "describe", SIM_TIME)}
-    own["of"] = reference(rest.pop("robot", None), rest.pop("fleet", None))
+    own["of"] = RobotRef(rest.pop("robot", None), rest.pop("fleet", None))
     return own, rest
 
 
@@ -218,10 +230,20 @@ def _own_file(
 
 def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make) -> Action:
     """What a robot runs; launch_ros gives the clock to nodes that are not ours."""
-    known, here = of_launch("actions"), {FLEET: fleet.file, ROBOT: robot.name}
-    sets = [known.SetLaunchConfiguration(key, text) for key, text in here.items()]
+    actions, before = of_launch("actions"), here(context)
     clock = sim_time(context, robot, None)
-    if clock is not None:
-        sets.append(of_launch_ros("actions").SetParameter(SIM_TIME, clock))
-    with made_for(RobotRef(robot.name, fleet.file)):
-        return known.GroupAction([*sets, *make(robot)])
+    sets = [] if clock is None else [of_launch_ros("actions").SetParameter(SIM_TIME, clock)]
+    made = make(robot)
+    several = made if isinstance(made, Iterable) else [made]
+    return actions.GroupAction(
+        [
+            _entering((fleet, robot.name)),
+            *sets,
+            *(it for it in several if it is not None),
+            _entering(before),
+        ]
+    )
+
+
+def _entering(group: Here) -> Action:
+    return of_launch("actions").OpaqueFunction(function=lambda context: entered(context, group))

@@ -2,20 +2,19 @@
 """What actions and substitutions ask while a launch runs: its fleets, robots and files.
 
 A launch keeps each fleet and a folder for files that goes at its end. A robot or fleet that is not
-given is that of the enclosing group.
+given is that of the enclosing group. It is among the locals of the context: launch keeps these for
+timers, and here for event handlers (launch jazzy launch_service.py, timer_action.py).
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Iterable, Sequence
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
@@ -33,6 +32,7 @@ FLEET, ROBOT, TRUST, DISTRO = (f"multibot_{it}" for it in ("fleet", "robot", "tr
 ROBOTS, COUNT = "multibot_robots", "multibot_count"
 # What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
 _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
+_CARRIED = "multibot_carried"
 
 # The launch argument that most launch files have.
 SIM_TIME = "use_sim_time"
@@ -47,24 +47,56 @@ class RobotRef(NamedTuple):
 
 
 HERE = RobotRef()
-# The robot whose actions are being made: an event or a timer starts them after its group has ended.
-_MADE_FOR: ContextVar[RobotRef] = ContextVar("multibot_made_for", default=HERE)
 
 
-def reference(robot: Text = None, fleet: Text = None) -> RobotRef:
-    """The robot that is given, or the one whose actions are being made."""
-    here = _MADE_FOR.get()
-    return RobotRef(here.robot if robot is None else robot, here.fleet if fleet is None else fleet)
+Here = tuple[LoadedFleet | None, str | None]
 
 
-@contextmanager
-def made_for(of: RobotRef) -> Iterator[None]:
-    """What is made inside belongs to this robot."""
-    token = _MADE_FOR.set(of)
-    try:
-        yield
-    finally:
-        _MADE_FOR.reset(token)
+def entered(context: Context, group: Here) -> None:
+    """From here on the fleet and the robot are these, also for what events and timers start that are
+    set up now; None for none."""
+    _carry(context)
+    context.extend_locals(dict(zip((FLEET, ROBOT), group, strict=True)))
+
+
+def here(context: Context) -> Here:
+    """Fleet and robot of the enclosing group."""
+    known = context.get_locals_as_dict()
+    return known.get(FLEET), known.get(ROBOT)
+
+
+def _carry(context: Context) -> None:
+    """Event handlers that are registered from now on start what they start for the robot that is
+    here."""
+    if _CARRIED in context.get_locals_as_dict():
+        return
+    context.extend_globals({_CARRIED: True})
+    register = context.register_event_handler
+
+    def registered(event_handler: Any, *more: Any, **options: Any) -> None:
+        group = here(context)
+        if any(group) and not _is_of_timers(event_handler):
+            event_handler.handle = _handled(event_handler.handle, group)
+        register(event_handler, *more, **options)
+
+    context.register_event_handler = registered
+
+
+def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+    def handled(event: Any, context: Context) -> Any:
+        # launch drops the locals when it has visited what this returns.
+        entered(context, group)
+        return handle(event, context)
+
+    return handled
+
+
+def _is_of_timers(handler: Any) -> bool:
+    """Is it the one handler that a launch has for all of its timers, which keep locals themselves?"""
+    event = of_launch("events").TimerEvent
+    return type(handler).__name__ == "EventHandler" and bool(
+        handler.matches(event(timer_action=None))
+    )
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
@@ -72,9 +104,12 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
 
     ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
     ``multibot_distro``, ``multibot_robots`` and ``multibot_count`` are options of ``load_fleet``.
-    Warnings go to launch's log. Raises as that.
+    Findings go to launch's log. Raises as that.
     """
-    path = _scoped(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
+    enclosing, _ = here(context)
+    if fleet is None and enclosing:
+        return enclosing
+    path = _said(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
     words = (TRUST, DISTRO, ROBOTS, COUNT)
     trust, distro, robots, count = (str(context.launch_configurations.get(it, "")) for it in words)
@@ -96,7 +131,11 @@ def number_of(count: str) -> int:
 
 def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
     """A robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
-    name = _scoped(context, ROBOT, "robot") if of.robot is None else perform(context, of.robot)
+    _, enclosing = here(context)
+    if of.robot is None:
+        name = enclosing or _said(context, ROBOT, "robot")
+    else:
+        name = perform(context, of.robot)
     return fleet_of(context, of.fleet).robot(name)
 
 
@@ -126,6 +165,7 @@ def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
 def perform(context: Context, text: Text) -> str:
     """The value of a text with substitutions in this context."""
     utilities = of_launch("utilities")
+    text = os.fspath(text) if isinstance(text, os.PathLike) else text
     parts = utilities.normalize_to_list_of_substitutions(text)
     return str(utilities.perform_substitutions(context, parts))
 
@@ -149,18 +189,19 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
 
 
 def listed(context: Context, names: Text) -> list[str]:
-    """Names separated by commas, or a list; launch joins a list with substitutions into one text."""
+    """Names or paths separated by commas, or a list; launch joins a list with substitutions into one
+    text."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
-    if several and all(isinstance(it, str) for it in names):
-        return list(names)
+    if several and all(isinstance(it, str | os.PathLike) for it in names):
+        return [os.fspath(it) for it in names]
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
 def _is_for_all(context: Context, of: RobotRef) -> bool:
-    return of.robot is None and ROBOT not in context.launch_configurations
+    return of.robot is None and not here(context)[1] and ROBOT not in context.launch_configurations
 
 
-def _scoped(context: Context, key: str, what: str) -> str:
+def _said(context: Context, key: str, what: str) -> str:
     if key not in context.launch_configurations:
         hint = f"set {what}, or put it into multibot_robots or each_robot"
         raise UsageError(f"no {what} is given; {hint}")
@@ -199,4 +240,5 @@ def _warn(context: Context, findings: Iterable[Finding]) -> None:
     for finding in findings:
         if finding not in logged:
             logged.add(finding)
-            of_launch("logging").get_logger("multibot").warning(str(finding))
+            log = of_launch("logging").get_logger("multibot")
+            (log.info if finding.level == NOTE else log.warning)(str(finding))

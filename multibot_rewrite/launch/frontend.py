@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from multibot_rewrite.launch import actions
-from multibot_rewrite.launch.context import SIM_TIME, Text, reference
+from multibot_rewrite.launch.context import HERE, SIM_TIME, Text
 from multibot_rewrite.launch.node_options import FROM_THE_FLEET
 from multibot_rewrite.launch.robot_words import WORDS
 from multibot_rewrite.launch.substitutions import FILE, as_value, substitution_class
@@ -28,7 +28,7 @@ def words(data: Sequence[Text]) -> Parsed:
     """``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
     if not data:
         raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, FILE))}")
-    return substitution_class(), {"words": data, "of": reference()}
+    return substitution_class(), {"words": data, "of": HERE}
 
 
 def robots(entity: Any, parser: Any) -> Parsed:
@@ -106,25 +106,44 @@ def expose(
 
 def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
     """The options of a node that its class ``base`` reads, and ours."""
-    _, given = base.parse(entity, parser)
+    _, given = base.parse(_Programless(entity), parser)
+    if entity.get_attr("exec", optional=True) is None:
+        given.pop("executable", None)
     for it in FROM_THE_FLEET:
         if it in given:
             raise ValueError(f"{word}: {it} comes from the fleet file; remove {it}=")
     return {**given, **_parameters(given), **_ours(entity, parser)}
 
 
+class _Programless:
+    """An element whose program need not be said, since the node's stack has it."""
+
+    def __init__(self, entity: Any) -> None:
+        self._entity = entity
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._entity, name)
+
+    def get_attr(self, name: str, **options: Any) -> Any:
+        """As that of the element."""
+        if name != "exec":
+            return self._entity.get_attr(name, **options)
+        return self._entity.get_attr(name, **{**options, "optional": True}) or "later"
+
+
 def _ours(entity: Any, parser: Any) -> dict[str, Any]:
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
-    return {**texts, "name": name, "describe": bool(describe)}
+    return {**texts, "of_stack": name, "describe": bool(describe)}
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:
     """The options of a component: launch_ros reads them only where its name is given."""
     given: dict[str, Any] = {
-        "package": parser.parse_substitution(entity.get_attr("pkg")),
-        "plugin": parser.parse_substitution(entity.get_attr("plugin")),
+        option: parser.parse_substitution(text)
+        for option, word in (("package", "pkg"), ("plugin", "plugin"))
+        if (text := entity.get_attr(word, optional=True)) is not None
     }
     if params := _nested(entity, "param"):
         given["parameters"] = actions.node_class().parse_nested_parameters(params, parser)

@@ -17,7 +17,8 @@ def check_options(word: str, options: Mapping[str, Any]) -> None:
     """Raises UsageError for options that the fleet decides."""
     for it in FROM_THE_FLEET:
         if it in options:
-            raise UsageError(f"{word}: {it} comes from the fleet file; remove {it}=")
+            first = f'write {word}("amcl") with the name in its stack, and ' if it == "name" else ""
+            raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 
 
 def node_options(
@@ -38,6 +39,22 @@ def node_options(
         "remappings": [*listed(options, "remappings"), *robot.table.for_node(name)],
         "parameters": [*files, *listed(options, "parameters")],
     }
+
+
+def with_program(
+    robot: LoadedRobot, name: str, options: Mapping[str, Any], component: bool = False
+) -> dict[str, Any]:
+    """The options, with the program that the node's stack says where they say none; raises UsageError
+    where neither does. ``component``: it is loaded into a container."""
+    word = "plugin" if component else "executable"
+    if word in options:
+        return dict(options)
+    program = robot.program(name)
+    if program is None or not getattr(program, word):
+        raise UsageError(f"no stack says what runs {name}; write package= and {word}=")
+    made = {"package": program.package, word: getattr(program, word), **options}
+    arguments = [] if component else [*program.words, *listed(options, "arguments")]
+    return {**made, "arguments": arguments} if arguments else made
 
 
 def listed(options: Mapping[str, Any], word: str) -> list[Any]:

@@ -31,6 +31,7 @@ WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
         "description": lambda robot, _: robot.description,
         "srdf": lambda robot, _: robot.srdf,
         "frame": LoadedRobot.frame,
+        "link": LoadedRobot.link,
         "joint": LoadedRobot.joint,
         "topic": LoadedRobot.topic,
         "node": lambda robot, name: robot.table.full_name(name),

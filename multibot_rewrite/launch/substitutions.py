@@ -16,7 +16,6 @@ from multibot_rewrite.launch.context import (
     Text,
     file_of,
     perform,
-    reference,
     robot_of,
 )
 from multibot_rewrite.launch.robot_words import NUMBERS, WORDS
@@ -52,7 +51,7 @@ def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -
     reads other substitutions as YAML, refuses a description with ``: `` in a comment, and takes a robot
     called ``on`` for true.
     """
-    return substitution_class()([word, name], reference(robot, fleet))
+    return substitution_class()([word, name], RobotRef(robot, fleet))
 
 
 @cache

@@ -28,6 +28,8 @@ UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 ZENOH = "rmw_zenoh_cpp"
 # The parameter of every node that says which clock it goes by.
 SIM_TIME = "use_sim_time"
+# The value of a parameter that only a run tells.
+UNTOLD = ""
 
 
 class Place(NamedTuple):
@@ -322,7 +324,13 @@ def incomplete(system: System) -> tuple[Caveat, ...]:
 
 def clocks(system: System) -> dict[str, bool]:
     """By node: whether it goes by simulated time, where that is known."""
-    return {it.node: it.value == "true" for it in system.parameters if it.name == SIM_TIME}
+    told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
+    return {it.node: it.value == "true" for it in told}
+
+
+def without_clock(system: System) -> set[str]:
+    """The nodes of which only a run tells whether they go by simulated time."""
+    return {it.node for it in system.parameters if (it.name, it.value) == (SIM_TIME, UNTOLD)}
 
 
 def nodes_by_robot(system: System) -> dict[str, list[str]]:

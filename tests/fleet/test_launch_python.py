@@ -166,7 +166,7 @@ def test_all_that_a_robot_may_run() -> None:
 def test_a_robot_without_more_has_no_more() -> None:
     text = to_python(fleet(BARE))
     assert text.startswith(
-        '"""One rover.\n\nPlain launch and launch_ros: read it, edit it, or include it from another'
+        '"""\nOne rover.\n\nPlain launch and launch_ros: read it, edit it, or include it from another'
         " launch file.\n\n    ros2 launch fleet.launch.py\n"
         '    ros2 launch fleet.launch.py robots:=r1\n"""\n\n'
         "from pathlib import Path\n\nfrom launch import LaunchDescription\n"

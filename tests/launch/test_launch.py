@@ -25,7 +25,7 @@ import yaml
 from launched_programs import EXAMPLE, launched
 from paths import FIXTURES, ROOT
 
-from multibot_rewrite import InputError, UsageError, launch, load_fleet
+from multibot_rewrite import Finding, InputError, UsageError, launch, load_fleet
 from multibot_rewrite.launch import context as launch_context
 from multibot_rewrite.launch import later, substitutions
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
@@ -203,6 +203,7 @@ WORDS = [
     ("pose", "x", "0.0"),
     ("frame", "base_link", "robot2/base_link"),
     ("frame", "map", "map"),
+    ("link", "lidar_link", "robot2/lidar_link"),
     ("joint", "lidar_joint", "robot2_lidar_joint"),
     ("topic", "/scan", "/robot2/scan"),
     ("node", "amcl", "/robot2/amcl"),
@@ -275,6 +276,163 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     Path(fleet).write_text(FLEET.replace("params: params.yaml", "params: [params.yaml, more.yaml]"))
     (made,) = run(context, launch.node("amcl", files=files, robot="robot2", fleet=fleet))
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
+
+
+class Handler:
+    """An event handler that tells whose it is."""
+
+    def handle(self, event: Any, context: Any) -> str:
+        return f"{event} of {launch.robot_of(context).name}"
+
+    def matches(self, event: Any) -> bool:
+        return False
+
+
+def later_on(context: Any, handler: Any, event: str) -> Any:
+    """What a handler says when its event comes, as a launch asks it (launch_service.py)."""
+    context._push_locals()
+    try:
+        return handler.handle(event, context)
+    finally:
+        context._pop_locals()
+
+
+def test_what_an_event_starts_is_of_the_robot_that_waits_for_it(fleet: str, context: Any) -> None:
+    opaque = importlib.import_module("launch.actions").OpaqueFunction
+    handlers: list[Any] = []
+    kept: list[Any] = []
+
+    def register(around: Any) -> None:
+        handlers.append(Handler())
+        around.register_event_handler(handlers[-1])
+        kept.append(dict(around.get_locals_as_dict()))
+
+    run(context, launch.each_robot(fleet, lambda robot: opaque(function=register)))
+    run(context, opaque(function=register))
+    first, second, outside = handlers
+    for _ in range(2):
+        assert later_on(context, first, "exit") == "exit of robot1"
+        assert later_on(context, second, "exit") == "exit of robot2"
+        with pytest.raises(UsageError, match="no robot is given"):
+            later_on(context, outside, "exit")
+    # A timer keeps these itself (timer_action.py).
+    for known, name in zip(kept, ("robot1", "robot2"), strict=False):
+        context._push_locals()
+        context.extend_locals(known)
+        assert launch.perform(context, launch.value("name")) == name
+        context._pop_locals()
+    assert launch.perform(context, launch.value("name", robot="robot2", fleet=fleet)) == "robot2"
+
+
+def test_the_handler_of_all_timers_is_no_robots(fleet: str, context: Any) -> None:
+    """launch registers one for all timers, with the first that starts."""
+    opaque = importlib.import_module("launch.actions").OpaqueFunction
+
+    class EventHandler(Handler):
+        def matches(self, event: Any) -> bool:
+            return type(event).__name__ == "TimerEvent"
+
+    handler = EventHandler()
+    one = opaque(function=lambda around: around.register_event_handler(handler))
+    run(context, launch.each_robot(fleet, lambda robot: one, robots="robot1"))
+    with pytest.raises(UsageError, match="is given; set"):
+        later_on(context, handler, "time")
+
+
+def test_the_robots_of_a_launch_argument_travel_too(fleet: str, context: Any) -> None:
+    """Also where the argument is gone by then."""
+    opaque = importlib.import_module("launch.actions").OpaqueFunction
+    handler = Handler()
+    one = opaque(function=lambda around: around.register_event_handler(handler))
+    context._push_launch_configurations()
+    run(context, launch.each_robot(fleet, lambda robot: one, robots="third={x: 1.0}"))
+    context._pop_launch_configurations()
+    assert later_on(context, handler, "exit") == "exit of third"
+
+
+def test_a_group_in_a_group_ends_with_the_robot_around_it(fleet: str, context: Any) -> None:
+    named = launch.value("name")
+    inner = launch.each_robot(fleet, lambda robot: Started(name=named), robots="robot2")
+    found: list[str] = []
+    tell = importlib.import_module("launch.actions").OpaqueFunction(
+        function=lambda around: found.append(launch.perform(around, named))
+    )
+    run(context, launch.each_robot(fleet, lambda robot: [inner, None, tell], robots="robot1"))
+    assert found == ["robot1"]
+    with pytest.raises(UsageError, match="no robot"):
+        launch.robot_of(context, launch.RobotRef(fleet=fleet))
+
+
+def test_the_program_of_a_node_is_that_of_its_stack(fleet: str, context: Any) -> None:
+    where = {"robot": "robot1", "fleet": Path(fleet)}
+
+    def program(action: Any) -> tuple[Any, Any]:
+        (made,) = run(context, action)
+        return made.options.get("package"), made.options["executable"]
+
+    assert program(launch.node("amcl", **where)) == ("nav2_amcl", "amcl")
+    assert program(launch.lifecycle_node("map_server", **where)) == (
+        "nav2_map_server",
+        "map_server",
+    )
+    # What is said counts.
+    assert program(launch.node("amcl", executable="/x", **where)) == (None, "/x")
+    assert program(launch.node("amcl", package="my_amcl", **where)) == ("my_amcl", "amcl")
+    with pytest.raises(UsageError, match="did you mean 'amcl'"):
+        run(context, launch.node("amlc", **where))
+
+
+def test_the_class_of_a_component_is_that_of_its_stack(fleet: str, context: Any) -> None:
+    Path(fleet).write_text(
+        "distro: lyrical\n" + FLEET.replace("[nav2, robot_state]", "nav2_composed")
+    )
+    where = {"robot": "robot1", "fleet": fleet}
+    (made,) = run(context, launch.node("amcl", **where))
+    (node,) = made.options["composable_node_descriptions"]
+    known = {"package": "nav2_amcl", "plugin": "nav2_amcl::AmclNode"}
+    assert known.items() <= node.options.items()
+    (box,) = run(context, launch.container("nav2_container", arguments=["-x"], **where))
+    assert (box.options["package"], box.options["executable"]) == (
+        "rclcpp_components", "component_container",
+    )  # fmt: skip
+    assert box.options["arguments"] == ["--isolated", "--executor-type", "single-threaded", "-x"]
+
+
+def test_a_program_that_no_stack_has_is_asked_for(fleet: str, context: Any) -> None:
+    Path(fleet).with_name("nodes.yaml").write_text(
+        "stacks:\n  own: {about: one node, nodes: [driver]}\n"
+        "nodes:\n  driver: {publishes: {scan: sensor_msgs/msg/LaserScan}}\n"
+    )
+    Path(fleet).write_text(f"nodes: nodes.yaml\n{FLEET.replace('[nav2, ', '[own, nav2, ')}")
+    with pytest.raises(UsageError, match="no stack says what runs driver; write package= and exec"):
+        run(context, launch.node("driver", robot="robot1", fleet=fleet))
+
+
+@pytest.mark.parametrize(
+    ("word", "name", "near"),
+    [
+        ("frame", "lasr_link", ""),
+        ("frame", "lidar_lnk", "lidar_link"),
+        ("frame", "robot1/base_link", "base_link"),
+        ("link", "lidar_lnk", "lidar_link"),
+        ("link", "odom", ""),
+        ("joint", "lidar_jint", "lidar_joint"),
+        ("joint", "lidar_link", "lidar_joint"),
+    ],
+)
+def test_a_name_that_is_not_there(
+    word: str, name: str, near: str, fleet: str, context: Any
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        launch.perform(context, launch.value(word, name, "robot1", fleet))
+    assert f"{word} {name!r} is not known" in str(caught.value)
+    assert f"did you mean {near!r}?" in str(caught.value) or not near
+
+
+def test_a_frame_that_only_nodes_send_is_there(fleet: str, context: Any) -> None:
+    robot = load_fleet(fleet).robot("robot1")
+    sent = ("odom", "map", "earth")
+    assert [robot.frame(it) for it in sent] == ["robot1/odom", "map", "earth"]
 
 
 @pytest.mark.more
@@ -488,6 +646,17 @@ def test_warnings_are_logged_once(
     assert told
 
 
+def test_a_note_is_no_warning(context: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+    log = type(
+        "Log", (), {it: lambda _, text, it=it: told.append(it) for it in ("info", "warning")}
+    )
+    monkeypatch.setattr(importlib.import_module("launch.logging"), "get_logger", lambda name: log())
+    levels = ("note", "warning", "error")
+    launch_context._warn(context, [Finding("MB100", it, "said") for it in levels])
+    assert told == ["info", "warning", "warning"]
+
+
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("make", "part"),
@@ -613,7 +782,7 @@ def test_xml_for_a_container_with_components(frontend: Any, context: Any) -> Non
     assert made is launch.container and given.pop("describe") is False
     inside = given.pop("composable_node_descriptions")
     assert performed(context, given) == {
-        "package": "rclcpp_components", "executable": "isolated", "name": "box",
+        "package": "rclcpp_components", "executable": "isolated", "of_stack": "box",
         "files": "a.yaml", "robot": "r",
     }  # fmt: skip
     first, second = (it.options for it in inside)
@@ -637,11 +806,13 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
     made, given = frontend.composable_node(entity(text), parser)
     assert made is launch.node and given.pop("describe") is False
     assert performed(context, given) == {
-        "package": "p", "plugin": "p::One", "name": "one", "use_sim_time": "true",
+        "package": "p", "plugin": "p::One", "of_stack": "one", "use_sim_time": "true",
     }  # fmt: skip
-    for left in ('pkg="p"', 'plugin="p::One"', 'node="one"'):
-        with pytest.raises(AttributeError, match=left.partition("=")[0]):
-            frontend.composable_node(entity(text.replace(left, "")), parser)
+    with pytest.raises(AttributeError, match="node"):
+        frontend.composable_node(entity(text.replace('node="one"', "")), parser)
+    # Its program is that of the stack.
+    bare = text.replace('pkg="p" plugin="p::One"', "")
+    assert not {"package", "plugin"} & {*frontend.composable_node(entity(bare), parser)[1]}
     # What is not known of a component in a container is not passed over.
     with pytest.raises(ValueError, match="plugn"):
         frontend.container(entity(COMPOSED.replace('pkg="p"', 'pkg="p" plugn="x"')), parser)
@@ -653,10 +824,10 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "made", "known"),
     [
-        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "name": "a"}),
+        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "of_stack": "a"}),
         (
             '<n node="a" use_sim_time="false"/>', "lifecycle_node",
-            {"name": "a", "use_sim_time": "false"},
+            {"of_stack": "a", "use_sim_time": "false"},
         ),
         (
             '<n simulator="gz" robot="r" output="screen"/>', "spawn",
@@ -708,7 +879,7 @@ def test_a_value_alone_has_its_type(fleet: str, context: Any) -> None:
     ("make", "word"),
     [
         (lambda **it: launch.node("amcl", **it), "node"),
-        (lambda **it: launch.lifecycle_node("amcl", **it), "node"),
+        (lambda **it: launch.lifecycle_node("amcl", **it), "lifecycle_node"),
         (lambda **it: launch.composable_node("amcl", **it), "composable_node"),
         (launch.place, "place"),
     ],
@@ -720,15 +891,25 @@ def test_what_the_fleet_decides_is_no_option(
         make(namespace="/x")
     said = f"{word}: namespace comes from the fleet file; remove namespace="
     assert str(caught.value) == said
+    with pytest.raises(UsageError, match=rf'write {word}\("amcl"\) .*, and remove name='):
+        make(name="x")
+
+
+def test_a_node_has_to_be_said(frontend: Any) -> None:
+    for word in ("node", "lifecycle_node", "container", "composable_node"):
+        with pytest.raises(UsageError, match=rf'{word}: which node\? .*{word}\("amcl"\)'):
+            getattr(launch, word)(package="p")
 
 
 def test_an_action_is_one_before_its_robot_is_known(frontend: Any) -> None:
     """Event handlers want an action of launch_ros; some of its classes want a name at once."""
     later = {"executable": "later"}
-    named = {**later, "name": "later", "namespace": ""}
+    named = {**later, "name": "later", "namespace": "", "package": "later"}
     assert launch.node("amcl", output="log").options == {**later, "output": "log"}
     assert launch.lifecycle_node("amcl").options == named
     assert launch.container("box").options == named
+    component = {"package": "later", "plugin": "later"}
+    assert launch.composable_node("amcl").options == component
     assert launch.node("amcl", plugin="p", package="q").options == {**later, "package": "q"}
     assert launch.spawn("gz", use_sim_time=True, output="log").options == {**later, "output": "log"}
     assert launch.place(executable="x").options == {"executable": "x"}
@@ -781,19 +962,6 @@ def test_the_clock_of_a_node_may_be_a_text(context: Any) -> None:
     assert launch_context.sim_time(context, None, of("sim")) is True  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="use_sim_time is 'maybe'; write true or false"):
         launch_context.sim_time(context, None, "maybe")  # type: ignore[arg-type]
-
-
-def test_a_robot_that_is_not_said_is_that_of_the_enclosing_group() -> None:
-    here, ref = launch_context.reference, launch.RobotRef
-    assert here() == ref(None, None)
-    with launch_context.made_for(ref("r", "f")):
-        assert [here(), here("q"), here(fleet="g"), here("", "")] == [
-            ref("r", "f"), ref("q", "f"), ref("r", "g"), ref("", ""),
-        ]  # fmt: skip
-        with launch_context.made_for(ref("s", "f")):
-            assert here() == ref("s", "f")
-        assert here() == ref("r", "f")
-    assert here() == ref(None, None)
 
 
 def test_words_of_launch_configurations_are_those_of_the_page() -> None:

@@ -14,6 +14,7 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.producers.launch import source_packages
 
 LAUNCH, BRIDGE = "fleet.launch.py", "robot2/bridge.yaml"
 ROVER, WORLD = "robot2/rover.urdf", "world.sdf"
@@ -67,6 +68,25 @@ FAULTS = {
     "a namespace twice": Fault(
         LAUNCH, *for_two("f'/{name}/robot_description'", "'/robot2/robot2/robot_description'"), "MG724"
     ),
+    "a description that is a path": Fault(
+        LAUNCH, *for_two("text(f'{name}/rover.urdf')", "file(f'{name}/rover.urdf')"), "MG729"
+    ),
+    "no description": Fault(
+        LAUNCH, "{'robot_description': text(f'{name}/rover.urdf')},",
+        "*([] if name == 'robot2' else [{'robot_description': text(f'{name}/rover.urdf')}]),", "MG729",
+    ),
+    "a name with a dash": Fault(LAUNCH, "name='start_pose'", "name='start-pose'", "MG729"),
+    "a pose that is a word": Fault(LAUNCH, "'-x', str(x)", "'-x', 'near'", "MG729"),
+    "a spawner that is misspelt": Fault(LAUNCH, "executable='create'", "executable='creat'", "MG714"),
+    "odometry that only the other robot has": Fault(
+        BRIDGE, 'ros_topic_name: "/robot2/odom"\n  gz_topic_name: "/robot2/odom"',
+        'ros_topic_name: "/elsewhere"\n  gz_topic_name: "/elsewhere"', "MG707",
+    ),
+    "a quaternion of zeros": Fault(
+        LAUNCH, "'--roll', '0.0',\n                '--pitch', '0.0',\n                '--yaw', '0.0',",
+        "'--qx', '0', '--qy', '0', '--qz', '0', '--qw', '0',", "MG711",
+    ),
+    "a direction that no bridge has": Fault(BRIDGE, "ROS_TO_GZ", "ROS_TO_GAZEBO", "MB855", BRIDGE),
     "an angle in degrees": Fault(LAUNCH, "'--yaw', '0.0'", "'--yaw', '90'", "MG711"),
     "a frame above itself": Fault(LAUNCH, "f'{name}/odom'", "'map'", "MG711"),
     "a program that is misspelt": Fault(
@@ -205,3 +225,132 @@ def test_a_system_of_the_world_in_two_models(
     (tmp_path / LAUNCH).write_text(SPAWN)
     _, found = found_in(tmp_path, capsys)
     assert any(it["code"] == "MB416" for it in found) is (len(loading) > 1)
+
+
+STATE = """\
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([Node(package="robot_state_publisher",
+        executable="robot_state_publisher", parameters=[{}])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "wrong"),
+    [
+        ("{'rate': 5}", True),
+        ("{'robot_description': Command(['made_by_a_program ', 'x'])}", False),
+        ("{'robot_description': Command(['xacro ', '/nowhere.xacro'])}", False),
+        ("{'robot_description': {}['x'] if False else object()}", False),
+        ("{'robot_description': '<robot name=\"r\"><link name=\"a\"/></robot>'}", False),
+        ("{'robot_description': '/opt/r.urdf'}", True),
+        ("'/opt/not/here.yaml'", False),
+    ],
+)
+def test_a_state_publisher_without_a_description(
+    given: str, wrong: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What only a run tells is no fault."""
+    (tmp_path / LAUNCH).write_text(
+        STATE.format(given) if "{}" not in given else STATE.replace("[{}]", f"[{given}]")
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == "MG729" for it in found) is wrong
+
+
+CLOCKS = """\
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="nav2_amcl", executable="amcl", namespace="r1", name="amcl",
+             parameters=[{"use_sim_time": True}]),
+        Node(package="nav2_map_server", executable="map_server", namespace="r1", name="map_server",
+             parameters=[{"use_sim_time": GIVEN}]),
+        Node(package="ros_gz_bridge", executable="parameter_bridge", namespace="r1", name="mine",
+             arguments=["/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "differs"),
+    [("True", False), ("False", True), ("object()", False), ("Command(['which_time'])", False)],
+)
+def test_a_time_that_only_a_run_tells_differs_from_none(
+    given: str, differs: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nor does the bridge, which stamps nothing."""
+    (tmp_path / LAUNCH).write_text(CLOCKS.replace("GIVEN", given))
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] in ("MG503", "MG514") for it in found) is differs
+
+
+def of_nodes(folder: Path, *nodes: str, head: str = "") -> None:
+    lines = "".join(f"        {it},\n" for it in nodes)
+    text = "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n" + head
+    text += "def generate_launch_description():\n    return LaunchDescription([\n"
+    (folder / LAUNCH).write_text(f"{text}{lines}    ])\n")
+
+
+@pytest.mark.parametrize(("topic", "deaf"), [("/world_poses", False), ("/r1/tf", True)])
+def test_what_is_not_called_tf_is_no_tree_for_rviz(
+    topic: str, deaf: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """totwjfakd/multi_robot_sim: poses of the world, from which a node of its own makes tf."""
+    row = f"{topic}@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
+    of_nodes(
+        tmp_path,
+        'Node(package="rviz2", executable="rviz2", name="rviz2")',
+        f'Node(package="ros_gz_bridge", executable="parameter_bridge", name="b", arguments=["{row}"])',
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == "MG405" for it in found) is deaf
+
+
+COSTMAP = """\
+/r1/global_costmap/global_costmap:
+  ros__parameters:
+    plugins: [static_layer]
+    static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
+"""
+
+
+def test_a_costmap_is_no_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Alvar007/multi_robot_ros2: the map comes from another launch file."""
+    (tmp_path / "p.yaml").write_text(COSTMAP)
+    file = f"parameters=[{str(tmp_path / 'p.yaml')!r}]"
+    of_nodes(
+        tmp_path,
+        *(
+            f'Node(package="nav2_{it}", executable="{it}_server", namespace="r1", {file})'
+            for it in ("planner", "controller")
+        ),
+    )
+    _, found = found_in(tmp_path, capsys)
+    assert not [it for it in found if it["code"] == "MG303" and "costmap/costmap" in str(it)]
+
+
+def test_a_variable_that_is_not_set_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
+    of_nodes(tmp_path, head="import os\nMODEL = os.environ['TURTLEBOT3_MODEL']\n")
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 2
+    said = "the environment variable TURTLEBOT3_MODEL is not set here; set it as for ros2 launch"
+    assert said in capsys.readouterr().err
+    of_nodes(tmp_path, head="import os\nMODEL = {}['TURTLEBOT3_MODEL']\n")
+    main(["check-launch", str(tmp_path / LAUNCH)])
+    assert "environment variable" not in capsys.readouterr().err
+
+
+def test_a_file_that_is_lost_is_found_behind_the_error_of_launch(tmp_path: Path) -> None:
+    lost = tmp_path / source_packages.NOT_INSTALLED / "share" / "acme" / "a.yaml"
+    outer = RuntimeError("Caught exception when trying to load file of format [py]")
+    outer.__cause__ = FileNotFoundError(2, "No such file", str(lost))
+    assert source_packages.add_file(outer, str(tmp_path))
+    assert lost.read_bytes() == b""
+    assert not source_packages.add_file(RuntimeError("other"), str(tmp_path))

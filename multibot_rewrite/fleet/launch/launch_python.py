@@ -147,8 +147,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
 
 
 def _head(it: FleetStarts) -> Iterator[str]:
-    yield f'"""{it.head}'
-    yield ""
+    # ament_pep257 wants the text of several lines to begin on the second (D213).
+    yield from ('"""', it.head, "")
     yield "Plain launch and launch_ros: read it, edit it, or include it from another launch file."
     yield ""
     yield "    ros2 launch fleet.launch.py"

@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
 from multibot_rewrite.base.arguments import checked
+from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.rename_map import KINDS, spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.params.rcl_parameters import (
     Value,
@@ -32,6 +33,7 @@ from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.knowledge.programs import Program, started_as
 from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.targets import placed, target_of
@@ -172,6 +174,15 @@ class LoadedRobot:
         return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
+    def program(self, node: str) -> Program | None:
+        """What is started for a node of its stacks, its class where it is a component; None where no
+        source says it. Raises UsageError for a node that no stack has."""
+        self.table.name(node)
+        runs = self._fleet.plan.evidence_of(self._robot).nodes
+        facts = next((it for it in runs if it.name == node), None)
+        return facts and started_as(facts, self.distro)
+
+    @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
         """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
 
@@ -216,14 +227,31 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """This robot's name of a frame or link of the description; raises UsageError for a name
-        that is not a str."""
-        return spell(self._robot.names, "frame", name)
+        """This robot's name of a frame: a link, or one that its nodes or nodes of any robot send.
+
+        Raises UsageError for another.
+        """
+        runs = self._fleet.plan.evidence_of(self._robot).nodes
+        sent = (it.default for node in runs for it in node.frames)
+        return self._known("frame", name, (*SENT_FRAMES, *sent))
+
+    @checked
+    def link(self, name: str) -> str:
+        """This robot's name of a link of the description; raises UsageError for another name."""
+        return self._known("link", name)
 
     @checked
     def joint(self, name: str) -> str:
-        """This robot's name of a joint of the description; raises as ``frame``."""
-        return spell(self._robot.names, "joint", name)
+        """This robot's name of a joint of the description; raises as ``link``."""
+        return self._known("joint", name)
+
+    def _known(self, word: str, name: str, more: Iterable[str] = ()) -> str:
+        """The robot's version of a name that the description has, or that is one of ``more``."""
+        names = self._robot.names
+        described = [it for kind in KINDS[word] for it in names.declared.get(kind, ())]
+        if name not in {*described, *more}:
+            raise UsageError(f"robot {self.name!r}: {unknown(word, name, described, more)}")
+        return spell(names, word, name)
 
     @checked
     def topic(self, name: str) -> str:

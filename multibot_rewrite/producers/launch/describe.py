@@ -79,7 +79,20 @@ def failure(error: BaseException) -> str:
     name = missing_package(error) or missing_module(error)
     if name:
         return not_installed(name)
+    if variable := _variable(error):
+        return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def _variable(error: BaseException) -> str:
+    """The environment variable that os.environ has not; empty for another fault."""
+    # launch has an error of its own around it.
+    error = error.__cause__ or error
+    last = error.__traceback__
+    while last is not None and last.tb_next is not None:
+        last = last.tb_next
+    of_os = last is not None and last.tb_frame.f_globals.get("__name__") == "os"
+    return str(error.args[0]) if of_os and isinstance(error, KeyError) else ""
 
 
 NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
@@ -262,6 +275,9 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
             here.note(failure(error), parameters=True)
         elif not isinstance(given, dict):
             here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
+        if isinstance(given, dict):
+            names = (text(name, here.context) for name in given)
+            yield from (_values({})._replace(untold=name) for name in names)
         return
     if isinstance(found, dict):
         yield _values(found)

@@ -45,11 +45,13 @@ class LaunchOrder(NamedTuple):
 class ParameterText(NamedTuple):
     """A parameter file that a node gets, or values that a launch file gives it, in YAML; ``file`` is
     empty for these, and for a file that the launch makes. ``source`` is the file that is there without
-    the launch: ``file``, or what the launch makes another one of; empty for values."""
+    the launch: ``file``, or what the launch makes another one of; empty for values. ``untold`` is the
+    parameter whose value only a run tells: there is no text of it."""
 
     file: str
     text: str
     source: str = ""
+    untold: str = ""
 
 
 class LaunchedNode(NamedTuple):
@@ -106,7 +108,8 @@ class RunningNode(NamedTuple):
     ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
     which helper nodes in it have.
     ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
-    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the
+    ``values`` are its parameters, ``texts`` other files that a parameter names, ``untold`` parameters
+    whose values only a run tells. ``process`` tells the
     processes of the launch apart.
     """
 
@@ -122,6 +125,7 @@ class RunningNode(NamedTuple):
     program: str
     place: Place
     texts: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
 
     @property
     def full_name(self) -> str:

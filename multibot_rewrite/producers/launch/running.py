@@ -200,6 +200,7 @@ def _started(
             f"{it.package}/{it.executable}",
             it.place,
             tuple(text.text for text in it.parameters if not has_sections(text)),
+            tuple(text.untold for text in it.parameters if text.untold),
         )
 
 

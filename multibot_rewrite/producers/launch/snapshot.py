@@ -60,6 +60,7 @@ from multibot_rewrite.system.records import (
     SIM_TIME,
     SUBSCRIBES,
     TOPIC,
+    UNTOLD,
     Address,
     Caveat,
     Edge,
@@ -301,11 +302,17 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
 
 def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
-    are known. What sends transforms that hold for ever needs no time."""
+    are known; a value that only a run tells is untold. What sends transforms that hold for ever needs
+    no time, and a bridge passes on the time that is in the data."""
     unknown = {it.place for it in notes if it.parameters}
     for it in nodes:
-        if it.place in unknown and it.value(SIM_TIME) is None:
+        given = it.value(SIM_TIME)
+        # An empty text is the output of a program that is not run here.
+        untold = SIM_TIME in it.untold or given == "" or (given is None and it.place in unknown)
+        if is_bridge(it):
             continue
-        if it.facts is not None and it.facts.known not in ("", STATIC):
-            text = parameter_text(it.value(SIM_TIME) is True)
+        if untold:
+            yield Parameter(it.full_name, SIM_TIME, UNTOLD)
+        elif it.facts is not None and it.facts.known not in ("", STATIC):
+            text = parameter_text(given is True)
             yield Parameter(it.full_name, SIM_TIME, text)

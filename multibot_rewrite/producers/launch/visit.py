@@ -48,6 +48,8 @@ _PASSED = (
 )
 
 
+# The locals of a launch that are of this package.
+_OURS = "multibot_"
 # One after the other; a timer may start itself again.
 _MOST_EVENTS = 20
 
@@ -167,13 +169,15 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
         seen.note(message)
-    kept = dict(seen.context.get_locals_as_dict()) if timer else {}
-    _wait(actions, word, seen, kept)
+    _wait(actions, word, seen, timer)
     return None
 
 
-def _wait(actions: Iterable[Any], word: str, seen: Visit, kept: Mapping[str, Any]) -> None:
-    actions = [*actions]
+def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
+    """A timer keeps the locals of the context; what is ours is kept by event handlers, too
+    (launch/context.py)."""
+    actions, known = [*actions], seen.context.get_locals_as_dict()
+    kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
     if actions and seen.events >= _MOST_EVENTS:
         seen.note(f"what starts {word} starts something {word} again and again")
         return
@@ -185,7 +189,7 @@ def _ended(entity: Any, seen: Visit) -> None:
     """What ``on_exit`` of a program starts."""
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
-        _wait(_flat(actions), "at an event (on_exit)", seen, {})
+        _wait(_flat(actions), "at an event (on_exit)", seen)
 
 
 def _flat(actions: Any) -> list[Any]:

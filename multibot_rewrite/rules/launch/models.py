@@ -35,6 +35,7 @@ _POSE = ("-x", "-y", "-z")
 _NEAR = 0.01
 _RENAMES = "-allow_renaming"
 _INTO_GAZEBO = DIRECTIONS["out"]
+_ODOM = "/model/{}/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
 
 
 @launch_rule(
@@ -161,6 +162,47 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
                 message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
                 hint = "add a row to Gazebo for it, as another model has one"
                 yield at(not_bridged, it.place, message, hint, names=(gz,))
+
+
+@launch_rule(
+    "MG707",
+    "data-not-bridged",
+    what="What a model in Gazebo sends comes to no bridge of the launch file, and what another model "
+    "with the same topics sends does.",
+    why="The nodes of this robot wait for its scan or odometry, and nothing tells them.",
+    fix="Add the row, with the direction to ROS.",
+    bad=launch_of(
+        create_of("robot1", "-x", "1"),
+        create_of("robot2", "-x", "3"),
+        bridge_of(_ODOM.format("robot1")),
+    ),
+    good=launch_of(
+        create_of("robot1", "-x", "1"),
+        create_of("robot2", "-x", "3"),
+        bridge_of(_ODOM.format("robot1"), _ODOM.format("robot2")),
+    ),
+    line=1,
+    beside=ROVERS,
+)
+def not_brought(launched: Launched) -> Iterator[Finding]:
+    """By the places of their topics: two models of one description have them in one order."""
+    from multibot_rewrite.rules.launch.rows import out_of_gazebo
+
+    told = out_of_gazebo(launched)
+    models = [(it, [*_sent(it)]) for it in models_in_simulator(launched)]
+    for it, own in models:
+        alike = [sent for _, sent in models if [kind for kind, _ in sent] == [k for k, _ in own]]
+        for at_, (_, gz) in enumerate(own):
+            if gz not in told and any(sent[at_][1] in told for sent in alike):
+                message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
+                hint = "add a row to ROS for it, as another model has one"
+                yield at(not_brought, it.place, message, hint, names=(gz,))
+
+
+def _sent(model: InSimulator) -> Iterator[tuple[str, str]]:
+    for it in model.topics:
+        if it.direction != _INTO_GAZEBO:
+            yield it.ros_type, f"/{it.gz.lstrip('/')}"
 
 
 def _read(model: InSimulator) -> Iterator[tuple[str, str]]:

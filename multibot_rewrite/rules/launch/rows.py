@@ -48,6 +48,11 @@ def into_gazebo(launched: Launched) -> set[str]:
     return {it.gz for it in _rows(launched) if it.inwards}
 
 
+def out_of_gazebo(launched: Launched) -> set[str]:
+    """The topics in Gazebo that bridges bring to ROS."""
+    return {it.gz for it in _rows(launched) if not it.inwards}
+
+
 @launch_rule(
     "MG705",
     "bridge-to-another-robot",

@@ -17,6 +17,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.launch.declaration import (
@@ -224,6 +225,8 @@ def _programs(release: str) -> dict[str, set[str]]:
         for it in node.programs or (node.kind,):
             package, slash, program = it.rpartition("/")
             found[package if slash else node.package].add(program)
+    for package, _, program in (it.partition("/") for it in programs().passing):
+        found[package].add(program)
     return found
 
 

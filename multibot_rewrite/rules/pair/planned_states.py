@@ -15,7 +15,15 @@ from multibot_rewrite.rules.system.states import not_active
 from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
 from multibot_rewrite.system.reach import machines
-from multibot_rewrite.system.records import SIM_TIME, SUBSCRIBES, Parameter, System, clocks
+from multibot_rewrite.system.records import (
+    SIM_TIME,
+    SUBSCRIBES,
+    UNTOLD,
+    Parameter,
+    System,
+    clocks,
+    without_clock,
+)
 
 # A planned parameter, and its value there.
 Difference = tuple[Parameter, str]
@@ -61,7 +69,8 @@ running: /robot1/amcl has base_frame_id robot1/base_link
 )
 def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
-    values = {(it.node, it.name): it.value for it in seen.system.parameters}
+    told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
+    values = {(it.node, it.name): it.value for it in told}
     for node, planned in _by_node(plan.system.parameters).items():
         found = [*_differences(planned, values)]
         # What makes it an error comes first.
@@ -143,7 +152,7 @@ def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
 def clock_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike."""
     timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
-    asked = clocks(seen.system)
+    asked = {*clocks(seen.system), *without_clock(seen.system)}
     differing: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node, wanted in planned_clocks(plan.system):
         if node in seen.nodes and node not in asked and wanted != parameter_text(node in timed):

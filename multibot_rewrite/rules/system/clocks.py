@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, nodes_of
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, without_clock
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
@@ -134,7 +134,9 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
         return
-    timed = {node for node in seen.nodes if _is_timed(node) and node not in seen.known.clocks}
+    untold = without_clock(seen.system)
+    asked = {node for node in seen.nodes if _is_timed(node) and node not in untold}
+    timed = {node for node in asked if node not in seen.known.clocks}
     for robot in dict.fromkeys(map(seen.robot, sorted(timed))):
         own = [node for node in sorted(timed) if seen.robot(node) == robot]
         others = [node for node in own if node not in simulated]

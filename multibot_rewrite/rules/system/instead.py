@@ -76,6 +76,12 @@ def _orphan(seen: Index, end: End) -> Ends | None:
     return _only(akin) or (None if plain else _only(given))
 
 
+def _is_costmap(ends: Ends) -> bool:
+    """What a costmap of Nav2 shows is no map that another node wants (nav2_costmap_2d's names)."""
+    made = {last_word(one.node) for one in ends.publishers} <= {"local_costmap", "global_costmap"}
+    return made and ends.type == "nav_msgs/msg/OccupancyGrid"
+
+
 @once
 def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
     """Topics that nodes at work send and no node at work reads, by type and robot."""
@@ -241,7 +247,8 @@ def meant(seen: Index, end: End) -> Ends | None:
     given = _given(seen)
     own = {"", seen.robot(end.node)}
     same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
-    alike = {same[at].name: same[at] for at in sorted(same) if _may_be(seen, same[at], end)}
+    ranked = (same[at] for at in sorted(same) if not _is_costmap(same[at]))
+    alike = {it.name: it for it in ranked if _may_be(seen, it, end)}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.
         words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}

@@ -82,8 +82,9 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
 
 def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
     """RViz on a tf topic on which nothing is, while robots have theirs."""
-    sent = [it.topic for it in seen.trees if it.senders]
-    for tree in seen.trees:
+    trees = [it for it in seen.trees if last_word(seen.plain(it.topic)) == TF]
+    sent = [it.topic for it in trees if it.senders]
+    for tree in trees:
         rviz = [it for it in tree.listeners if last_word(it).startswith("rviz")]
         if rviz and sent and not tree.senders:
             yield tf_on_two_topics.finding(

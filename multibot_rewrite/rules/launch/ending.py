@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of a launch file that end as soon as they start.
+
+Source: robot_state_publisher jazzy robot_state_publisher.cpp (its robot_description is XML); rmw
+validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.rosnames import check_node_name
+from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+
+_STATE = (STATE_PUBLISHER,) * 2
+_TEXT = '[{"robot_description": "<robot name=\\"r\\"><link name=\\"a\\"/></robot>"}]'
+_NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
+
+
+@launch_rule(
+    "MG729",
+    "program-ends-at-once",
+    what="A program that a launch file starts ends at once: a robot_state_publisher without a "
+    "description or with the path of one, a node with a name that ROS refuses, a spawner with a "
+    "pose that is no number.",
+    why="The launch goes on without it: there is no tf of the robot, or no robot in the simulator.",
+    fix="Give robot_description the text, such as `Command(['xacro ', path])`; write names with "
+    "letters, digits and underscores, and a pose with numbers.",
+    bad=launch_of(node_of(*_STATE, parameters='[{"robot_description": "/opt/robot.urdf"}]')),
+    good=launch_of(node_of(*_STATE, parameters=_TEXT)),
+)
+def ends(launched: Launched) -> Iterator[Finding]:
+    """Where all that a node gets is known."""
+    unsure = {(it.place.file, it.place.line) for it in launched.graph.notes}
+    for it in launched.graph.nodes:
+        fault = check_node_name(it.name) if it.name else None
+        if fault:
+            message = (
+                f"node {it.name!r} of {it.package} has a name that ROS refuses: {fault.reason}"
+            )
+            yield at(ends, it.place, message, "write it with letters, digits and underscores")
+        if f"{it.package}/{it.executable}" in programs().spawners:
+            for flag, word in pairwise(it.arguments):
+                if flag in _NUMBERS and not _is_number(word):
+                    message = f"{it.executable}: {flag} {word} is no number"
+                    yield at(ends, it.place, message, "write a number")
+    for node in launched.nodes:
+        if (node.place.file, node.place.line) not in unsure:
+            yield from _described(node)
+
+
+def _described(it: RunningNode) -> Iterator[Finding]:
+    """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
+    is_one = it.facts is not None and it.facts.known == STATE_PUBLISHER
+    if not is_one or it.arguments or "robot_description" in it.untold:
+        return
+    given = it.value("robot_description")
+    text = given.strip() if isinstance(given, str) else given
+    if text is None:
+        message = f"{it.full_name} gets no robot_description, and ends"
+        yield at(ends, it.place, message, "give it robot_description, the text of the URDF")
+    elif isinstance(text, str) and text and "<" not in text:
+        message = f"{it.full_name}: robot_description is {text[:60]!r}, and no XML"
+        yield at(ends, it.place, message, "give it the text of the file, not its path")
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
