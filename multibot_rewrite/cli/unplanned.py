@@ -25,10 +25,8 @@ from multibot_rewrite.cli.report import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.live.suggestion import FILES, suggestion
 from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
@@ -66,6 +64,8 @@ def _check_use(options: argparse.Namespace) -> None:
     if options.output:
         check_target(options.output, options.snapshot)
     if options.suggest:
+        from multibot_rewrite.live.suggestion import FILES  # reads descriptions: as long as a check
+
         for name in FILES:
             path = os.path.join(options.suggest, name)
             check_folder(path)
@@ -106,6 +106,9 @@ def _write(
     if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
+        from multibot_rewrite.knowledge.stacks import built_in
+        from multibot_rewrite.live.suggestion import suggestion
+
         files = suggestion(seen, built_in(release_here(options.distro)))
         paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
         write_files(options, [(path, text.encode()) for path, text in paths.items()])

@@ -23,7 +23,9 @@ from multibot_rewrite.producers.ros.headers import HeaderSamples
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
+from multibot_rewrite.producers.ros.voices import Mark
 from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, with_answers
@@ -292,14 +294,25 @@ def _subscribe(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
 ) -> Callable[[], None] | str:
     """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
-    class_, reason = ros.message_class(type_)
-    return ros.subscribe(session.node, class_, topic, latched, callback) if class_ else reason
+    class_, reason = ros.raw_message_class(type_)
+    if not class_:
+        return reason
+    read = read_tf if type_ == assemble.TF_TYPES[0] else read_transform
+
+    def received(data: bytes, mark: Mark) -> None:
+        message = read(data)
+        if message:
+            callback(message, mark)
+
+    return ros.subscribe(session.node, class_, topic, latched, received)
 
 
 def _subscribe_to_headers(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
 ) -> Callable[[], None] | None:
-    class_, _ = ros.message_class(type_)
+    if not ros.begins_with_header(type_):
+        return None
+    class_, _ = ros.raw_message_class(type_)
     return class_ and ros.subscribe_to_headers(session.node, class_, topic, latched, callback)
 
 
