@@ -115,7 +115,7 @@ def take_snapshot(session: GraphSession) -> System:
     more = [*clock.starved(), *(assemble.cut_short() if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
-        ros.spin(session.ros, POLL_SECONDS)
+        _receive(session, POLL_SECONDS)
     return _snapshot(session, names, endpoints, ears, (why, seconds), more)
 
 
@@ -148,7 +148,7 @@ def watch(session: GraphSession) -> Iterator[System]:
     answers = Answers(partial(_ask, session), session.request.asks)
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
     while not session.stop.is_set():
-        ros.spin(session.ros, pause)
+        _receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
         state = (*_overview(session), ears.tf.transforms())
@@ -170,6 +170,16 @@ def watch(session: GraphSession) -> Iterator[System]:
             if new or other:
                 yield with_answers(seen, answers.states)
         spent = time.thread_time() - began
+
+
+def _receive(session: GraphSession, seconds: float) -> None:
+    """Receive messages for so long, or until the observation has to end."""
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        session.stop.wait(min(left, POLL_SECONDS))
+        ros.receive(session.node)
+        if session.stop.is_set():
+            return
 
 
 def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
@@ -198,7 +208,7 @@ def _wait_until_settled(
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
-        ros.spin(session.ros, pause)
+        _receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
         view = _overview(session)
@@ -310,10 +320,12 @@ def _subscribe(
 def _subscribe_to_headers(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
 ) -> Callable[[], None] | None:
+    """Subscribe to the last message only, since there may be large images; None without a header."""
     if not ros.begins_with_header(type_):
         return None
     class_, _ = ros.raw_message_class(type_)
-    return class_ and ros.subscribe_to_headers(session.node, class_, topic, latched, callback)
+    received = lambda data, _: callback(data)  # noqa: E731
+    return class_ and ros.subscribe(session.node, class_, topic, latched, received, depth=1)
 
 
 def _snapshot(

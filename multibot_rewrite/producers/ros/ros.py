@@ -197,7 +197,7 @@ def begins_with_header(type_: str) -> bool:
         with suppress(OSError):
             text = Path(folder, kind, f"_{_file_name(name)}.py").read_text(encoding="utf-8")
             first = _FIRST_FIELD.search(text)
-            return bool(first) and first[1] == "std_msgs/Header"
+            return first is not None and first[1] == "std_msgs/Header"
     return False
 
 
@@ -211,10 +211,15 @@ def _check_support(kind: str, type_: Any) -> None:
 
 
 def subscribe(
-    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[bytes, int | None], None]
+    node: Node,
+    type_: Any,
+    topic: str,
+    latched: bool,
+    callback: Callable[[bytes, int | None], None],
+    depth: int = 0,
 ) -> Callable[[], None]:
-    """Subscribe to serialized messages; returns what ends it. With ``latched`` earlier messages are
-    received too.
+    """Subscribe to serialized messages, the last ``depth`` of which wait to be received, else as many
+    as a listener to tf keeps; returns what ends it. With ``latched`` earlier messages are received too.
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
@@ -227,18 +232,35 @@ def subscribe(
 
     # Best effort works with reliable publishers too, but latched samples need a reliable reader.
     qos = _qos(latched, latched)
+    qos.depth = depth or qos.depth
     subscription = node.create_subscription(type_, topic, numbered, qos, raw=True)
     return lambda: node.destroy_subscription(subscription)
 
 
-def subscribe_to_headers(
-    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[bytes], None]
-) -> Callable[[], None]:
-    """The same with messages only, of which the last waits to be taken: there may be large images."""
-    qos = _qos(latched, latched)
-    qos.depth = 1
-    subscription = node.create_subscription(type_, topic, callback, qos, raw=True)
-    return lambda: node.destroy_subscription(subscription)
+def receive(node: Node) -> None:
+    """Hand out what the subscriptions of a node have received.
+
+    An executor waits for all of them anew for each message: a millisecond and more in a fleet.
+    """
+    for subscription in list(node.subscriptions):
+        for message, info in _taken(subscription):
+            subscription.callback(message, info)
+
+
+def _taken(subscription: Any) -> Iterator[tuple[bytes, Any]]:
+    """Its messages, until there is none, or a callback has ended it."""
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    with suppress(rclpy_implementation.InvalidHandle):
+        while taken := _take(subscription):
+            yield taken
+
+
+def _take(subscription: Any) -> tuple[bytes, Any] | None:
+    with subscription.handle:
+        taken: tuple[bytes, Any] | None
+        taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    return taken
 
 
 def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
