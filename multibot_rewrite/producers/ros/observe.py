@@ -21,7 +21,7 @@ from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
 from multibot_rewrite.producers.ros.headers import HeaderSamples
 from multibot_rewrite.producers.ros.participants import participants_here
-from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
+from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.producers.ros.voices import Mark
 from multibot_rewrite.producers.ros.worker import Send, run_worker
@@ -65,13 +65,15 @@ LONGEST_SETTLE_SECONDS = 1.0
 
 
 class GraphSession(NamedTuple):
-    """A node that observes the graph; ``stop`` is set when the observation has to end."""
+    """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
+    what is seen so far."""
 
     ros: ros.Session
     node: Any
     request: Request
     stop: threading.Event
     started: float
+    tell: Callable[[str], None]
 
     def now(self) -> float:
         """Seconds since the observation began."""
@@ -85,7 +87,8 @@ class GraphSession(NamedTuple):
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Observe as ``order`` says; returns the exit code."""
     request = from_text(order)
-    with _open_session(request, stop) as session:
+    tell = lambda text: send(SO_FAR + text.encode())  # noqa: E731
+    with _open_session(request, stop, tell) as session:
         if request.watch:
             for snapshot in watch(session):
                 send(to_json(snapshot))
@@ -99,10 +102,12 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
 
 
 @contextmanager
-def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSession]:
+def _open_session(
+    request: Request, stop: threading.Event, tell: Callable[[str], None]
+) -> Iterator[GraphSession]:
     with ros.opened() as opened:
         node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
-        yield GraphSession(opened, node, request, stop, time.monotonic())
+        yield GraphSession(opened, node, request, stop, time.monotonic(), tell)
 
 
 def take_snapshot(session: GraphSession) -> System:
@@ -216,6 +221,7 @@ def _wait_until_settled(
         # While it changes the moment of the last change is wanted.
         if changed.all == now:
             last_change = clock
+            session.tell(assemble.so_far(view[0]))
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         known = _all_are_known(session)
