@@ -19,7 +19,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
-from multibot_rewrite.producers.ros.headers import HeaderSamples
+from multibot_rewrite.producers.ros.headers import HeaderSamples, Receive
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
@@ -324,14 +324,13 @@ def _subscribe(
 
 
 def _subscribe_to_headers(
-    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
 ) -> Callable[[], None] | None:
     """Subscribe to the last message only, since there may be large images; None without a header."""
     if not ros.begins_with_header(type_):
         return None
     class_, _ = ros.raw_message_class(type_)
-    received = lambda data, _: callback(data)  # noqa: E731
-    return class_ and ros.subscribe(session.node, class_, topic, latched, received, depth=1)
+    return class_ and ros.subscribe(session.node, class_, topic, latched, callback, depth=1)
 
 
 def _snapshot(

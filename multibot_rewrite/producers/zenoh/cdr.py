@@ -75,15 +75,27 @@ def _read(data: bytes, parts: Callable[[_Reader], Iterable[_Stamped]]) -> TfMess
 
 def read_header_frame(data: bytes) -> str | None:
     """The ``header.frame_id`` of a message that begins with a header, or None as above."""
+    found = _header_texts(data, 1)
+    return found[0] if found else None
+
+
+def read_child_frame(data: bytes) -> str | None:
+    """The ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
+    found = _header_texts(data, 2)
+    return found[1] if found else None
+
+
+def _header_texts(data: bytes, many: int) -> list[str]:
+    """The first texts after the stamp; none as above."""
     mark = _ENDS.get(data[:2])
     if mark is None:
-        return None
+        return []
     try:
         reader = _Reader(data[_HEADER:], mark)
         reader.skip(_STAMP)
-        return reader.text()
+        return [reader.text() for _ in range(many)]
     except (struct.error, UnicodeDecodeError, IndexError):
-        return None
+        return []
 
 
 def read_stamp(data: bytes) -> float | None:
