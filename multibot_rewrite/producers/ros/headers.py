@@ -38,8 +38,8 @@ LARGE = frozenset({
     "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2",
     "nav_msgs/msg/OccupancyGrid", "stereo_msgs/msg/DisparityImage",
 })  # fmt: skip
-# A rate is that of so many seconds at least, and of no more messages.
-RATE_SECONDS, MOST_MESSAGES = 0.5, 100
+# A rate is that of so many seconds at least, so that 2 Hz are known, and of no more messages.
+RATE_SECONDS, MOST_MESSAGES = 0.4, 100
 ODOMETRY = "nav_msgs/msg/Odometry"
 # topic, type, latched, callback -> what ends the subscription; None for a type without a header first.
 Receive = Callable[[bytes, Mark], None]
