@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
 from multibot_rewrite.version import __version__ as __version__
 
-# For checkers of types, as typing has it: Ctrl-C is not quiet before the command begins, and to import
-# typing takes longer than all else until then.
+# For checkers of types, as typing has it. Nothing is imported here: Ctrl-C is not quiet before the
+# command begins, and to import typing or importlib takes longer than all else until then.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
@@ -21,6 +19,7 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
+    from multibot_rewrite.companions.join import Joined, join, split
     from multibot_rewrite.description.joining.part import Part
     from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.fleet.file.system_sources import (
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
     from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
     from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.refactor.adopt import Adopted, adopt
-    from multibot_rewrite.refactor.join import Joined, join, split
     from multibot_rewrite.refactor.rename import Renaming, rename_symbol
     from multibot_rewrite.system.records import System
 
@@ -90,7 +88,7 @@ _HOMES = {
     **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
     **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
     **dict.fromkeys(("Adopted", "adopt"), "refactor.adopt"),
-    **dict.fromkeys(("Joined", "join", "split"), "refactor.join"),
+    **dict.fromkeys(("Joined", "join", "split"), "companions.join"),
     "Part": "description.joining.part",
     **dict.fromkeys(("Renaming", "rename_symbol"), "refactor.rename"),
     "LoadedRobot": "fleet.robots.loaded_robot",
@@ -110,5 +108,7 @@ def __getattr__(name: str) -> object:
     # A command loads what it needs: each of them starts by importing this package.
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     module = import_module(f"{__name__}.{_HOMES.get(name, 'base.model')}")
     return getattr(module, name)

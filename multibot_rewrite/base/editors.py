@@ -6,10 +6,17 @@ from __future__ import annotations
 import os
 from importlib.resources import files
 
+# The schemas of what people edit, below this package.
+FLEET, NODES, PLAN = (
+    "fleet/fleet.schema.json",
+    "knowledge/nodes.schema.json",
+    "spelling/plan.schema.json",
+)
 
-def schema_line(package: str, name: str, folder: str) -> str:
+
+def schema_line(schema: str, folder: str) -> str:
     """The comment by which yaml-language-server (VS Code, Vim, Emacs) finds a schema of this package:
     relative where it is installed below ``folder``, in which the file will be."""
-    path = str(files(package) / name)
+    path = str(files("multibot_rewrite") / schema)
     below = os.path.relpath(path, folder or os.curdir)
     return f"# yaml-language-server: $schema={path if below.startswith(os.pardir) else below}"

@@ -93,6 +93,8 @@ LAYOUTS = (
     ),
 )
 DEFAULT_LAYOUT = "postfix"
+# What becomes of systems of the whole world that a description loads.
+KEEP, LEAVE = WORLD_SYSTEMS = ("keep", "leave")
 
 
 class Affix(NamedTuple):
@@ -130,6 +132,12 @@ class Naming(NamedTuple):
     def read_as(self) -> Layout:
         """The layout that a description is read for: with namespaces where topics are below them."""
         return self.layout._replace(namespaced=self.topics == NAMESPACE)
+
+
+def leaves(world_systems: str) -> bool:
+    """Are they left to the world? Raises UsageError for a word that is not known."""
+    _one_of("world_systems", world_systems, WORLD_SYSTEMS)
+    return world_systems == LEAVE
 
 
 def make_naming(

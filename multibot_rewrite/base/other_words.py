@@ -15,6 +15,8 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "arguments": "multibot inspect FILE.xacro",
         "coverage": "multibot inspect PATH...",
         "vocabulary": "multibot inspect [NAME]",
+        "explain": "multibot inspect CODE",
+        "learn": "multibot snapshot --form nodes",
         "doctor": "multibot check without a PLAN",
         "diagnose": "multibot check without a PLAN",
         "lint": "urdf-lint PATH...",

@@ -24,10 +24,18 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=options.in_place)
-    many = plural(len(made.proved), "description")
-    note(options, f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved")
-    for it in made.left:
-        note(options, f"{it.place}: left as it is: {it.why}")
+    if made.argument:
+        many = plural(len(made.proved), "description")
+        note(
+            options,
+            f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved",
+        )
+    for it in made.launches:
+        note(options, f"{it}: it hands {made.argument} on; proved")
+    for path, name in made.already.items():
+        note(options, f"{path}: it has such an argument already: {name}")
+    for one in made.left:
+        note(options, f"{one.place}: left as it is: {one.why}")
     for path, why in made.unread.items():
         note(options, f"not looked at: {why or path}")
     return DONE

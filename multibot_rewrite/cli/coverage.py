@@ -19,6 +19,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target, find_files
+from multibot_rewrite.description.reports.spawners import SpawnerRules, spawner_rules
 from multibot_rewrite.description.reports.survey import (
     Loaded,
     MentionPlace,
@@ -63,6 +64,7 @@ class CoverageReport(NamedTuple):
     total: Survey
     unreadable: Sequence[Unreadable]
     release: str
+    spawners: Sequence[SpawnerRules]
 
 
 def run(options: argparse.Namespace) -> int:
@@ -85,9 +87,10 @@ def run(options: argparse.Namespace) -> int:
             check_target(options.output, found.read)
         return found.data, found.file
 
-    found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable)
+    rules: list[SpawnerRules] = []
+    found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable, rules)
     total = add(found)
-    report = CoverageReport(total, unreadable, tree.vocabulary.release)
+    report = CoverageReport(total, unreadable, tree.vocabulary.release, rules)
     if options.form == JSON:
         more = {"xacro": xacro_json(own)} if own else {}
         deliver(options, json_bytes({**as_json(report), **more}))
@@ -102,12 +105,15 @@ def _surveys(
     tree: Tree,
     read: Callable[[str], tuple[bytes, str]],
     unreadable: list[Unreadable],
+    rules: list[SpawnerRules],
 ) -> Iterator[Survey]:
-    """One survey a file; what cannot be read is put into ``unreadable``."""
+    """One survey a file; what cannot be read is put into ``unreadable``, what its controllers are
+    spawned with into ``rules``."""
     for path in paths:
         try:
             data, name = read(path)
             yield survey(collect(read_document(data, name), tree), tree)
+            rules += spawner_rules(data, name, tree)
         except InputError as error:
             unreadable.append(Unreadable(path, str(error)))
 
@@ -140,6 +146,7 @@ def as_json(report: CoverageReport) -> dict[str, object]:
             "exact": [_mention_json(*pair) for pair in _of(report, exact=True)],
             "inside": [_mention_json(*pair) for pair in _of(report, exact=False)],
         },
+        "spawners": [it._asdict() for it in report.spawners],
     }
 
 
@@ -192,6 +199,9 @@ def _parts(report: CoverageReport) -> Iterator[str | Grid]:
         yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
     yield from _mention_parts("unclaimed and exactly a link or joint", _of(report, exact=True))
     yield from _mention_parts("unclaimed with a link or joint inside", _of(report, exact=False))
+    for it in report.spawners:
+        yield ""
+        yield f"{it.place} in layout {it.layout}: {it.advice}"
 
 
 def _loaded_parts(total: Survey, type_: str, words: str) -> Iterator[str | Grid]:

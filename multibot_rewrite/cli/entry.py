@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the programs begin. Until a command runs, Ctrl-C ends the process without a word: nothing is
-written yet, and Python's traceback would tell of imports. ``guarded`` takes over."""
+written yet, and Python's traceback would tell of imports. ``guarded`` takes over.
+
+What is imported here is built into Python: of Ctrl-C before that a traceback is all there is.
+"""
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # of which signal makes enumerations: 5 ms
 import gc
-import signal
-from importlib import import_module
 
 _COMMANDS = "multibot_rewrite.cli"
 
@@ -27,8 +29,10 @@ def urdf_lint() -> int:
 
 
 def _run(name: str) -> int:
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
     gc.disable()
+    from importlib import import_module
+
     code: int = import_module(f"{_COMMANDS}.{name}").main()
     return code

@@ -1,39 +1,65 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot explain CODE``: what a finding is, why, the fix."""
+"""``multibot inspect CODE``: what a finding is, why, the fix."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Sequence
 
-from multibot_rewrite.base.findings.codes import explained, find_rules, listed, no_rule
+from multibot_rewrite.base.findings.codes import examples, explained, find_rules, listed, no_rule
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.tables import JSON, Grid, json_bytes
 from multibot_rewrite.lint.catalogue import rules
 
-LISTING = "multibot explain"
+# MB202, as it begins (mb2), and what is nearly one.
+_CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Explain the codes that are given, or list all; returns the exit code."""
-    known = rules()
-    words = [code for word in options.codes for code in word.split(",")]
-    found = {it.code: it for word in words for it in _asked(word, known)}
-    texts = map(explained, found.values()) if words else _list(known)
-    deliver(options, "\n".join(texts).encode())
+def are_codes(words: Sequence[str]) -> bool:
+    """Is a code among these words, or are they the name of a rule?"""
+    return any(map(_CODE.fullmatch, _split(words)))
+
+
+def is_name(word: str) -> bool:
+    """Has a rule this name?"""
+    return any(it.name == word for it in rules().values())
+
+
+def run(options: argparse.Namespace, words: Sequence[str]) -> int:
+    """Explain rules by their codes, how codes begin, or names; returns the exit code."""
+    found = {it.code: it for word in _split(words) for it in _asked(word)}
+    if options.form == JSON:
+        deliver(options, json_bytes({"rules": as_json(found.values())}))
+    else:
+        deliver(options, "\n".join(map(explained, found.values())).encode())
     return DONE
 
 
-def _asked(word: str, known: Mapping[str, Rule]) -> list[Rule]:
+def grid() -> Grid:
+    """All rules in a table."""
+    return Grid(("code", "level", "name", "what it finds"), [*listed(rules().values())])
+
+
+def as_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
+    """Rules (all by default) as ``--form json`` writes them; docs/stacks.md describes it."""
+    fields = ("code", "name", "level", "what", "why", "fix")
+    return [
+        {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}
+        for it in (rules().values() if found is None else found)
+    ]
+
+
+def _split(words: Iterable[str]) -> list[str]:
+    return [code for word in words for code in word.split(",")]
+
+
+def _asked(word: str) -> list[Rule]:
+    known = rules()
     found = find_rules(word, known) if word else []
     if not found:
-        raise UsageError(no_rule(word, known, LISTING))
+        raise UsageError(no_rule(word, known))
     return found
-
-
-def _list(known: Mapping[str, Rule]) -> Iterator[str]:
-    """A line for each rule: code, level, name, what it finds."""
-    yield from (" ".join(row) for row in listed(known.values()))
-    yield ""

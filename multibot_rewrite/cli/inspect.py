@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot inspect``: what is known of a plugin, of descriptions, of a xacro's arguments."""
+"""``multibot inspect``: what is known of findings, plugins, descriptions, a xacro's arguments."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import Site, UsageError
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.cli import coverage
+from multibot_rewrite.cli import coverage, explain
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
@@ -35,11 +35,14 @@ _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look up a name, look at files, or draft what is missing; returns the exit code."""
+    """Look up a code or name, look at files, or draft what is missing; returns the exit code."""
     if options.suggest is not None:
         return draft(options)
     words = plain_words(options)
-    if len(words) > 1 or xacro_args(options) or any(map(_is_path, words)):
+    paths = any(map(_is_path, words))
+    if not paths and explain.are_codes(words):
+        return explain.run(options, words)
+    if len(words) > 1 or xacro_args(options) or paths:
         return coverage.run(options)
     return show(options, next(iter(words), None))
 
@@ -56,26 +59,39 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     builtin_tree(files, release_here(options.distro))
     # Without a release the rows of all are shown, each with its own.
     vocabulary = load_vocabulary(files, options.distro or "")
-    found = vocabulary.sections(*TYPES) if name is None else _found(vocabulary, name, TYPES)
+    if name is None:
+        return _all(options, vocabulary.sections(*TYPES))
+    found = look_up(vocabulary, name, TYPES)
+    if not found and explain.is_name(name):
+        return explain.run(options, [name])
+    if not found:
+        raise _unknown(vocabulary, name, TYPES)
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
-        deliver_report(options, _list(found) if name is None else _details(found))
+        deliver_report(options, _details(found))
     return DONE
 
 
-def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
-    found = look_up(vocabulary, name, types)
-    if found:
-        return found
+def _all(options: argparse.Namespace, sections: Sequence[VocabularySection]) -> int:
+    """Everything that is known: what a description may have, and what may be found in it."""
+    if options.form == JSON:
+        known = [as_json(it) for it in sections]
+        deliver(options, json_bytes({"sections": known, "rules": explain.as_json()}))
+    else:
+        deliver_report(options, (*_list(sections), "", explain.grid()))
+    return DONE
+
+
+def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageError:
     others = [it for type_ in types for it in vocabulary.releases_elsewhere(type_, name)]
     if others:
         where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
-        raise UsageError(f"{name!r} {where}; name one of them with --distro")
+        return UsageError(f"{name!r} {where}; name one of them with --distro")
     near = near_names(vocabulary, name, types)
     hint = f"the nearest known: {', '.join(near)}" if near else "multibot inspect lists all"
     what = "plugin, class, element, sensor type or block of the vocabulary"
-    raise UsageError(f"{name!r} is no {what}, and no file or folder; {hint}")
+    return UsageError(f"{name!r} is no {what}, no finding's code, and no file or folder; {hint}")
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:

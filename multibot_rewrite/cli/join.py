@@ -13,13 +13,13 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_link, check_target
+from multibot_rewrite.companions.join import Joined, join, split
 from multibot_rewrite.description.joining.from_file import parts_of
-from multibot_rewrite.description.joining.part import ZERO, Part
+from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
-from multibot_rewrite.refactor.join import Joined, join, split
 
 # Options that are written for each part.
-_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers")
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "moveit", "one_system")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -30,8 +30,15 @@ def run(options: argparse.Namespace) -> int:
 
 def _join(options: argparse.Namespace) -> int:
     parts = list(_parts(options))
+    samples = options.samples or 0
+    if samples and not any(it.srdf for it in parts):
+        raise UsageError("--samples is for an SRDF: give --srdf, too")
     made = join(
-        parts, vocabulary=options.vocabulary, trust=options.trust, distro=options.distro or ""
+        parts,
+        vocabulary=options.vocabulary,
+        trust=options.trust,
+        distro=options.distro or "",
+        samples=samples,
     )
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
@@ -44,7 +51,8 @@ def _join(options: argparse.Namespace) -> int:
 
 def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
     """The description, with the files that belong to it beside it."""
-    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers))
+    moveit = ((f"_{name}", data) for name, data in made.moveit.items())
+    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), *moveit)
     more = [(ending, data) for ending, data in beside if data]
     if more and not goes_to_file(options):
         raise UsageError("several files are made: name the description with -o robot.urdf")
@@ -53,12 +61,7 @@ def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -
         return
     stem = options.output.removesuffix(".urdf")
     items = [(options.output, made.data), *((f"{stem}{it}", data) for it, data in more)]
-    _write(options, items, [*options.words, *_files(parts)])
-
-
-def _files(parts: Sequence[Part]) -> Iterator[str]:
-    for it in parts:
-        yield from map(str, filter(None, (it.description, it.srdf, *it.controllers)))
+    _write(options, items, [*options.words, *(file for it in parts for file in files_of(it))])
 
 
 def _write(
@@ -74,9 +77,9 @@ def _write(
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
         raise UsageError("--split takes one file, which multibot join made")
-    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
+    given = next((it for it in ("output", "samples", *_OF_PARTS) if getattr(options, it)), None)
     if given:
-        raise UsageError(f"--{given} is for joining, it cannot go with --split")
+        raise UsageError(f"{_option(given)} is for joining, it cannot go with --split")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
@@ -104,18 +107,24 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
     srdfs = _of_each("--srdf", options.srdf, many)
     controllers = _of_each("--controllers", options.controllers, many)
-    every = zip(files, ends, poses, prefixes, srdfs, controllers, strict=True)
-    for (file, given), at, pose, prefix, srdf, yaml in every:
+    moveit = _of_each("--moveit", options.moveit, many)
+    every = zip(files, ends, poses, prefixes, srdfs, controllers, moveit, strict=True)
+    for (file, given), at, pose, prefix, srdf, yaml, plans in every:
         where = at, _numbers(pose), prefix
-        yield Part(file, *where, "", given, srdf or None, tuple(filter(None, yaml.split(","))))
+        some, others = (tuple(filter(None, it.split(","))) for it in (yaml, plans))
+        yield Part(file, *where, "", given, srdf or None, some, options.one_system, others)
 
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:
     """The parts that a file lists, which says everything of them."""
-    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
+    more = [*options.words[1:], *(_option(it) for it in _OF_PARTS if getattr(options, it))]
     if more:
         raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
     return parts_of(options.words[0])
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:

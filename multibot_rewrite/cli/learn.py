@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot learn``: a file of nodes and stacks from nodes that are running now."""
+"""``multibot snapshot --form nodes``: a file of nodes and stacks from nodes that are running now."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.editors import schema_line
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.knowledge.node_library import FILE, NodeLibrary
+from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
@@ -29,10 +28,18 @@ from multibot_rewrite.system.records import System
 NODES, NODL = "nodes", "nodl"
 
 
-def run(options: argparse.Namespace) -> int:
-    """Look, learn, write, note what is left out; returns the exit code."""
-    _check_use(options)
-    graph = live.graph(options)
+def is_asked(options: argparse.Namespace) -> bool:
+    """Are nodes to be described, not a snapshot to be written? Raises UsageError."""
+    if options.form in (NODES, NODL) or is_nodl(options):
+        return True
+    given = [f"--{it}" for it in ("node", "namespace", "stack", "distro") if getattr(options, it)]
+    if given:
+        raise UsageError(f"{given[0]} is for a description of nodes: add --form {NODES}")
+    return False
+
+
+def write(options: argparse.Namespace, graph: System) -> int:
+    """Learn, write, note what is left out; returns the exit code."""
     doubtful = doubts(graph)
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)
@@ -42,34 +49,27 @@ def run(options: argparse.Namespace) -> int:
     library = built_in(release)
     learned = learn(graph, names, namespace, library)
     remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
-    as_nodl = _is_nodl(options)
+    as_nodl = is_nodl(options)
+    stack = options.stack or "learned"
     if as_nodl:
         remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
     else:
-        line = schema_line(
-            "multibot_rewrite.knowledge", FILE, os.path.dirname(options.output or "")
-        )
-        deliver(options, f"{line}\n{to_yaml(learned, options.stack, library)}".encode())
+        line = editors.schema_line(editors.NODES, os.path.dirname(options.output or ""))
+        deliver(options, f"{line}\n{to_yaml(learned, stack, library)}".encode())
     for remark in remarks:
         note(options, f"note: {remark}")
-    shape = "NoDL" if as_nodl else f"stack {options.stack}"
+    shape = "NoDL" if as_nodl else f"stack {stack}"
     what = f"{plural(len(learned), 'node')} learned as {shape}"
     note(options, f"{what}{facts_of_release(release)}")
     return live.INCONCLUSIVE if doubtful else DONE
 
 
-def _check_use(options: argparse.Namespace) -> None:
-    live.check_source(options)
-    if options.snapshot and (options.timeout is not None or options.domain is not None):
-        raise UsageError("--timeout and --domain are for the live graph, leave out --snapshot")
-    if options.snapshot and options.output:
-        check_target(options.output, options.snapshot)
-
-
-def _is_nodl(options: argparse.Namespace) -> bool:
+def is_nodl(options: argparse.Namespace) -> bool:
+    """Is the result NoDL, by --form or by the name of the file? Raises UsageError."""
     named = (options.output or "").endswith(SUFFIXES)
-    if named and options.form == NODES:
-        raise UsageError(f"{options.output} is the name of a NoDL file; leave out --form {NODES}")
+    if named and options.form not in (None, NODL):
+        form = f"--form {options.form}"
+        raise UsageError(f"{options.output} is the name of a NoDL file; leave out {form}")
     return named or options.form == NODL
 
 

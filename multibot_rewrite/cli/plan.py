@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from collections.abc import Iterator
 
+from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
+from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.cli import check_launch, fleet
@@ -68,8 +71,13 @@ def _is_alone(options: argparse.Namespace) -> bool:
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
-    write = to_json if (options.output or "").endswith(".json") else to_yaml
-    deliver(options, write(plan).encode())
+    if (options.output or "").endswith(".json"):
+        text = to_json(plan)
+    elif goes_to_file(options):
+        text = f"{schema_line(PLAN_SCHEMA, os.path.dirname(options.output))}\n{to_yaml(plan)}"
+    else:
+        text = to_yaml(plan)
+    deliver(options, text.encode())
 
 
 def _of_launch(options: argparse.Namespace) -> int:

@@ -46,11 +46,24 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
     begun = time.monotonic()
     options = parsed(make_parser(command, prog), words)
     try:
-        code: int = import_module(f"{__package__}.{command.module}").run(options)
+        run = import_module(f"{__package__}.{command.module}").run
+        _catch_interrupts()
+        code: int = run(options)
     except RewriteRefused as error:
         code = _refused(options, error)
     detail(options, f"{time.monotonic() - begun:.1f} s")
     return code
+
+
+def _catch_interrupts() -> None:
+    """From here on something may be half written: Ctrl-C is an exception. Before that it ends a process
+    at once (``entry``), since an import makes other errors of it: lxml's is an ImportError.
+
+    A shell's job in the background has SIG_IGN; a process is ours where ``guarded`` has set SIGTERM.
+    """
+    ours = signal.getsignal(signal.SIGTERM) is signal.default_int_handler
+    if ours and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
@@ -92,15 +105,22 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     return code
 
 
+def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
+    """Ctrl-C inside a callback, as imports have, would be printed and forgotten: it comes again."""
+    if unraisable.exc_type is not KeyboardInterrupt:
+        sys.__unraisablehook__(unraisable)
+        return
+    signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.001)
+
+
 def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     # Closed by the caller: messages go nowhere.
     sys.stderr = sys.stderr or io.StringIO()
     try:
         if own_process:
+            sys.unraisablehook = _not_lost
             signal.signal(signal.SIGTERM, signal.default_int_handler)
-            # As the program began it (``entry``); a shell's job in the background has SIG_IGN.
-            if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
-                signal.signal(signal.SIGINT, signal.default_int_handler)
         return run()
     except ProofError as error:
         fault = "the proof failed, nothing was written; this is a fault of the tool"

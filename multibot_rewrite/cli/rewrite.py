@@ -18,6 +18,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
+    below,
     check_unread,
     check_use,
     deliver,
@@ -43,7 +44,8 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import why
 
         return why.run(options)
-    options.output = None if options.output == STANDARD else options.output
+    output = None if options.output == STANDARD else options.output
+    options.output = below(output, options.input or "")
     options.silent = serves_a_program(options)
     names = robots(options)
     check_use(options, names)
@@ -79,7 +81,8 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
-    file, given = input_name(options), rewriting(options)
+    file = input_name(options)
+    given = {**rewriting(options), "world_systems": options.world_systems}
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
     rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
@@ -101,7 +104,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
-    given = rewriting(options)
+    given = {**rewriting(options), "world_systems": options.world_systems}
     if not options.xacro:
         given["xacro_args"] = None
     return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
@@ -141,7 +144,7 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
-    proved = " ".join(filter(None, ["proved", given(first.findings)]))
+    proved = " ".join(filter(None, ["proved", given(first.findings, first.prepared.job.aside)]))
     end = f"rewritten, not proved: {', '.join(why)}" if why else proved
     end += facts_of_release(first.distro, first.prepared.job.why)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -48,7 +48,8 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     _check_path("--changes", options.changes, "")
     if len(names) > 1 and not options.diff and PLACEHOLDER not in (options.output or ""):
         ending = os.path.splitext(options.input)[1] or ".urdf"
-        raise UsageError(f"several robots need one file each: -o 'out/{{robot}}{ending}'")
+        hint = f"-o out/, or -o 'out/{{robot}}{ending}'"
+        raise UsageError(f"several robots need one file each: {hint}")
     _check_targets(
         options, [target_path(options.output, robot) for robot in names if options.output]
     )
@@ -101,6 +102,14 @@ def check_unread(options: argparse.Namespace, names: Iterable[str], read: Iterab
 
 def _same_file(path: str, other: str) -> bool:
     return os.path.isfile(other) and os.path.samefile(path, other)
+
+
+def below(output: str | None, source: str) -> str | None:
+    """The output where it is a folder: a file of each robot below it, as a build has them."""
+    if not output or not (output.endswith("/") or os.path.isdir(output)):
+        return output
+    name = "robot.urdf" if source == "-" else os.path.basename(source).removesuffix(".xacro")
+    return os.path.join(output, PLACEHOLDER, name)
 
 
 def target_path(output: str, robot: str) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot snapshot``: the live ROS graph as a table, or as JSON for later."""
+"""``multibot snapshot``: the live ROS graph as a table, as JSON for later, or a file of its nodes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli import live
+from multibot_rewrite.cli import learn, live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
@@ -48,11 +48,13 @@ COLUMNS = (
 
 def run(options: argparse.Namespace) -> int:
     """Look, write what is seen and what may be missing; returns the exit code."""
-    _check_use(options)
+    describes = _check_use(options)
     request = Request(
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
     snapshot = live.with_states(options, live.graph(options, request))
+    if describes:
+        return learn.write(options, snapshot)
     if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:
@@ -63,13 +65,16 @@ def run(options: argparse.Namespace) -> int:
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
 
 
-def _check_use(options: argparse.Namespace) -> None:
+def _check_use(options: argparse.Namespace) -> bool:
+    """Are nodes to be described? Raises UsageError."""
     live.check_source(options)
-    if options.snapshot and (options.expect or options.topic):
-        raise UsageError("--expect and --topic are for the live graph, leave out --snapshot")
+    for name in ("expect", "topic", "timeout", "domain"):
+        if options.snapshot and getattr(options, name) not in (None, []):
+            raise UsageError(f"--{name} is for the live graph, leave out --snapshot")
     if options.output not in (None, STANDARD):
         check_folder(options.output)
         check_target(options.output, options.snapshot)
+    return learn.is_asked(options)
 
 
 def _remark(options: argparse.Namespace, caveat: Caveat) -> None:

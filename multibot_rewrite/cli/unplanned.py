@@ -7,6 +7,7 @@ import argparse
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
@@ -107,10 +108,14 @@ def _write(
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         from multibot_rewrite.knowledge.stacks import built_in
-        from multibot_rewrite.live.suggestion import suggestion
+        from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
         files = suggestion(seen, built_in(release_here(options.distro)))
-        paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
+        lines = {it: f"{schema_line(schema, options.suggest)}\n" for it, schema in SCHEMAS.items()}
+        paths = {
+            os.path.join(options.suggest, name): f"{lines.get(name, '')}{text}"
+            for name, text in files.items()
+        }
         write_files(options, [(path, text.encode()) for path, text in paths.items()])
         note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
 

@@ -12,7 +12,7 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.base.naming import DEFAULT_LAYOUT, make_naming
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, KEEP, leaves, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
@@ -22,6 +22,7 @@ from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import Source, is_xacro
+from multibot_rewrite.description.sources.world_systems import put_back
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import read_document
@@ -40,10 +41,10 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, _, _, own, _ = self.job
-        tree = self.job.tree
+        job = self.job
+        naming, urdf, tree = job.naming, job.urdf, job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
-        return pipeline.prepare(data, file, naming, tree, beside, own)
+        return pipeline.prepare(job.data, job.file, naming, tree, beside, job.own)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Prepared) and self.job == other.job
@@ -120,6 +121,7 @@ def rewrite(
     file: str = "",
     trust: bool = False,
     distro: str = "",
+    world_systems: str = KEEP,
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
@@ -133,10 +135,9 @@ def rewrite(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    release = release_told(distro)
-    job = read_job(
-        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
-    )
+    given = (urdf, xacro_args, vocabulary, file, [robot], trust)
+    aside = leaves(world_systems)
+    job = read_job(source, naming, *given, release=release_told(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -159,6 +160,7 @@ def rewrite_all(
     file: str = "",
     trust: bool = False,
     distro: str = "",
+    world_systems: str = KEEP,
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -171,12 +173,13 @@ def rewrite_all(
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
     read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
-    ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS). Raises as
-    ``rewrite`` does, before the first result.
+    ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS);
+    ``world_systems`` is keep or leave: leave makes comments of the systems that the world has to load
+    once, as Sensors. Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro))
+    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro), leaves(world_systems))
     jobs = read_jobs(names, source, naming, *given)
     return rewrite_jobs(jobs, again)
 
@@ -288,6 +291,7 @@ def strip(
     file: str = "",
     trust: bool = False,
     distro: str = "",
+    world_systems: str = KEEP,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -307,4 +311,5 @@ def strip(
         naming, before = of.naming, b"" if beside else of.data
     job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
     beside_urdf = job.urdf_declarations
-    return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
+    made = pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
+    return put_back(made, job.file, job.tree) if leaves(world_systems) else made

@@ -19,6 +19,7 @@ from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
+from multibot_rewrite.fleet.robots.joined_robots import with_joined
 from multibot_rewrite.fleet.robots.own_ports import with_own_ports
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
@@ -62,6 +63,7 @@ def plan_fleet(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
+    file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
     file = with_bridge_namespaces(file)
     with gc_paused():
@@ -73,7 +75,7 @@ def plan_fleet(
         robots = [
             placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
             for it in without_world_systems(with_own_ports(rewrite_robots(file.robots, read)))
-            for own in [said.get(it.spec.name, ())]
+            for own in [(*said.get(it.spec.name, ()), *joined.get(it.spec.name, ()))]
         ]
         file = file._replace(robots=tuple(it.spec for it in robots))
         evidence, maybe = _evidence(file, robots, notes)

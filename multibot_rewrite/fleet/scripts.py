@@ -123,7 +123,8 @@ class LoadedFleet:
         the source for values that rcl rejects."""
         if path not in self._parameters:
             text = self.node_text(path)
-            for source in self.files[path].sources:
+            made = {it for one in self.plan.file.robots for it, _ in one.filled}
+            for source in (it for it in self.files[path].sources if it not in made):
                 check_values(read_yaml(read_file(source), source))
             self._parameters[path] = read_yaml(text.encode(), path)
         return self._parameters[path]

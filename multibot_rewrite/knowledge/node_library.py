@@ -47,7 +47,6 @@ ENTRY_KEYS = (
 )
 ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
 # The schema of such a file, for editors.
-FILE = "nodes.schema.json"
 FILE_KEYS = ("parts", "nodes", "stacks", "guesses", "sent")
 NOTHING: Mapping[str, str] = {}
 NO_PARAMETERS: Mapping[str, NodeParameters] = {}

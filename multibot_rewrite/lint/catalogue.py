@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every rule of every command by its code: for ``multibot explain``, reports and pages."""
+"""Every rule of every command by its code: for ``multibot inspect``, reports and pages."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.knowledge.node_library import NodeLibrary
@@ -32,6 +33,8 @@ FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
     "plan.yaml",
 )
 FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
+# What an editor is told of them.
+SCHEMAS = {FLEET_FILE: editors.FLEET, NODES_FILE: editors.NODES, PLAN_FILE: editors.PLAN}
 HEAD = """\
 # A first fleet file, from what was seen in the running graph. Before you use it:
 # - put your robot's own URDF or xacro in place of robot.urdf, which has only the frames heard

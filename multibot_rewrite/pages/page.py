@@ -11,6 +11,7 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
+from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
@@ -127,7 +128,8 @@ def _count(scene: Scene) -> str:
     """The count that the command prints, and in how many rows it is shown."""
     levels = Counter(finding.level for finding in scene.findings)
     rows = f" in {plural(len(scene.rows), 'row')}" if len(scene.rows) < len(scene.findings) else ""
-    return f"{summarize(levels)}{rows}" if summarize(levels) else "no findings"
+    told = summarize(levels) or plural(levels[NOTE], "note") * bool(levels[NOTE])
+    return f"{told}{rows}" if told else "no findings"
 
 
 def _header(

@@ -11,20 +11,29 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import chain
+from types import MappingProxyType
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import affix
+from multibot_rewrite.base.naming import PREFIX, affix
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.joining.part import PREFIXED, prefixing
+from multibot_rewrite.description.reports.xacro_arguments import (
+    Argument,
+    find_arguments,
+    names_robots,
+)
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.renames import make_renames
+from multibot_rewrite.refactor.launches import with_launches
+from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -53,7 +62,9 @@ _TAKEN = ("arg", "property", "macro")
 class Adopted(NamedTuple):
     """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
     by path, empty for a new one; ``proved`` are the descriptions that take it, ``left`` is what could
-    not be changed, ``unread`` are descriptions that could not be read, with the reason."""
+    not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
+    those that have such an argument, with its name: they stay. ``launches`` are the launch files that
+    are proved to hand it on."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -61,6 +72,8 @@ class Adopted(NamedTuple):
     proved: tuple[str, ...]
     left: tuple[Left, ...]
     unread: Mapping[str, str]
+    already: Mapping[str, str] = MappingProxyType({})
+    launches: tuple[str, ...] = ()
 
 
 @checked
@@ -79,7 +92,11 @@ def adopt(
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     unread = dict(package.unread)
-    found = list(_as_xacros(package.descriptions, tree, how, unread))
+    already = {it.path: name for it in package.descriptions if (name := _has(it, tree, how))}
+    others = [it for it in package.descriptions if it.path not in already]
+    found = list(_as_xacros(others, tree, how, unread))
+    if not found and already:
+        return Adopted("", {}, {}, (), (), unread, already)
     if not found:
         why = next(iter(unread.values()), f"{folder}: there is no description of a robot in it")
         raise InputError(why)
@@ -98,18 +115,43 @@ def adopt(
     for it in found:
         _prove(it, wanted[it.path], after, argument, how)
     after = as_named(after, found)
+    given = package.found.launch
+    launches = with_launches(folder, given, argument, after, TRIED, trust)
+    left += launches.left
+    looked_at = {os.path.realpath(it) for it in (*texts, *given, *launches.after)}
+    left += named_elsewhere(folder, set(_names(found)), looked_at)
     before = {path: data for path, data in as_named(texts, found).items() if path in after}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
-    return Adopted(
-        argument, before, after, tuple(it.path for it in found), tuple(dict.fromkeys(left)), unread
-    )
+    before |= {path: read_file(path) for path in launches.after}
+    after |= launches.after
+    proved, told = tuple(it.path for it in found), tuple(dict.fromkeys(left))
+    return Adopted(argument, before, after, proved, told, unread, already, launches.proved)
 
 
 def _is_meant(it: Description) -> bool:
-    """A URDF, or an SRDF that is a xacro: a plain one is loaded by its name."""
-    return it.inventory.format == "robot" or (
-        it.read is not None and it.inventory.format == "srdf.robot"
-    )
+    """A URDF or an SRDF."""
+    return it.inventory.format in ("robot", "srdf.robot")
+
+
+def _has(it: Description, tree: Tree, how: Expanding) -> str:
+    """The argument of a xacro that puts a prefix before its links already; empty if it has none."""
+    if it.read is None or it.inventory.format != "robot":
+        return ""
+    found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
+    return next((one.name for one in found.arguments if _is_prefix(one)), "")
+
+
+def _is_prefix(it: Argument) -> bool:
+    """Is it before links? ``world`` and some that were forgotten may lack it."""
+    links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
+    return it.is_empty and any(2 * use.names >= use.total for use in links)
+
+
+def _names(found: Iterable[Description]) -> Iterator[str]:
+    """What gets the prefix."""
+    for it in found:
+        for kind in PREFIXED:
+            yield from it.inventory.declared.get(kind, ())
 
 
 def _as_xacros(

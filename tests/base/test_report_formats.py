@@ -300,7 +300,7 @@ def test_rules_by_code_or_name(word: str, found: list[str]) -> None:
         ("odd-name", "did you mean 'MB102'?"), ("MB1019", "did you mean 'MB101'?"),
         ("mb199", "did you mean 'MB1'?"), ("MG21", "did you mean 'MG2'?"),
         ("lost-topc", "did you mean 'lost-topic'?"),
-        ("xyz", "see multibot explain"),
+        ("xyz", "see multibot inspect"),
     ],
 )  # fmt: skip
 def test_a_code_that_no_rule_has(word: str, hint: str) -> None:

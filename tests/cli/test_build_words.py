@@ -1,8 +1,9 @@
-"""What ``build`` and ``explain`` say and refuse, without a fleet."""
+"""What ``build`` and ``inspect CODE`` say and refuse, without a fleet."""
 
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -78,17 +79,23 @@ def test_files_that_are_there_are_known_by_their_hashes(tmp_path: Path) -> None:
 
 
 def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> None:
-    given = options(output=None, codes=["MG101,MB101", "MG101"])
-    assert explain.run(given) == 0
+    given = options(output=None, form="table")
+    assert explain.run(given, ["MG101,MB101", "MG101"]) == 0
     text = capfd.readouterr().out
     assert text.startswith("MG101 ") and text.count("\nMB101 ") == 1 and text.count("Why: ") == 2
-    assert explain.run(options(output=None, codes=[])) == 0
-    lines = capfd.readouterr().out.splitlines()
-    assert any(it.startswith("MG101 error ") for it in lines) and lines == sorted(lines)
-    for word, hint in (("", "see multibot explain"), ("MG1019", "did you mean 'MG101'?")):
-        assert said(explain.run, options(output=None, codes=[word])) == (
+    rows = explain.grid().rows
+    assert any(tuple(it[:2]) == ("MG101", "error") for it in rows) and rows == sorted(rows)
+    for word, hint in (("", "see multibot inspect"), ("MG1019", "did you mean 'MG101'?")):
+        assert said(partial(explain.run, given), [word]) == (
             f"no rule has the code {word!r}, and none begins with it; {hint}"
         )
+
+
+def test_what_is_taken_for_a_code() -> None:
+    """Plugins and elements of the vocabulary are not: no name of it is a letter behind an M."""
+    assert all(map(explain.are_codes, (["MG101"], ["mb2"], ["MB"], ["MB20X"], ["x,MB202"])))
+    assert not any(map(explain.are_codes, ([], [""], ["M"], ["mimic"], ["libMB202.so"])))
+    assert explain.is_name("undeclared-link") and not explain.is_name("camera")
 
 
 def test_the_file_of_a_plan() -> None:

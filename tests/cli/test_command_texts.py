@@ -120,18 +120,6 @@ def test_a_graph_with_nothing_is_its_headline() -> None:
     )
 
 
-def test_what_snapshot_does_not_take_together() -> None:
-    usual = {"snapshot": [], "zenoh": None, "expect": [], "topic": [], "output": None}
-    snapshot._check_use(options(**usual))
-    snapshot._check_use(options(**{**usual, "expect": ["/a"], "topic": ["/b"]}))
-    for more in ("expect", "topic"):
-        with pytest.raises(UsageError) as caught:
-            snapshot._check_use(options(**{**usual, "snapshot": ["g"], more: ["/a"]}))
-        assert (
-            str(caught.value) == "--expect and --topic are for the live graph, leave out --snapshot"
-        )
-
-
 # ---------------------------------------------------------------- multibot inspect
 
 
@@ -181,7 +169,9 @@ SURVEY = Survey(
         MentionPlace("robot/c", False): TALLY._replace(times=2),
     },
 )  # fmt: skip
-REPORT = coverage.CoverageReport(SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy")
+REPORT = coverage.CoverageReport(
+    SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy", []
+)
 
 
 def test_how_much_is_known() -> None:
@@ -227,6 +217,7 @@ def test_the_same_as_json() -> None:
                 {"path": "robot/b", **place, "count": 1, "value": "base  link"},
             ],
         },
+        "spawners": [],
     }  # fmt: skip
     assert list(made["claims"]) == ["frame", "joint", "link"]
 
@@ -246,7 +237,7 @@ def test_a_word_is_a_file_or_a_name(word: str, it_is: bool) -> None:
     assert inspect._is_path(word) is it_is
 
 
-# ---------------------------------------------------------------- multibot learn
+# ---------------------------------------------------------------- described nodes
 
 
 def learned(seen: str, name: str, *remarks: str) -> LearnedNode:

@@ -121,7 +121,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("inspect", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
         (("inspect", "--vocabulary", "no"), "no: cannot be read: No such file"),
         (("inspect", "no"), "'no' is no plugin, class, element, sensor type or block"),
-        (("explain", "MX1"), "multibot: no rule has the code 'MX1', and none begins with it; "),
+        (("inspect", "MX1"), "multibot: no rule has the code 'MX1', and none begins with it; "),
         (("build", ROVER, "-o", "x"), "rover.urdf: a description; use multibot init, which makes"),
         (
             ("check", ROVER),

@@ -159,7 +159,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("multibot build --color", "argument --color: expected one argument"),
         ("urdf-postfix a b --select MB9999", "did you mean 'MB9'?"),
         ("multibot plan a b --ignore undeclared-link", "did you mean 'MB202'?"),
-        ("multibot explain MB20X", "did you mean 'MB20'?"),
+        ("multibot inspect MB20X", "did you mean 'MB20'?"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
         ("urdf-postfix a --separator link=_ frame=_", "write --separator link=_,frame=_"),
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
@@ -205,7 +205,7 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         ("multibot", "plan", "--form=table", ROVER, "r1"),
         ("multibot", "inspect", ROVER),
         ("multibot", "inspect", "--suggest", ROVER),
-        ("multibot", "explain", "MB202"),
+        ("multibot", "inspect", "MB202"),
     ],
     ids=" ".join,
 )
@@ -322,15 +322,17 @@ def test_every_code_is_explained_by_code_name_and_beginning(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     for rule in rules().values():
-        code, out, _ = said(capsys, "multibot", "explain", rule.code)
+        code, out, _ = said(capsys, "multibot", "inspect", rule.code)
         assert (code, out.startswith(f"{rule.code} {rule.name} (")) == (0, True)
         assert all(text in out for text in (rule.what, rule.why, rule.fix))
-    one = said(capsys, "multibot", "explain", "MB202")
-    assert said(capsys, "multibot", "explain", "undeclared-link") == one
-    group = said(capsys, "multibot", "explain", "MB20")[1]
+    one = said(capsys, "multibot", "inspect", "MB202")
+    assert said(capsys, "multibot", "inspect", "undeclared-link") == one
+    group = said(capsys, "multibot", "inspect", "MB20")[1]
     assert group.count("\nWhy: ") == sum(code.startswith("MB20") for code in rules()) > 2
-    listed = said(capsys, "multibot", "explain")[1].splitlines()
+    listed = said(capsys, "multibot", "inspect")[1].partition("\ncode  ")[2].splitlines()[1:]
     assert [line.split()[0] for line in listed] == list(rules())
+    shown = json.loads(said(capsys, "multibot", "inspect", "mb202", "--form", "json")[1])
+    assert [it["code"] for it in shown["rules"]] == ["MB202"]
 
 
 def python(code: str) -> str:
@@ -363,6 +365,34 @@ def test_help_imports_nothing_heavy(name: str) -> None:
     heavy = {"lxml", "yaml", "rich", "json", "xacro", "multibot_rewrite.description.library"}
     rooms = {"lint", "rules", "spelling", "fleet", "companions", "description", "producers"}
     assert there & (heavy | {f"multibot_rewrite.{room}" for room in rooms}) == set()
+
+
+def test_nothing_is_imported_before_ctrl_c_is_quiet() -> None:
+    """Ctrl-C while a module is imported is a traceback, until the program's first line."""
+    code = (
+        "import __future__, sys\nbefore = {*sys.modules}\nimport multibot_rewrite.cli.entry\n"
+        "print(*sorted({*sys.modules} - before))"
+    )
+    own = {f"multibot_rewrite{it}" for it in ("", ".version", ".cli", ".cli.entry")}
+    assert {*python(code).split()} - {*sys.builtin_module_names} == own
+
+
+@pytest.mark.slow
+def test_ctrl_c_that_python_would_lose_ends_the_command() -> None:
+    """In a callback of a weak reference an exception is printed and forgotten."""
+    code = (
+        "import signal, time, weakref\nfrom multibot_rewrite.cli.process import guarded\n"
+        "def run():\n"
+        "    gone = weakref.ref(type('A', (), {})(), lambda _: signal.raise_signal(signal.SIGINT))\n"
+        "    time.sleep(20)\n"
+        "    return 0\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "guarded('multibot', run, True)"
+    )
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=15)
+    told = "multibot: interrupted; no half-written file is left\n"
+    assert (done.returncode, done.stderr) == (130, told)
 
 
 # ---------------------------------------------------------------- counts and colour

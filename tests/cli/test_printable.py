@@ -110,7 +110,7 @@ LINES = (
     *(["inspect", f"{EVIL}.xacro"], ["inspect", f"{EVIL}.xacro", f"a:={EVIL}"]),
     *(["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
     *(
-        ["explain", EVIL],
+        ["inspect", f"MB,{EVIL}"],
         ["help", EVIL],
         [EVIL],
         ["plan", "--form=table", FILE, "robot1", "--stack", EVIL],
@@ -125,7 +125,10 @@ LINES = (
     *(["check", "plan.yaml", "--snapshot", "graph.json", "--format", it] for it in ("text",)),
     *(["check", f"{EVIL}.plan", "--snapshot", "graph.json", "--verbose"],),
     *(["check", "plan.yaml", "--snapshot", f"{EVIL}.json"],),
-    *(["check", f"{EVIL}.yaml", "--snapshot", "graph.json"], ["learn", "--snapshot", "graph.json"]),
+    *(
+        ["check", f"{EVIL}.yaml", "--snapshot", "graph.json"],
+        ["snapshot", "--form", "nodes", "--snapshot", "graph.json"],
+    ),
     *(["build", "fleet.yaml", "-o", f"{EVIL}out"], ["build", f"{EVIL}.yaml", "-o", "out"]),
     *(["check", "--snapshot", "graph.json"], ["check", "--snapshot", f"{EVIL}.json"]),
     *(["check", "--snapshot", "graph.json", "--suggest", f"{EVIL}out"],),
@@ -160,7 +163,7 @@ def test_a_name_does_not_steer_the_terminal(
     out, err = capfdbinary.readouterr()
     text = err.decode("utf-8", "surrogateescape")
     # What is made of a description holds its names as they are, for programs.
-    if not (out.startswith(b"<robot") or "--suggest" in words or words[0] == "learn"):
+    if not (out.startswith(b"<robot") or "--suggest" in words or "nodes" in words):
         text += out.decode("utf-8", "surrogateescape")
     assert text or out
     assert STEERING.findall(text) == []

@@ -31,7 +31,7 @@ def test_the_files_are_what_the_options_make() -> None:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (["multibot", "lea"], "learn"),
+        (["multibot", "sna"], "snapshot"),
         (["multibot", "plan", "--layo"], "--layout"),
         (["multibot", "plan", "--layout", "frames"], "frames-per-robot"),
         (["multibot", "check", "--format", "sa"], "sarif"),

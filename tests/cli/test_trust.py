@@ -41,7 +41,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }
 # Those that read no description.
-OTHERS = {"explain", "learn", "snapshot"}
+OTHERS = {"snapshot"}
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import pytest
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.cli import check, learn, live, output, pictures, usage, walk, why
+from multibot_rewrite.cli import check, learn, live, output, pictures, snapshot, usage, walk, why
 from multibot_rewrite.cli.report import counted_findings
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.system.records import Parameter, System
@@ -234,22 +234,28 @@ def test_only_notes_are_called_notes(levels: tuple[str, ...], text: str) -> None
 def test_the_name_or_the_form_says_that_it_is_nodl(
     target: str | None, form: str | None, nodl: bool
 ) -> None:
-    assert learn._is_nodl(options(output=target, form=form)) is nodl
+    assert learn.is_nodl(options(output=target, form=form)) is nodl
 
 
-def test_what_learn_does_not_take_together() -> None:
-    usual = {**USUAL, "timeout": None, "domain": None, "output": None}
-    learn._check_use(options(**usual))
-    learn._check_use(options(**{**usual, "timeout": 0.0}))
-    for more in ({"timeout": 0.0}, {"domain": 0}):
-        given = options(**{**usual, "snapshot": ["g.json"], **more})
-        assert said(learn._check_use, given) == (
-            "--timeout and --domain are for the live graph, leave out --snapshot"
-        )
+def test_what_a_snapshot_does_not_take_together() -> None:
+    names = {"node": [], "namespace": None, "stack": None, "distro": None}
+    usual = {**USUAL, **names, "timeout": None, "domain": None, "output": None, "form": "nodes"}
+    usual |= {"expect": [], "topic": []}
+    assert snapshot._check_use(options(**usual))
+    assert snapshot._check_use(options(**{**usual, "expect": ["/a"], "timeout": 0.0}))
+    for name, given in (("timeout", 0.0), ("domain", 0), ("expect", ["/a"]), ("topic", ["/a"])):
+        saved = options(**{**usual, "snapshot": ["g.json"], name: given})
+        hint = f"--{name} is for the live graph, leave out --snapshot"
+        assert said(snapshot._check_use, saved) == hint
     same = options(**{**usual, "snapshot": ["g.json"], "output": "./g.json"})
-    assert said(learn._check_use, same).startswith("./g.json is a file that is read")
-    learn._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
-    assert said(learn._is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
+    assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")
+    assert snapshot._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
+    assert not snapshot._check_use(options(**{**usual, "form": "rosgraph"}))
+    for name, given in (("node", ["/a"]), ("namespace", "/a"), ("stack", "s"), ("distro", "jazzy")):
+        lonely = options(**{**usual, "form": None, name: given})
+        hint = f"--{name} is for a description of nodes: add --form nodes"
+        assert said(snapshot._check_use, lonely) == hint
+    assert said(learn.is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
         "a.nodl.yaml is the name of a NoDL file; leave out --form nodes"
     )
 

@@ -68,9 +68,12 @@ REWRITE = {
          "--output {rob}: unknown placeholder {rob}, only {robot} is filled in"),
         ({"changes": "{robot}"}, "a",
          "--changes {robot}: unknown placeholder {robot}, one file serves all robots"),
-        ({}, "ab", "several robots need one file each: -o 'out/{robot}.urdf'"),
-        ({"input": "r.sdf"}, "ab", "several robots need one file each: -o 'out/{robot}.sdf'"),
-        ({"input": "-"}, "ab", "several robots need one file each: -o 'out/{robot}.urdf'"),
+        ({}, "ab",
+         "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
+        ({"input": "r.sdf"}, "ab",
+         "several robots need one file each: -o out/, or -o 'out/{robot}.sdf'"),
+        ({"input": "-"}, "ab",
+         "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
         ({"output": "x", "changes": "./x"}, "a", "./x: the result and --changes need a file each"),
     ],
 )  # fmt: skip
@@ -307,3 +310,11 @@ def test_a_suggestion_replaces_nothing(tmp_path: Path) -> None:
             f"{tmp_path / name} is there already; name another folder with --suggest"
         )
         (tmp_path / name).unlink()
+
+
+def test_a_folder_is_a_file_of_each_robot_below_it(tmp_path: Path) -> None:
+    """As a build writes them."""
+    assert rewrite_use.below("out/", "a/rover.urdf.xacro") == "out/{robot}/rover.urdf"
+    assert rewrite_use.below(str(tmp_path), "-") == f"{tmp_path}/{{robot}}/robot.urdf"
+    assert rewrite_use.below("out/{robot}.urdf", "a.urdf") == "out/{robot}.urdf"
+    assert rewrite_use.below(None, "a.urdf") is None

@@ -11,8 +11,9 @@ import pytest
 import yaml
 from paths import ROOT
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.knowledge.node_library import FILE, extend
+from multibot_rewrite.knowledge.node_library import extend
 from multibot_rewrite.knowledge.schema import schema
 from multibot_rewrite.knowledge.stacks import built_in
 
@@ -27,8 +28,8 @@ def wrong(text: str) -> list[str]:
 
 
 def test_the_file_is_what_the_reader_takes() -> None:
-    text = PACKAGE.joinpath(FILE).read_text()
-    command = "python -m multibot_rewrite.knowledge.schema > multibot_rewrite/knowledge/" + FILE
+    text = (files("multibot_rewrite") / editors.NODES).read_text()
+    command = "python -m multibot_rewrite.knowledge.schema > multibot_rewrite/" + editors.NODES
     assert json.loads(text) == schema(), command
 
 

@@ -1,4 +1,4 @@
-"""``multibot learn`` from real nodes: started again with the rules of its table, nothing leaks."""
+"""``multibot snapshot --form nodes`` of real nodes: with the rules of its table nothing leaks."""
 
 from __future__ import annotations
 
@@ -75,10 +75,29 @@ def files(
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
     shot, stack = str(folder / "graph.json"), ["--stack", "mine", "-o"]
     with live_fleet.running(domain(0), code, below, **tf2):
-        words = ("learn", "--node", "/driver,/pilot", *stack, str(found["root"]), *PATIENTLY)
+        words = (
+            "snapshot",
+            "--form",
+            "nodes",
+            "--node",
+            "/driver,/pilot",
+            *stack,
+            str(found["root"]),
+            *PATIENTLY,
+        )
         live = multibot(0, *words, **tf2)
         seen = multibot(0, "snapshot", "-o", shot, *PATIENTLY, **tf2)
-    words = ("learn", "--snapshot", shot, "--namespace", "/old", *stack, str(found["below"]))
+    words = (
+        "snapshot",
+        "--form",
+        "nodes",
+        "--snapshot",
+        shot,
+        "--namespace",
+        "/old",
+        *stack,
+        str(found["below"]),
+    )
     later = multibot(0, *words)
     for done in (live, seen, later):
         assert done.returncode == 0, done.stderr
@@ -162,12 +181,12 @@ def full(node: NodeTable) -> str:
 
 def test_where_nothing_runs_nothing_is_written(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
-    done = multibot(2, "learn", "--timeout", "1", "-o", str(file))
+    done = multibot(2, "snapshot", "--form", "nodes", "--timeout", "1", "-o", str(file))
     assert (done.returncode, file.exists()) == (2, False)
     assert "incomplete: no node was seen" in done.stderr
     assert "there is no node to learn in this graph" in done.stderr
 
 
 def test_a_wrong_rmw_is_one_line() -> None:
-    done = multibot(2, "learn", RMW_IMPLEMENTATION="rmw_nonsense_cpp")
+    done = multibot(2, "snapshot", "--form", "nodes", RMW_IMPLEMENTATION="rmw_nonsense_cpp")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (4, "", 1)

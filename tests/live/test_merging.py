@@ -177,7 +177,10 @@ def test_the_table_says_how_many_machines_were_seen(
         (["snapshot", "--zenoh", "h:7447"], "write PROTOCOL/HOST:PORT"),
         (["snapshot", "--zenoh", ""], "write PROTOCOL/HOST:PORT"),
         (["snapshot", "--zenoh", "tcp/h"], "write PROTOCOL/HOST:PORT"),
-        (["learn", "--snapshot", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
+        (
+            ["snapshot", "--form", "nodes", "--snapshot", "a.json", "--zenoh", "tcp/h:1"],
+            "two sources",
+        ),
     ],
 )
 def test_wrong_use_is_one_line(

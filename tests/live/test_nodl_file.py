@@ -150,7 +150,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
 ) -> None:
     folder, plan = str(tmp_path / "nodl"), str(tmp_path / "plan.yaml")
     learned = ("--snapshot", HEALTHY, "--namespace", "/robot1", "--form", "nodl")
-    assert main(["learn", *learned, "-o", folder]) == 0
+    assert main(["snapshot", *learned, "-o", folder]) == 0
     assert (tmp_path / "nodl/local_costmap/local_costmap.nodl.yaml").is_file()
     stacks = "pilot,local_costmap/local_costmap"
     made = ("--layout", "frames-per-robot", "--nodes", folder, "--stack", stacks, "-o", plan)
@@ -169,7 +169,7 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     seen, folder, plan = (str(tmp_path / it) for it in ("graph.json", "nodl", "plan.yaml"))
     Path(seen).write_bytes(to_json(graph))
     given = ("--snapshot", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
-    assert main(["learn", *given]) == 0
+    assert main(["snapshot", *given]) == 0
     robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2")
     assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
     capsys.readouterr()
@@ -189,7 +189,7 @@ def test_what_is_learned_of_nav2_is_valid_by_the_published_schema() -> None:
         assert [it.message for it in validator.iter_errors(yaml.safe_load(text))] == []
 
 
-PILOT = ("learn", "--snapshot", HEALTHY, "--namespace", "/robot1", "--node", "/robot1/pilot")
+PILOT = ("snapshot", "--snapshot", HEALTHY, "--namespace", "/robot1", "--node", "/robot1/pilot")
 
 
 def test_the_ending_of_the_file_tells_the_form(
@@ -204,7 +204,7 @@ def test_the_ending_of_the_file_tells_the_form(
 
 
 def test_a_file_is_for_one_node(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    many = ("learn", "--snapshot", HEALTHY, "--namespace", "/robot1")
+    many = ("snapshot", "--snapshot", HEALTHY, "--namespace", "/robot1")
     assert main([*many, "-o", str(tmp_path / "all.nodl.yaml")]) == 2
     assert "a NoDL file is for one node, here are 8" in capsys.readouterr().err
     assert main([*PILOT, "--form", "nodes", "-o", str(tmp_path / "a.nodl.yaml")]) == 2

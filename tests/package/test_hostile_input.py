@@ -130,11 +130,16 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
     ),
     "deep-snapshot": (
         "[" * 100_000,
-        (MULTIBOT, "learn", "--snapshot", "in.json"),
+        (MULTIBOT, "snapshot", "--form", "nodes", "--snapshot", "in.json"),
         2,
         "nested deeper",
     ),
-    "large-snapshot": (b"", (MULTIBOT, "learn", "--snapshot", "/dev/zero"), 2, "over the limit of"),
+    "large-snapshot": (
+        b"",
+        (MULTIBOT, "snapshot", "--form", "nodes", "--snapshot", "/dev/zero"),
+        2,
+        "over the limit of",
+    ),
     "endless-vocabulary": (
         b"",
         (POSTFIX, "good.urdf", "r1", "--vocabulary", "/dev/zero"),

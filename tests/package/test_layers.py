@@ -119,7 +119,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
         "fleet/scripts.py",
         "fleet/file/system_sources.py",
         "refactor/adopt.py",
-        "refactor/join.py",
+        "companions/join.py",
         "refactor/rename.py",
         "description/joining/part.py",
         "description/library.py",
@@ -178,9 +178,8 @@ def test_all_names_what_is_there() -> None:
 @pytest.mark.slow
 def test_all_is_complete() -> None:
     offered = {name.rpartition(".")[2] for name in imports_of("__init__.py")}
-    assert offered - {"annotations", "import_module", "TYPE_CHECKING", "__version__"} == set(
-        multibot_rewrite.__all__
-    )
+    others = {"annotations", "import_module", "TYPE_CHECKING", "__version__"}
+    assert offered - others == set(multibot_rewrite.__all__)
 
 
 def test_every_error_is_public_and_one_family() -> None:

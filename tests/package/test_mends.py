@@ -1,6 +1,6 @@
 """A finding's sentence leads to its mend: provoked in a real file, mended by what it says, it is gone.
 
-The rule by which these twenty were chosen: every 19th code of ``multibot explain``, from the tenth on.
+The rule by which these twenty were chosen: every 19th code of ``multibot inspect``, from the tenth on.
 """
 
 from __future__ import annotations

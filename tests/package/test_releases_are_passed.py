@@ -17,7 +17,7 @@ PUBLIC = (
     "fleet/file/system_sources.py",
     "fleet/scripts.py",
     "refactor/adopt.py",
-    "refactor/join.py",
+    "companions/join.py",
     "refactor/rename.py",
     "base/releases.py",
 )

@@ -267,7 +267,8 @@ def test_the_head_of_the_page() -> None:
 )  # fmt: skip
 def test_the_colour_of_the_head(verdict: Verdict, level: str, look: str) -> None:
     made = scene("r1", rows=(row("r1", level=level),), outcome=Outcome(verdict, "so"))
-    assert head(made).startswith(f'<header class="{look}">')
+    found = head(made)
+    assert found.startswith(f'<header class="{look}">') and f"<li>1 {level}</li>" in found
 
 
 def test_a_graph_without_a_plan_has_a_look_not_a_layout() -> None:

@@ -17,7 +17,7 @@ HEAD = """\
 # Findings
 
 Every code that a command reports, with what it means, why it matters, how it is mended, and
-examples; `multibot explain CODE` prints one. An *error* stops the job, or cannot work; a *warning*
+examples; `multibot inspect CODE` prints one. An *error* stops the job, or cannot work; a *warning*
 is very probably wrong and stops it with `--fail-on warning`; a *note* never does. Examples are
 tested: the bad one has the finding, the good one does not. A fragment of XML belongs inside `<robot
 name="r">`.

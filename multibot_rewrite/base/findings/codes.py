@@ -9,6 +9,9 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import nearest
 
+# What explains a code, and lists all without one.
+ASKED = "multibot inspect"
+
 
 def known_beginnings(rules: Mapping[str, Rule]) -> set[str]:
     """All that ``--select`` takes: codes, and at least two letters that codes begin with."""
@@ -21,10 +24,10 @@ def find_rules(word: str, rules: Mapping[str, Rule]) -> list[Rule]:
     return by_name or [it for it in rules.values() if it.code.startswith(word.upper())]
 
 
-def no_rule(word: str, rules: Mapping[str, Rule], listing: str) -> str:
-    """The message that no rule has that code; ``listing`` is the command that lists all."""
+def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
+    """The message that no rule has that code."""
     near = _near(word, rules)
-    hint = f"did you mean {near!r}?" if near else f"see {listing}"
+    hint = f"did you mean {near!r}?" if near else f"see {ASKED}"
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
 
 
@@ -33,7 +36,7 @@ def check_codes(codes: Iterable[str], where: str, rules: Mapping[str, Rule]) -> 
     known = known_beginnings(rules)
     for code in codes:
         if code not in known:
-            raise UsageError(f"{where}: {no_rule(code, rules, 'multibot explain')}")
+            raise UsageError(f"{where}: {no_rule(code, rules)}")
 
 
 def _near(word: str, rules: Mapping[str, Rule]) -> str:

@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import ADOPT, JOIN, LINT, POSTFIX, RENAME
 from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, VIEW
-from multibot_rewrite.cli.declared.graph import CHECK, CHECK_LAUNCH, LEARN, SNAPSHOT
-from multibot_rewrite.cli.declared.knowledge import EXPLAIN, INSPECT
+from multibot_rewrite.cli.declared.graph import CHECK, CHECK_LAUNCH, SNAPSHOT
+from multibot_rewrite.cli.declared.knowledge import INSPECT
 from multibot_rewrite.cli.options import Command
 
 PROGRAMS = (POSTFIX, LINT)
@@ -21,11 +21,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             BUILD,
             CHECK,
             CHECK_LAUNCH,
-            EXPLAIN,
             INIT,
             INSPECT,
             JOIN,
-            LEARN,
             PLAN,
             REHEARSE,
             RENAME,

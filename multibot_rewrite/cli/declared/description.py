@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.naming import KEEP, WORLD_SYSTEMS
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
@@ -80,8 +81,19 @@ POSTFIX = Command(
         OptionGroup(
             "output",
             (
-                output("write the result there; {robot} stands for the robot's name"),
+                output(
+                    "write the result there; {robot} stands for the robot's name, a folder for"
+                    " FOLDER/{robot}/NAME"
+                ),
                 IN_PLACE,
+                choice(
+                    "--world-systems",
+                    "HOW",
+                    WORLD_SYSTEMS,
+                    "systems of the whole world, as Sensors: keep (default), or leave them to the"
+                    " world, which has to load each once",
+                    default=KEEP,
+                ),
                 switch("--diff", about="print a unified diff instead of the result"),
                 path_option("--changes", "write every change as JSON"),
             ),
@@ -126,7 +138,7 @@ LINT = Command(
         Example("urdf-lint rover.urdf --robots robot1,robot2 --layout frames-per-robot"),
         Example("urdf-lint urdf/ --format sarif -o out/lint.sarif"),
         Example("urdf-lint rover.urdf --fix --diff", "show what --fix would change"),
-        Example("multibot explain MB202", "what a finding is, why, the fix"),
+        Example("multibot inspect MB202", "what a finding is, why, the fix"),
     ),
     (
         OptionGroup(
@@ -306,6 +318,29 @@ JOIN = Command(
             (
                 rare(each("--srdf", "FILE", "the SRDF of the part")),
                 rare(each("--controllers", "A,B", "parameter files of its controllers")),
+                rare(
+                    each("--moveit", "A,B", "MoveIt's files for it: kinematics, joint limits ...")
+                ),
+            ),
+        ),
+        OptionGroup(
+            "the whole",
+            (
+                rare(
+                    value(
+                        "--samples",
+                        metavar="COUNT",
+                        about="disable collisions of links of two parts that never or always touch in"
+                        " so many random poses, by pinocchio; MoveIt's Setup Assistant takes 10000",
+                        type=values.count,
+                    )
+                ),
+                rare(
+                    switch(
+                        "--one-system",
+                        about="put joints of parts with the same hardware into one ros2_control",
+                    )
+                ),
             ),
         ),
         OptionGroup(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The commands about the live graph: check, learn, snapshot."""
+"""The commands about a running system: check, check-launch, snapshot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from multibot_rewrite.cli.declared.shared import (
     LIVE,
     LIVE_CODES,
     PICTURES,
-    RESULT_OUTPUT,
     ROOTS,
     SAVED,
     SOURCE,
@@ -141,62 +140,6 @@ CHECK_LAUNCH = Command(
     fail_on=ERROR,
     findings_first=True,
 )
-LEARN = Command(
-    "learn",
-    "learn",
-    "%(prog)s [options]",
-    "Describe nodes that run now, in a file for multibot plan.",
-    (
-        Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
-        Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
-        Example("multibot learn --node /my_driver -o my_driver.nodl.yaml", "as NoDL"),
-        Example("multibot learn --snapshot graph.json --stack mine", "needs no ROS"),
-        Example("multibot plan rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
-    ),
-    (
-        OptionGroup(
-            "input",
-            (
-                several(
-                    "--node",
-                    "NODE",
-                    "full names of nodes; default: all but tools",
-                    [],
-                    values.full_names,
-                ),
-                value(
-                    "--namespace",
-                    metavar="NS",
-                    about="the robot's namespace, which its nodes are in",
-                    type=values.full_name,
-                ),
-                DISTRO,
-            ),
-        ),
-        output_group(
-            RESULT_OUTPUT,
-            value(
-                "--stack",
-                metavar="NAME",
-                about="name of the new stack; default: learned",
-                type=values.word,
-                default="learned",
-            ),
-            choice(
-                "--form",
-                "FORM",
-                ("nodes", "nodl"),
-                "a file of nodes and stacks, or NoDL interface files: nodes, nodl; default: nodl if -o"
-                " ends in .nodl.yaml, else nodes; with nodl, -o may be a folder for several nodes",
-            ),
-        ),
-        SOURCE,
-        GENERAL,
-    ),
-    "0 done; 2 wrong use, unreadable input, or a node that is not there or there twice; 3 the view"
-    " may be incomplete, what is seen is written all the same; 4 rclpy or its RMW, or zenoh, is"
-    " missing or does not start",
-)
 SNAPSHOT = Command(
     "snapshot",
     "snapshot",
@@ -213,6 +156,9 @@ SNAPSHOT = Command(
             "multibot snapshot --snapshot robot1.json --snapshot robot2.json -o all.json",
             "from two machines",
         ),
+        Example("multibot snapshot --form nodes --node /my_driver --stack mine -o mine.yaml"),
+        Example("multibot plan rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
+        Example("multibot snapshot --node /my_driver -o my_driver.nodl.yaml", "as NoDL"),
     ),
     (
         output_group(
@@ -220,9 +166,36 @@ SNAPSHOT = Command(
             choice(
                 "--form",
                 "FORM",
-                ("json", "rosgraph"),
-                "the snapshot as JSON, or as a message of the type rosgraph_msgs/Graph (YAML, as ros2"
-                " topic echo prints it): json, rosgraph",
+                ("json", "rosgraph", "nodes", "nodl"),
+                "json: the snapshot; rosgraph: a message of the type rosgraph_msgs/Graph (YAML, as ros2"
+                " topic echo prints it); nodes: a file of nodes and stacks for multibot plan --nodes;"
+                " nodl: NoDL interface files, with -o a folder for several nodes. Default: nodl if -o"
+                " ends in .nodl.yaml, else json",
+            ),
+        ),
+        OptionGroup(
+            "with --form nodes or nodl",
+            (
+                several(
+                    "--node",
+                    "NODE",
+                    "full names of nodes; default: all but tools",
+                    [],
+                    values.full_names,
+                ),
+                value(
+                    "--namespace",
+                    metavar="NS",
+                    about="the robot's namespace, which its nodes are in",
+                    type=values.full_name,
+                ),
+                value(
+                    "--stack",
+                    metavar="NAME",
+                    about="name of the new stack; default: learned",
+                    type=values.word,
+                ),
+                DISTRO,
             ),
         ),
         SOURCE._replace(
@@ -242,7 +215,8 @@ SNAPSHOT = Command(
         ),
         GENERAL,
     ),
-    "0 done; 2 wrong use; 3 something may be missing in the view, which is written all the same;"
+    "0 done; 2 wrong use, unreadable input, or a node of --node that is not there or there twice; 3"
+    " something may be missing in the view, which is written all the same;"
     " 4 rclpy or its RMW, or zenoh, is missing or does not start",
     more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The commands about what is known: explain, inspect."""
+"""The command about what is known: inspect."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ REPORT_FORMS = ("table", "json")
 INSPECT = Command(
     "inspect",
     "inspect",
-    "%(prog)s [NAME | PATH...] [NAME:=VALUE...] [options]",
-    "Show what is known of plugins, descriptions, xacro arguments.",
+    "%(prog)s [CODE... | NAME | PATH...] [NAME:=VALUE...] [options]",
+    "Explain a finding's code, a plugin, a xacro's arguments.",
     (
+        Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
         Example("multibot inspect urdf/", "what is known of all .urdf and .sdf, and what is not"),
         Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
@@ -35,8 +36,9 @@ INSPECT = Command(
                 argument(
                     "words",
                     "WORD",
-                    "a library, class, element or sensor type; or files and folders, which are"
-                    " searched for *.urdf and *.sdf; NAME:=VALUE is for xacro",
+                    "a finding's code, how it begins, or its name; a library, class, element or"
+                    " sensor type; or files and folders, which are searched for *.urdf and *.sdf;"
+                    " NAME:=VALUE is for xacro",
                     "*",
                 ),
                 path_option(
@@ -54,22 +56,4 @@ INSPECT = Command(
     ),
     "0 done; 2 wrong use, an unknown name, or nothing could be read",
     more="A xacro is expanded once for each argument, with another word as its value.",
-)
-EXPLAIN = Command(
-    "explain",
-    "explain",
-    "%(prog)s CODE... [options]",
-    "Explain a finding's code: what it is, why, how to fix it.",
-    (
-        Example("multibot explain MB202"),
-        Example("multibot explain undeclared-link", "by its name"),
-        Example("multibot explain MB2", "every code that begins so"),
-        Example("multibot explain", "list all"),
-    ),
-    (
-        OptionGroup("input", (argument("codes", "CODE", "codes, how they begin, or names", "*"),)),
-        output_group(RESULT_OUTPUT),
-        GENERAL,
-    ),
-    "0 done; 2 an unknown code",
 )

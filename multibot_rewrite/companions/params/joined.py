@@ -10,6 +10,7 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
@@ -102,10 +103,11 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFiles:
                 sections[key] = one
                 continue
             first = sections[key]
-            for what in _added(first.body, one.body, f"{first.path}."):
+            for what in added(first.body, one.body, f"{first.path}."):
                 notes.append(f"{it.file}: {what}")
     root = yaml.MappingNode("tag:yaml.org,2002:map", [_written(it) for it in sections.values()])
-    names = ", ".join(it.file for it in files)
+    # The same from every working directory.
+    names = ", ".join(dict.fromkeys(os.path.basename(it.file) for it in files))
     text = f"# joined by multibot from {names}\n{yaml.serialize(root, width=200)}"
     return JoinedFiles(text.encode(), tuple(notes))
 
@@ -128,7 +130,7 @@ def _written(it: RawSection) -> tuple[yaml.Node, yaml.Node]:
     return yaml.ScalarNode("tag:yaml.org,2002:str", key), body
 
 
-def _added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
+def added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
     """Add parameters, lists behind each other; tells those with two values."""
     known: Mapping[str, yaml.Node] = {key.value: value for key, value in pairs(into)}
     for key, value in pairs(more):
@@ -137,7 +139,7 @@ def _added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[
         if first is None:
             into.value.append((key, value))
         elif isinstance(first, yaml.MappingNode) and isinstance(value, yaml.MappingNode):
-            yield from _added(first, value, f"{name}.")
+            yield from added(first, value, f"{name}.")
         elif isinstance(first, yaml.SequenceNode) and isinstance(value, yaml.SequenceNode):
             there = {_plain(it) for it in first.value}
             first.value += [it for it in value.value if _plain(it) not in there]

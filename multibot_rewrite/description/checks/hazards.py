@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
+
+from lxml.etree import _Element
 
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, POSTFIX, PREFIX, TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import split_remap
@@ -31,8 +33,9 @@ DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """All of them; they do not depend on the robots' names."""
-    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide, one_description):
+    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide):
         yield from of_naming(inventory, renames.naming)
+    yield from one_description(inventory, renames.naming, _moved(inventory, renames))
     yield from world_systems(inventory)
     for of_names in (hardwired, outside_frames, reordered):
         yield from of_names(inventory, renames)
@@ -115,15 +118,23 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
             yield about(claim, "MB426", message, hint)
 
 
-def one_description(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+def one_description(
+    inventory: Inventory, naming: Naming, moved: Container[_Element] = ()
+) -> Iterator[Problem]:
     """Absolute names of descriptions and of the nodes that hold them, where these keep their names."""
     plugins = (it.element for it in inventory.hosts if it.element.tag == "plugin")
     for it in (child for plugin in plugins for child in plugin.iterchildren(*DESCRIPTIONS)):
         name = text_of(it)
         renamed = it.tag == DESCRIPTION_NODE and naming.topics != NAMESPACE
-        if name.startswith("/") and not renamed:
+        if name.startswith("/") and not renamed and it not in moved:
             message = f"<{it.tag}> {name!r} is the same for all robots"
             yield Problem(it, message, "", "use the part after the last slash", (), "MB410")
+
+
+def _moved(inventory: Inventory, renames: RenameMap) -> Container[_Element]:
+    """The elements with a name that is below another one, which is renamed."""
+    spelt = zip(inventory.claims, renames.values, strict=True)
+    return {it.element for it, names in spelt if it.site.form == "below" and names}
 
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
@@ -132,11 +143,16 @@ def world_systems(inventory: Inventory) -> Iterator[Problem]:
         above = host.element.getparent()
         if WORLD not in section.opens or (above is not None and above.tag in WITH_WORLD):
             continue
-        file = host.element.get("filename", "").rpartition("/")[2]
-        key = library_key(file) or host.element.get("name", "")
+        key = system_key(host.element)
         why = section.about or "what it opens is the world's"
         message = f"{key} is loaded again with every robot: {why}"
-        yield Problem(host.element, message, "filename", "load it in the world", (), "MB416")
+        hint = "write its <plugin> into the <world>, once, and use --world-systems leave"
+        yield Problem(host.element, message, "filename", hint, (), "MB416")
+
+
+def system_key(plugin: _Element) -> str:
+    """What a system is called, as messages say it."""
+    return library_key(plugin.get("filename", "").rpartition("/")[2]) or plugin.get("name", "")
 
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

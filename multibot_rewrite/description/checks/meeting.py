@@ -29,8 +29,9 @@ from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
 
 LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
+ELSEWHERE = "MB439"
 ALL = "all robots would"
-BESIDE = "use --topics namespace or a layout with namespaces, which keep both in one place"
+BESIDE = "use --topics namespace, which keeps both in one place"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
 
@@ -140,10 +141,11 @@ def _changed(
         )
         hint = "write both the same way"
         yield Problem(_element(document, it), message, None, hint, (), PARTED)
-    for it, asked in undescribed(before, reading):
-        image, info = (name.replace(robot, ROBOT) for name in (it.name, asked))
-        message = f"image_transport and RViz look for {info!r} beside {image!r}: nothing sends it"
-        yield Problem(_element(document, it), message, None, BESIDE, (), PARTED)
+    for it, *pair in undescribed(before, reading):
+        image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
+        message = f"image_transport and RViz look for {asked!r} beside {image!r}: it is {info!r}"
+        hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
+        yield Problem(_element(document, it), message, None, hint, (), ELSEWHERE)
 
 
 def _alike(reading: Reading, robot: str) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.description.checks.meeting import NO_LINK, PARTED, SAME_TEXT
+from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PARTED, SAME_TEXT
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,
     DATA,
@@ -49,13 +49,19 @@ REASONS = {
 }
 
 # What is proved of a description and hangs on what starts it: a code, and how the summary says it.
-GIVEN = {NOT_TAKEN: "where each controller is spawned with its rules"}
+GIVEN = {
+    NOT_TAKEN: "where each controller is spawned with its rules",
+    ELSEWHERE: "where what shows an image has the rule for its camera_info",
+}
 
 
-def given(findings: Iterable[Finding]) -> str:
-    """What the word ``proved`` takes for granted; empty where that is nothing."""
+def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
+    """What the word ``proved`` takes for granted: of controllers, and of the systems that were left to
+    the world; empty where that is nothing."""
     codes = {it.code for it in findings}
-    return ", ".join(words for code, words in GIVEN.items() if code in codes)
+    said = [words for code, words in GIVEN.items() if code in codes]
+    systems = ", ".join(sorted(set(of_world)))
+    return " and ".join([*said, *([f"where the world loads {systems}"] if systems else [])])
 
 
 def not_proved(findings: Iterable[Finding]) -> tuple[str, ...]:

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.joining.join import Given, join_texts
+from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
@@ -24,6 +25,7 @@ from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alo
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
+    flag_of,
     read_yaml_with_lines,
     table,
     table_of,
@@ -33,7 +35,9 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     wrong,
 )
 
-_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "controllers")
+# Files beside a description, of which a part may have several.
+BESIDE = ("controllers", "moveit")
+_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
@@ -54,21 +58,29 @@ def parts_of(path: str) -> tuple[Part, ...]:
 
 def read_joined(path: str, trust: bool) -> SourceText:
     """The joined description of a file, without comments of the join; raises as ``join_texts``."""
-    parts = parts_of(path)
-    texts = [read_alone(it.description, it.xacro_args, trust) for it in parts]
-    given = [
-        Given(it, _without_banner(text), text.file) for it, text in zip(parts, texts, strict=True)
-    ]
+    given, read = plain_texts(parts_of(path), trust)
     try:
         made = join_texts(given, builtin_tree((), release_here()))
     except UsageError as error:
         raise InputError(f"{path}: {error}") from None
+    return SourceText(plain_text(made, path), f"{path} (expanded)", (path, *read))
+
+
+def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[Given], tuple[str, ...]]:
+    """The texts of parts for a description that others read, and the files that were read."""
+    texts = [read_alone(it.description, it.xacro_args, trust) for it in parts]
+    both = zip(parts, texts, strict=True)
+    given = [Given(it, _without_banner(text), text.file) for it, text in both]
+    return given, tuple(file for text in texts for file in text.read)
+
+
+def plain_text(made: JoinedText, place: str) -> bytes:
+    """The joined text without comments of the join; raises InputError where a name has no prefix."""
     missed = next((it for it in made.findings if it.code in MISSED), None)
     if missed:
-        what = f"{path}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
+        what = f"{place}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
         raise InputError(f"{what}; make the description with multibot join, and correct it")
-    read = tuple(file for text in texts for file in text.read)
-    return SourceText(without_marks(made.data), f"{path} (expanded)", (path, *read))
+    return without_marks(made.data)
 
 
 def _without_banner(text: SourceText) -> bytes:
@@ -84,35 +96,55 @@ def _part(item: YamlItem, folder: str) -> Part:
     for key, value in at.items():
         if key not in _AT:
             wrong(value, f"at has {key!r}; it takes parent and pose")
-    described = word_of(keys, "description")
-    if not described or described.endswith(JOIN):
-        what = f"{described} is a list of parts" if described else "a part has no description"
-        wrong(item, f"{what}; name a URDF or xacro")
-    beside = tuple(_path(it, folder) for it in words_of(keys, "controllers"))
+    if not word_of(keys, "description"):
+        wrong(item, "a part has no description; name a URDF or xacro")
+    for key, it in table_of(at, "pose").items():
+        if key not in _POSE or number(word(it, key)) is None:
+            wrong(it, f"pose has {key}: {it.value}; write numbers for {', '.join(_POSE)}")
+    pose = {key: number(word(it, key)) for key, it in table_of(at, "pose").items()}
+    given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
+    given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf")}
+    given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
+    given["one_system"] = flag_of(keys, "one_system")
+    given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
+    given["arguments"] = dict(_arguments(table_of(keys, "arguments")))
+    try:
+        return part_of(given)
+    except UsageError as error:
+        wrong(item, str(error))
+
+
+def part_of(keys: Mapping[str, Any]) -> Part:
+    """A part of checked data with the keys of a list of parts; raises UsageError for one that is a list
+    of parts itself."""
+    described, at = keys["description"], keys.get("at", {})
+    if described.endswith(JOIN):
+        raise UsageError(f"{described} is a list of parts; name a URDF or xacro")
+    pose = at.get("pose", {})
+    arguments = keys.get("arguments", {}).items()
     return Part(
-        _path(described, folder),
-        word_of(at, "parent"),
-        _pose(table_of(at, "pose")),
-        word_of(keys, "prefix"),
-        word_of(keys, "name"),
-        dict(_arguments(table_of(keys, "arguments"))),
-        _path(word_of(keys, "srdf"), folder) or None,
-        beside,
+        described,
+        at.get("parent", ""),
+        tuple(float(pose.get(axis, 0)) for axis in _POSE),
+        keys.get("prefix", ""),
+        keys.get("name", ""),
+        # YAML's true is xacro's true.
+        {name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in arguments},
+        keys.get("srdf") or None,
+        controllers=tuple(_listed(keys.get("controllers", ()))),
+        one_system=keys.get("one_system", False),
+        moveit=tuple(_listed(keys.get("moveit", ()))),
     )
+
+
+def _listed(value: str | Sequence[str]) -> Sequence[str]:
+    return [value] if isinstance(value, str) else value
 
 
 def _path(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""
 
 
-def _arguments(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str]]:
+def _arguments(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | bool]]:
     for name, it in keys.items():
-        # YAML's true is xacro's true.
-        yield name, str(it.value).lower() if isinstance(it.value, bool) else word(it, name)
-
-
-def _pose(keys: Mapping[str, YamlItem]) -> Sequence[float]:
-    for key, it in keys.items():
-        if key not in _POSE or number(word(it, key)) is None:
-            wrong(it, f"pose has {key}: {it.value}; write numbers for {', '.join(_POSE)}")
-    return tuple(number(word_of(keys, key, "0")) or 0.0 for key in _POSE)
+        yield name, it.value if isinstance(it.value, bool) else word(it, name)

@@ -37,6 +37,7 @@ from multibot_rewrite.description.joining.part import (
 from multibot_rewrite.description.joining.proof import prove
 from multibot_rewrite.description.joining.second_reading import Mounted
 from multibot_rewrite.description.joining.spaces import own_spaces
+from multibot_rewrite.description.joining.systems import OneSystem, one_system
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
@@ -119,17 +120,27 @@ def _added(
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
     once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
+    system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         raise InputError(
             f"{part.file}: joint {mount.joint!r} is there already; name the part otherwise"
         )
-    edits = [*mount.edits, *materials.repeated(joined.document.root, spans), *once.part]
+    edits = [
+        *mount.edits,
+        *materials.repeated(joined.document.root, spans),
+        *once.part,
+        *system.part,
+    ]
     edits += own_spaces(joined.document, spans, edits)
     made = _edited(text, edits)
     more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
-    base = _edited(data, once.joined)
+    base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
-    return placed(base, first.name, first.prefix, more), mounted, (*mount.notes, *once.notes)
+    return (
+        placed(base, first.name, first.prefix, more),
+        mounted,
+        (*mount.notes, *once.notes, *system.notes),
+    )
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:

@@ -6,6 +6,7 @@ Sources: urdfdom model.cpp (``initTree``, ``initRoot``: one root, one joint abov
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -56,7 +57,8 @@ class Part(NamedTuple):
     none. ``pose`` is where its root is in that link: x, y, z, roll, pitch, yaw in metres and radians.
     ``prefix`` goes before its own names. ``name`` is what messages, the new joint and ``split`` call
     it; default: its prefix, or its file. ``srdf`` is its SRDF, ``controllers`` are parameter files of
-    its controllers.
+    its controllers. With ``one_system`` its ros2_control is put into an earlier one of the same
+    hardware. ``moveit`` are MoveIt's files for it.
     """
 
     description: Source
@@ -67,6 +69,15 @@ class Part(NamedTuple):
     xacro_args: Mapping[str, str] = {}
     srdf: Source | None = None
     controllers: Sequence[str] = ()
+    one_system: bool = False
+    moveit: Sequence[str] = ()
+
+
+def files_of(part: Part) -> Iterator[str]:
+    """The files that a part names."""
+    for it in (part.description, part.srdf, *part.controllers, *part.moveit):
+        if isinstance(it, str | os.PathLike) and not str(it).lstrip().startswith("<"):
+            yield os.fspath(it)
 
 
 class ReadPart(NamedTuple):

@@ -2,7 +2,7 @@
 """A joined text as its readers see it: every element of every part is there, on the link it should be.
 
 What an earlier part says already may be left out: a material, a block of the whole robot. A part's link
-``world`` gives way to the link that the part is on.
+``world`` gives way to the link that the part is on, its ros2_control to one that drives all of it.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from multibot_rewrite.description.checks.rotation import (
     turned,
 )
 from multibot_rewrite.description.joining.part import ReadPart
+from multibot_rewrite.description.joining.systems import has_all, like
 from multibot_rewrite.description.readback.xml import plain, read_xml
 
 _KINDS = ("link", "joint")
@@ -81,6 +82,8 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
     of_world = {"link": name, "gazebo": it.get("reference", "")}.get(str(it.tag)) == WORLD
     if mounted.is_without_world and of_world:
         return True
+    if it.tag == "ros2_control":
+        return has_all(it, like(it, root))
     if it.tag == "joint":
         return (
             mounted.is_without_world and _end(it, "parent") == WORLD and _moved(it, mounted, root)

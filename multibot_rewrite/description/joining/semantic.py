@@ -2,8 +2,8 @@
 """The SRDFs of parts as one: groups, end effectors, states, passive joints and disabled collisions.
 
 A virtual joint says where a robot stands: that of the first part stays, a later part stands on a
-link. Links that meet at a joint between two parts are adjacent; of any other pair of links of two parts
-nothing is known here.
+link. Links that meet at a joint between two parts are adjacent; of other pairs of links of two parts
+random poses tell, where they are asked for.
 
 Sources: moveit2 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is the
 root link), moveit_setup_assistant compute_default_collisions.cpp (``computeConnectionGraph``: links
@@ -12,8 +12,9 @@ without geometry between two others leave these adjacent).
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import combinations, product
 
 from lxml import etree
 from lxml.etree import _Element
@@ -23,6 +24,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
+from multibot_rewrite.description.joining.touching import ALWAYS, NEVER, Touching, touching
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import SRDF, collect, declarations
@@ -61,8 +63,9 @@ def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
     return PartSemantics(part, data, file)
 
 
-def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes) -> JoinedSemantics:
-    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have."""
+def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0) -> JoinedSemantics:
+    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have, and as
+    ``touching`` where ``samples`` poses are asked for."""
     described = read_xml(urdf, "the joined description")
     root = etree.Element("robot", name=described.get("name", ""))
     known: dict[tuple[str, ...], str] = {}
@@ -72,10 +75,16 @@ def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes) -> JoinedSemantics:
             without_virtual_joints(own)
         _check_names(own, it, known)
         root.extend(list(own))
-    pairs = sorted(set(_adjacent(described, parts)))
-    for one, other in pairs:
-        etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason="Adjacent")
-    return JoinedSemantics(xml_text(root), tuple(_unknown(described, parts, pairs)))
+    reasons = dict.fromkeys(sorted(set(_adjacent(described, parts))), "Adjacent")
+    others = [it for it in _between(described, parts) if it not in reasons]
+    notes = list(_checked(others, "MoveIt's Setup Assistant finds those that never touch"))
+    if samples and others:
+        found = touching(described, others, dict(_files(parts)), samples)
+        reasons |= found.reasons
+        notes = list(_sampled(others, found, samples))
+    for (one, other), why in reasons.items():
+        etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason=why)
+    return JoinedSemantics(xml_text(root), tuple(notes))
 
 
 def without_virtual_joints(own: _Element) -> None:
@@ -141,13 +150,33 @@ def _near(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> It
                 todo.append(other)
 
 
-def _unknown(
-    described: _Element, parts: Sequence[PartSemantics], pairs: Collection[tuple[str, str]]
-) -> Iterator[str]:
-    """How many pairs of links of two parts MoveIt checks."""
+def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tuple[str, str]]:
+    """The pairs of links of two parts that have shapes."""
     shaped = _shaped(described)
-    sizes = [len(shaped & set(it.part.robot.link)) for it in parts]
-    many = (sum(sizes) ** 2 - sum(it * it for it in sizes)) // 2 - len(pairs)
-    if many:
-        what = f"{plural(many, 'pair')} of links of two parts are checked for collisions"
-        yield f"SRDF: {what}; MoveIt's Setup Assistant finds those that never touch"
+    own = [sorted(shaped & set(it.part.robot.link)) for it in parts]
+    for some, more in combinations(own, 2):
+        yield from ((min(it), max(it)) for it in product(some, more))
+
+
+def _files(parts: Sequence[PartSemantics]) -> Iterator[tuple[str, str]]:
+    for it in parts:
+        yield from ((link, it.part.file) for link in it.part.robot.link)
+
+
+def _checked(pairs: Collection[tuple[str, str]], hint: str) -> Iterator[str]:
+    """How many pairs of links of two parts MoveIt checks."""
+    if pairs:
+        what = f"{plural(len(pairs), 'pair')} of links of two parts are checked for collisions"
+        yield f"SRDF: {what}; {hint}"
+
+
+def _sampled(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
+    many = Counter(found.reasons.values())
+    what = f"of {plural(len(pairs), 'pair')} of links of two parts {many[NEVER]} never touch"
+    yield f"SRDF: {what} in {samples} random poses; the others are checked for collisions"
+    for (one, other), why in found.reasons.items():
+        if why == ALWAYS:
+            what = f"{one!r} and {other!r} touch in every pose, and are not checked"
+            yield f"SRDF: {what}; see whether the part is where it should be"
+    for link, why in found.unknown.items():
+        yield f"SRDF: nothing is said of {link!r}: {why}"

@@ -38,7 +38,7 @@ _ADVICE = {
     TWO_SERVERS: _ALLOW,
     COMMAND: _ALLOW,
     DATA: _ALLOW,
-    OPENED: "give each robot a value of its own",
+    OPENED: "write another for each robot; a fleet file gives it by `arguments`, and numbers ports",
     FRAMES: "set the frame for each robot, or allow it with --shared-frames",
 }
 # The rule that is about a kind of shared name.

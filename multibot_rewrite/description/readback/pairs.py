@@ -27,19 +27,27 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
         yield from ((now[it], first) for it in places[1:] if now[it].name != first.name)
 
 
-def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str]]:
-    """Each image that had its camera_info beside it and has not now, with the name that is asked for.
+def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
+    """Each image that had its camera_info beside it and has not now, with the name that is asked for
+    and the one that it has.
 
     Who shows an image replaces the last segment of its topic (image_common camera_common.cpp
     getCameraInfoTopic; RViz and image_pipeline subscribe with it).
     """
     now = _by_place(after.names)
-    old, new = ({it.name for it in names} for names in (before.names, now.values()))
-    for place, name in _by_place(before.names).items():
+    was = _by_place(before.names)
+    infos: dict[str, list[Place]] = defaultdict(list)
+    for place, name in was.items():
+        infos[name.name].append(place)
+    new = {it.name for it in now.values()}
+    cameras = {(it.tag, it.number) for it in before.names if it.name == _info_of(it.name)}
+    for place, name in was.items():
         beside = _info_of(name.name)
-        is_image = beside != name.name and (name.tag == "sensor" or "image" in name.name)
-        if is_image and beside in old and place in now and _info_of(now[place].name) not in new:
-            yield now[place], _info_of(now[place].name)
+        is_camera = name.tag == "sensor" and (name.tag, name.number) in cameras
+        is_image = beside != name.name and (is_camera or "image" in name.name)
+        info = next((now[it].name for it in infos.get(beside, ()) if it in now), "")
+        if is_image and info and place in now and _info_of(now[place].name) not in new:
+            yield now[place], _info_of(now[place].name), info
 
 
 def _info_of(topic: str) -> str:

@@ -204,6 +204,10 @@ def _topics(
 def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
     for path, value in frames_of(host.element, host.section):
         yield RuntimeName(FRAME, value, tag, host.number, path)
+    for entry in host.section.hardwired:
+        kind, _, name = entry.partition(":")
+        if kind == FRAME:
+            yield RuntimeName(FRAME, name, tag, host.number, "its code")
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:

@@ -223,6 +223,13 @@ def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     return tuple(parts)
 
 
+def below(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """``/robot/description``: what an absolute name is below; a relative one is below its reader's."""
+    name = value.strip()
+    above = name.rpartition("/")[0] if name[:1] == "/" else ""
+    return (NamePart(value.index(name), above, kinds),) if above else ()
+
+
 def of_names(form: Form) -> Form:
     """The form for values as long as names are; a longer one is one name, which nothing declares."""
 
@@ -252,5 +259,6 @@ FORMS: dict[str, Form] = {
     "lettered": lettered,
     "remap": remap,
     "argument": remap,
+    "below": below,
     "collision": nothing,
 }

@@ -91,7 +91,7 @@ def _of_ros_1(
     """The namespace of a ROS 1 plugin that is the root, or the model's name, which the text does not
     say; with namespaces both, else the first alone."""
     for site in section.sites if has_own_names(section) else ():
-        if site.kinds != ("namespace",) or site.default:
+        if site.kinds != ("namespace",) or site.default or site.form != "whole":
             continue
         there = host.find(site.path)
         if there is not None and not text_of(there) and site.empty != "model":

@@ -73,7 +73,8 @@ def own_namespaces(
 
 
 def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
-    if claim.site.kinds != ("namespace",) or claim.site.form != "whole" or not claim.value.strip():
+    whole = claim.site.form in ("whole", "below") and claim.value.strip()
+    if claim.site.kinds != ("namespace",) or not whole:
         return claim
     plugin = next(claim.element.iterancestors("plugin"), None)
     return claim._replace(site=_word(claim.site)) if plugin in plugins else claim

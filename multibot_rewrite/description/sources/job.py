@@ -63,7 +63,8 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count, ``why`` what says it. It holds no parsed document, so it can be pickled."""
+    whose facts count, ``why`` what says it; ``aside`` are the systems that the world has to load. It
+    holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
@@ -74,6 +75,7 @@ class Job(NamedTuple):
     why: str = ""
     own: OwnSource = OF_ALL
     read: FilesRead = NO_FILES
+    aside: tuple[str, ...] = ()
 
     @property
     def tree(self) -> Tree:
@@ -105,14 +107,15 @@ def read_job(
     trust: bool = False,
     *,
     release: str,
+    aside: bool = False,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
     ``words`` are those of the robot that the job is for: the first one is filled into the arguments,
     and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
-    anything.
+    anything. ``aside`` sets systems of the world aside.
     """
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release, aside)
     return job_for(read, xacro_args or {}, words)
 
 
@@ -126,10 +129,11 @@ def read_jobs(
     file: str,
     trust: bool,
     release: str,
+    aside: bool = False,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release, aside)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
     jobs = {robot: job_for(read, given, [robot]) for robot in named}
@@ -160,6 +164,7 @@ def reader(
     file: str,
     trust: bool,
     release: str,
+    aside: bool = False,
 ) -> Reader:
     """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``.
 
@@ -175,9 +180,17 @@ def reader(
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
         said = release_said(release, own.data + (beside.data if beside else b""), own.file)
-        return Job(own.data, name, naming, vocabulary, pair, *said, read=found)
+        job = Job(own.data, name, naming, vocabulary, pair, *said, read=found)
+        return _without_world_systems(job) if aside else job
 
     return lambda args: read(frozenset(args.items()))
+
+
+def _without_world_systems(job: Job) -> Job:
+    from multibot_rewrite.description.sources.world_systems import set_aside  # few ask for it
+
+    data, names = set_aside(job.data, job.file, job.tree)
+    return job._replace(data=data, aside=names)
 
 
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:

@@ -54,8 +54,9 @@ def _meetings(
         # The rewrite says what to do about these.
         yield from (it for it in shared if it.code == NOT_TAKEN)
     if len(members) == 1:
-        # There is no second robot: what a rewrite says of any two of them.
-        yield from (it._replace(level=_level(it.code)) for it in shared if it.code != NOT_TAKEN)
+        # There is no second robot: what a rewrite says of any two of them. An address is right for one.
+        for one in (one for one in shared if one.code != NOT_TAKEN):
+            yield one._replace(level=WARNING if one.code == OPENED else _level(one.code))
         return
     by_robot = {it.robot: it for it in members}
     for it in meetings(_named(table, members), naming):

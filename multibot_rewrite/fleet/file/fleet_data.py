@@ -18,6 +18,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.description.joining.from_file import BESIDE
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_checked
@@ -27,16 +28,18 @@ PATHS = (
     *("include", "description", "simulated", "srdf", "nodes", "vocabulary"),
     "simulator_world",
 )
+# The parts of a robot.
+JOIN = "join"
 Places = Mapping[Path, tuple[str, int]]
 
 
 def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
     """Check that every named file exists; its content is checked later."""
-    for key in (*PATHS, "launch", "companions", "robots"):
+    for key in (*PATHS, *BESIDE, "launch", "companions", "robots", JOIN):
         value = data.get(key, ())
-        if key == "robots":
-            for number, robot in enumerate(value):
-                check_files(robot, ("robots", number), places)
+        if key in ("robots", JOIN):
+            for number, inner in enumerate(value):
+                check_files(inner, (*at, key, number), places)
             continue
         if key == "launch":
             value = [it.partition(" ")[0] for it in listed(value) if not _of_package(it)]
@@ -58,7 +61,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
         )
 
     result = dict(data)
-    for key in PATHS:
+    for key in (*PATHS, *BESIDE):
         if key in result:
             result[key] = resolve(result[key])
     if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
@@ -69,8 +72,9 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
         result["launch"] = [_launch_path(folder, it) for it in listed(result["launch"])]
     if "companions" in result:
         result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
-    if "robots" in result:
-        result["robots"] = [with_paths(folder, robot) for robot in result["robots"]]
+    for key in ("robots", JOIN):
+        if key in result:
+            result[key] = [with_paths(folder, inner) for inner in result[key]]
     return result
 
 
@@ -173,13 +177,13 @@ def schema() -> dict[str, Any]:
 
 
 def given_arguments(
-    data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
+    data: Mapping[str, Any], own: Mapping[str, Any], described: Sequence[str], place: str
 ) -> dict[str, str]:
     """The xacro arguments of a robot, over those of the fleet; only for xacro files.
 
     Raises InputError for arguments without a xacro, and for an unknown placeholder.
     """
-    files = (description, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
+    files = (*described, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
     if not any(is_xacro(it) for it in files):
         if own.get("arguments"):
             hint = "remove them, or give a xacro"

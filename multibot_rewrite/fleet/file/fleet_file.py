@@ -14,7 +14,9 @@ from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import chosen_release
 from multibot_rewrite.companions.rviz.colours import read_colour
+from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
+from multibot_rewrite.description.sources.read import JOIN as LIST
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.checked_yaml import Path
 from multibot_rewrite.fleet.file.fleet_data import (
@@ -24,6 +26,7 @@ from multibot_rewrite.fleet.file.fleet_data import (
     nodl_files,
     read_data,
 )
+from multibot_rewrite.fleet.file.listed_parts import described
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
@@ -57,13 +60,14 @@ class RobotSpec(NamedTuple):
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
-    is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
-    something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
-    ``use_sim_time`` is what all its nodes have, None if the file does not say. ``simulated`` is the
-    model that the simulator gets, empty where that is the description. ``bridge_namespace`` is the one
-    below its own that its bridge files are for, ``bridges_below`` what launch files say of single
-    ones. ``fills`` says that arguments of its xacro which name
-    robots are filled where ``arguments`` has no value for them. ``places`` are those of outputs below
+    is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameter
+    files in which a launch replaces something, and what is made of ``parts``, which are joined.
+    ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so. ``use_sim_time``
+    is what all its nodes have, None if the file does not say. ``simulated`` is the model that the
+    simulator gets, empty where that is the description. ``bridge_namespace`` is the one below its
+    own that its bridge files are for, ``bridges_below`` what launch files say of single ones.
+    ``fills`` says that arguments of its xacro which name robots are filled where ``arguments`` has
+    no value for them. ``places`` are those of outputs below
     the robot's folder, by the names that they have else.
     """
 
@@ -89,6 +93,17 @@ class RobotSpec(NamedTuple):
     bridges_below: tuple[tuple[str, str], ...] = ()
     fills: bool = True
     places: tuple[tuple[str, str], ...] = ()
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def files(self) -> Iterator[str]:
+        """Every file of a disk that it is made of."""
+        made = {self.description, *dict(self.filled)} if self.parts else set()
+        own = (self.description, self.srdf, self.simulated)
+        beside = (path for paths in self.companions.values() for path in paths)
+        yield from (it for it in (*own, *beside) if it and (it not in made or it.endswith(LIST)))
+        yield from (it for part in self.parts for it in files_of(part))
+        yield from (it.file for it in self.launch)
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -207,9 +222,7 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
     """Every file that it names, itself among them."""
     yield from fleet.files
     for robot in fleet.robots:
-        yield from filter(None, (robot.description, robot.srdf, robot.simulated))
-        yield from (path for paths in robot.companions.values() for path in paths)
-        yield from (it.file for it in robot.launch)
+        yield from robot.files
 
 
 def _naming(read: FleetData, policy: Policy) -> Naming:
@@ -234,7 +247,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     place, name = f"{file}:{line}", own["name"]
-    description = own.get("description", data.get("description", ""))
+    description, parts = described(read, at)
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
     companions = {**data.get("companions", {}), **own.get("companions", {})}
@@ -244,7 +257,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         name,
         description,
         own.get("srdf", data.get("srdf", "")),
-        given_arguments(data, own, description, place),
+        given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
         _namespace(own, naming, place),
         _tag(own, naming.affix, place),
         own.get("model", name),
@@ -260,6 +273,7 @@ def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
         simulated=_simulated(data, own),
         bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
         fills=own.get("fill_arguments", data.get("fill_arguments", True)),
+        parts=parts,
     )
 
 

@@ -128,7 +128,7 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
         elif there not in own:
             notes.append(_unfilled(it))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
-    return spec._replace(companions=companions, filled=tuple(filled)), notes
+    return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
 
 
 def set_by_launch(

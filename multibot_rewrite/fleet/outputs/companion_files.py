@@ -20,13 +20,13 @@ from multibot_rewrite.companions.template import (
     TAG_SLOT,
     fill_template,
 )
-from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
     params_of,
     path_for,
+    text_of,
 )
 from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS, said_of_numbers
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -88,7 +88,9 @@ def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion
     if kind == PARAMS:
         made = _params(plan, group, path)
     else:
-        made = made_for_any(kind, read_file(path), path, group.context, group.facts)
+        made = made_for_any(
+            kind, text_of(group.robots[0].spec, path), path, group.context, group.facts
+        )
     return made._replace(file=with_description(made.file, group.robots[0].member.source))
 
 

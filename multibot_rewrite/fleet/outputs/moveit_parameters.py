@@ -30,7 +30,7 @@ from multibot_rewrite.companions.moveit.file_kind import (
 )
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, own_yaml, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.spelling.ways import arguments, started
 
@@ -83,7 +83,8 @@ def moveit_commands(plan: FleetPlan) -> Iterator[str]:
     """The lines that start move_group and servo_node of the one robot of a plan."""
     (robot,) = plan.robots
     servo = any(
-        file_kind(yaml_of(it)) == OF_SERVO for it in robot.spec.companions.get("moveit", ())
+        file_kind(own_yaml(robot.spec, it)) == OF_SERVO
+        for it in robot.spec.companions.get("moveit", ())
     )
     nodes = PROGRAMS if servo else (_MOVE_GROUP,)
     for it in started(plan.fleet.table) if has_moveit(robot) else ():

@@ -74,11 +74,18 @@ def expanded_name(path: str) -> str:
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:
     """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
+    return {it: own_yaml(spec, it) for it in spec.companions.get("params", ())}
+
+
+def text_of(spec: RobotSpec, path: str) -> bytes:
+    """The bytes of a file of a robot, which may be made for it; raises as ``read_file``."""
     filled = dict(spec.filled)
-    return {
-        it: read_yaml(filled[it].encode(), it) if it in filled else yaml_of(it)
-        for it in spec.companions.get("params", ())
-    }
+    return filled[path].encode() if path in filled else read_file(path)
+
+
+def own_yaml(spec: RobotSpec, path: str) -> YamlText:
+    """A YAML file of a robot; raises as ``yaml_of``."""
+    return read_yaml(text_of(spec, path), path)
 
 
 def yaml_of(path: str) -> YamlText:

@@ -7,16 +7,14 @@ import os
 from collections.abc import Iterator
 from typing import Any
 
-from multibot_rewrite.base.editors import schema_line
+from multibot_rewrite.base.editors import FLEET, schema_line
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
-from multibot_rewrite.fleet.file.fleet_data import SCHEMA
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 
 # Files not taken that are named.
 MOST = 10
-FLEET_PACKAGE = "multibot_rewrite.fleet"
 
 
 def data_of(it: Proposal, folder: str) -> dict[str, Any]:
@@ -33,7 +31,7 @@ def text_of(it: Proposal, folder: str, name: str) -> str:
 
 
 def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
-    yield schema_line(FLEET_PACKAGE, SCHEMA, folder)
+    yield schema_line(FLEET, folder)
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"

@@ -25,7 +25,14 @@ from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
-from multibot_rewrite.description.sources.job import Job, Reader, job_for, joined_reads, reader
+from multibot_rewrite.description.sources.job import (
+    FilesRead,
+    Job,
+    Reader,
+    job_for,
+    joined_reads,
+    reader,
+)
 from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, common_to, filled
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
@@ -123,8 +130,13 @@ def read_jobs(
     anything."""
 
     @cache
-    def read(source: str, urdf: str | None) -> Reader:
-        return reader(source, naming, urdf, tuple(vocabulary), "", trust, release)
+    def read_in(source: str, urdf: str | None, file: str) -> Reader:
+        return reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+
+    def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
+        made = dict(robot.filled)
+        text, beside = made.get(path, path), made.get(urdf, urdf) or None
+        return read_in(text, beside, path if path in made else "")
 
     found: dict[Sources, Jobs] = {}
     given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
@@ -135,15 +147,19 @@ def read_jobs(
         if it.sources not in found:
             words = it.words, common[it.description]
             given = _taken(it, it.description, it.srdf), *words
-            description = job_for(read(it.description, None), *given)
-            srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
+            description = job_for(read(it, it.description), *given)
+            srdf = job_for(read(it, it.srdf, it.description), *given) if it.srdf else None
             # An argument may be for the SRDF alone, which is read beside the description.
             description = description._replace(read=(srdf or description).read)
             model = None
             if it.simulated:
-                model = job_for(read(it.simulated, None), _taken(it, it.simulated), *words)
+                model = job_for(read(it, it.simulated), _taken(it, it.simulated), *words)
                 both = joined_reads(description.read, model.read)
                 description, model = description._replace(read=both), model._replace(read=both)
+            if it.parts:
+                description = description._replace(
+                    read=FilesRead((*description.read.files, *it.files))
+                )
             found[it.sources] = Jobs(description, srdf, model)
     _check_arguments(robots, found)
     return found

@@ -16,7 +16,7 @@ from multibot_rewrite.description.sources.job import Job
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.checks.written_system import DRIVERS, of_robot
 from multibot_rewrite.fleet.file.fleet_file import REAL
-from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, path_for, yaml_of
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, own_yaml, path_for
 from multibot_rewrite.fleet.robots.member import line_of, without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
@@ -227,7 +227,7 @@ def _root(robot: RewrittenRobot) -> str:
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
-    return [yaml_of(path) for path in robot.spec.companions.get(kind, ())]
+    return [own_yaml(robot.spec, path) for path in robot.spec.companions.get(kind, ())]
 
 
 def _runs(node: NodeFacts, moves: bool) -> NodeFacts:

@@ -13,7 +13,7 @@ from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.system.records import ROLES
 
 HEAD = """\
-# Nodes as they were seen in a running graph, written by multibot learn for --nodes.
+# Nodes as they were seen in a running graph, written by multibot snapshot for --nodes.
 # The code and the remap rules of a running node are not visible, only the resulting names:
 #   /x   may be x or /x in the code: the rule for /x is right for both, in every layout
 #   x    was seen in the node's namespace; if the code has /x and a rule remapped it, write /x

@@ -35,7 +35,7 @@ def to_nodl(
     written = [it for end in ends for it in _entries(end)]
     seen = _Seen(graph, node, namespace.rstrip("/"))
     written += [it for end in ends if end.transport for it in seen.transports(end)]
-    description = f"Seen as {node.seen} in a running graph, by multibot learn"
+    description = f"Seen as {node.seen} in a running graph, by multibot snapshot"
     return document_of(node.facts.name, description, written, lambda it: _qos(seen.qos(it)), json)
 
 

@@ -54,7 +54,8 @@ UNKNOWN_TYPE = declare(
     what="The type of a controller is not known, or the release lacks it. Its topics, frames "
     "and interfaces are not in the plan.",
     why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
+    fix="Describe it in a file of nodes (docs/stacks.md), or have it written while the node runs:"
+    " multibot snapshot --form nodes.",
     bad="""\
 controller_manager:
   ros__parameters:

@@ -36,7 +36,8 @@ NOT_KNOWN = declare(
     what="A launch file starts a node that is not known: the plan has its name, and nothing of its "
     "topics, services and frames.",
     why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
+    fix="Describe it in a file of nodes (docs/stacks.md), or have it written while the node runs:"
+    " multibot snapshot --form nodes.",
     bad=f"launch: system_model.yaml\n{_ROBOTS}",
     good=f"{_ROBOTS}launch: known.yaml\n",
     line=3,

@@ -34,6 +34,7 @@ from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     CHANGING,
+    EXPECTED,
     QUIET,
     SERVES,
     UNKNOWN_NODE,
@@ -117,7 +118,9 @@ def take_snapshot(session: GraphSession) -> System:
     why, clock = _wait_until_settled(session, cache, ears)
     seconds = session.now()
     names, endpoints = _complete_view(session, cache)
-    more = [*clock.starved(), *(assemble.cut_short() if session.over() else ())]
+    # Who names what is expected does not wait for anything that may be late.
+    late = () if why == EXPECTED else clock.starved()
+    more = [*late, *(assemble.cut_short() if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
         _receive(session, POLL_SECONDS)

@@ -180,8 +180,10 @@ def test_a_bounding_box_camera_has_an_own_camera_info() -> None:
     sensor = '<sensor name="s" type="boundingbox_camera"><topic>/boxes/a</topic><camera/></sensor>'
     made = rewrite(robot(f'<gazebo reference="a">{sensor}</gazebo>'), "robot1", distro="jazzy")
     assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
-    # Its image is a_image, and image_transport would look beside it.
-    assert made.not_proved == ("1 topic whose ends no longer match",)
+    # Its image is a_image, and image_transport looks beside it.
+    assert made.not_proved == () and [it.code for it in made.findings] == ["MB439"]
+    assert "its camera_info" in given(made.findings)
+    assert '"/boxes/a/camera_info:=/boxes/camera_info/ROBOT"' in made.findings[0].hint
 
 
 # ---------------------------------------------------------------- controllers

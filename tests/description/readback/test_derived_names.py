@@ -22,7 +22,7 @@ def codes(text: str, **options: str) -> list[str]:
     ("topic", "options", "found"),
     [
         # camera_common.cpp getCameraInfoTopic: the last segment of the image's topic is replaced.
-        ("/cam/image", {}, ["MB438"]),
+        ("/cam/image", {}, ["MB439"]),
         ("/cam/image", {"topics": "prefix"}, []),
         ("/cam/image", {"topics": "namespace"}, []),
         ("/cam/image", {"layout": "both"}, []),
@@ -37,7 +37,7 @@ def test_a_camera_keeps_its_info_beside_its_image(
 def test_an_image_without_info_beside_it_loses_none() -> None:
     info = "<camera><camera_info_topic>/else/info</camera_info_topic></camera>"
     text = CAMERA.replace("</sensor>", f"{info}</sensor>").format("/cam/image")
-    assert "MB438" not in codes(text)
+    assert "MB439" not in codes(text)
 
 
 @pytest.mark.parametrize(
@@ -102,3 +102,15 @@ def test_nothing_of_ros_2_is_inserted_into_what_reads_none_of_it() -> None:
     made = rewrite(old, "robot1", layout="both", distro="humble")
     assert "<robotNamespace>robot1/r</robotNamespace>" in made.text
     assert made.not_proved == ()
+
+
+@pytest.mark.parametrize("layout", ["frame-prefix", "frames-per-robot"])
+def test_a_frame_that_is_fixed_in_code_is_shared_on_one_tf(layout: str) -> None:
+    """kobuki's plugin sends odom -> base_footprint on /tf whatever its file says
+    (kobuki_gazebo_plugins gazebo_ros_kobuki_loads.cpp)."""
+    text = (
+        '<robot name="k"><link name="base_footprint"/><gazebo>'
+        '<plugin name="k" filename="libgazebo_ros_kobuki.so"/></gazebo></robot>'
+    )
+    made = rewrite(text, "r1", layout=layout, distro="humble")
+    assert made.not_proved and "MG402" in {it.code for it in made.findings}

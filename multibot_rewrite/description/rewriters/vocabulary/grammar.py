@@ -62,7 +62,7 @@ RELEASES = "releases="
 EMPTY = ("default", "model", "itself")
 FORMS = (
     *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
-    *("regex", "prefix", "lettered", "remap", "argument", "collision"),
+    *("regex", "prefix", "lettered", "remap", "argument", "below", "collision"),
 )
 # A vocabulary has hundreds of paths, which are asked for again with every plugin.
 PATHS = 4096

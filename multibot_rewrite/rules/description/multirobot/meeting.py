@@ -173,13 +173,30 @@ parted_topic = rule(
     "MB438",
     "parted-topic",
     WARNING,
-    what="Two parameters that held one topic would hold two after the rewrite, or the camera_info of a "
-    "camera would no longer stand beside its image.",
-    why="One of them sends what the other listens to: after the rewrite nothing arrives. RViz and "
-    "image_transport replace the last segment of an image's topic to find its camera_info.",
-    fix="Write both the same way, best without a slash in front; for a camera use --topics namespace.",
+    what="Two parameters that held one topic would hold two after the rewrite.",
+    why="One of them sends what the other listens to: after the rewrite nothing arrives.",
+    fix="Write both the same way, best without a slash in front.",
     bad=_HEARD.format("~/hit"),
     good=_HEARD.format("hit"),
     line=2,
     options={"robots": TWO, "naming": APART},
 )(partial(_of_code, "MB438"))
+
+_CAMERA = """\
+<link name="a"/>
+<gazebo reference="a"><sensor name="c" type="camera">{}</sensor></gazebo>
+"""
+
+camera_info_elsewhere = rule(
+    "MB439",
+    "camera-info-elsewhere",
+    WARNING,
+    what="The camera_info of a camera would no longer stand beside its image.",
+    why="RViz and image_transport replace the last segment of an image's topic to find its camera_info "
+    "(image_common camera_common.cpp): they find none, as no robot sends under that name.",
+    fix="Start what shows the image with the rule of the hint, or use --topics namespace.",
+    bad=_CAMERA.format("<topic>cam/image</topic>"),
+    good=_CAMERA.format(""),
+    line=2,
+    options={"robots": TWO, "naming": make_naming("postfix")},
+)(partial(_of_code, "MB439"))

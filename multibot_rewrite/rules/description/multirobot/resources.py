@@ -137,7 +137,8 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     what="The robot loads a gz system that acts on the whole world.",
     why="gz-sim loads it again with every copy: two Sensors systems crash it (gz-sensors issue "
     "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
-    fix="Load it in the world's SDF and remove it from the robot.",
+    fix="Load it in the world's SDF, once, and remove it from the robot; `urdf-postfix --world-systems "
+    "leave` takes it out of each robot.",
     bad="<gazebo>\n"
     '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
     "</gazebo>\n",
@@ -148,4 +149,7 @@ def _has_fixed_sensor(subject: Subject) -> bool:
 )
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""
-    yield from hazards.world_systems(subject.inventory)
+    for it in hazards.world_systems(subject.inventory):
+        yield it._replace(
+            hint="write its <plugin> into the <world>, once, and take it out of the robot"
+        )

@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit, part_moveit
 from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
 from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, prefixing
 from multibot_rewrite.description.joining.proof import split_text
@@ -32,13 +35,14 @@ from multibot_rewrite.description.sources.read import (
     read_file,
 )
 from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import read_document
 
 
 class Joined(NamedTuple):
     """One robot of several descriptions. ``srdf`` is the SRDF of all that have one, ``controllers``
-    the one file of their controllers' parameters; both are empty where no part has them. ``parts`` are
+    the one file of their controllers' parameters, ``moveit`` MoveIt's files by name, one of each kind;
+    they are empty where no part has them. ``parts`` are
     their names; ``notes`` are what was left out and what two parts have in the running system,
     ``findings`` are about names without the prefix."""
 
@@ -48,6 +52,7 @@ class Joined(NamedTuple):
     parts: tuple[str, ...]
     notes: tuple[str, ...]
     findings: tuple[Finding, ...]
+    moveit: Mapping[str, bytes] = MappingProxyType({})
 
     @property
     def text(self) -> str:
@@ -63,11 +68,17 @@ class Joined(NamedTuple):
 
 @checked
 def join(
-    parts: Iterable[Part], *, vocabulary: Iterable[str] = (), trust: bool = False, distro: str = ""
+    parts: Iterable[Part],
+    *,
+    vocabulary: Iterable[str] = (),
+    trust: bool = False,
+    distro: str = "",
+    samples: int = 0,
 ) -> Joined:
     """Join descriptions: each part after the first is fixed to a link of those before it.
 
-    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Raises
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. With
+    ``samples`` random poses pinocchio tells which links of two parts never touch, for the SRDF. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
     """
@@ -79,11 +90,33 @@ def join(
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
     made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
-    semantics, files = _semantics(given, made, tree, trust), _controllers(given, made, tree)
+    found = _with_beside(given, made, tree, trust, samples)
+    return found._replace(notes=(*_unread(given, texts), *found.notes))
+
+
+def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
+    """The same for what reads the result at once: without comments of the join, and refused where a
+    name has no prefix. Raises InputError that names ``place``."""
+    given, _ = plain_texts(parts, trust)
+    try:
+        made = join_texts(given, tree)
+        found = _with_beside(parts, made, tree, trust)
+    except UsageError as error:
+        raise InputError(f"{place}: {error}") from None
+    return found._replace(data=plain_text(made, place))
+
+
+def _with_beside(
+    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
+) -> Joined:
+    """With the files beside the parts."""
+    semantics = _semantics(given, made, tree, trust, samples)
+    files = _controllers(given, made, tree)
+    moveit = joined_moveit(_moveit(given, made, tree, trust))
     names = tuple(it.part.name for it in made.parts)
-    told = (*_unread(given, texts), *_relative(made))
-    notes = (*told, *made.notes, *semantics.notes, *files.notes, *_met(made, tree))
-    return Joined(made.data, semantics.data, files.data, names, notes, made.findings)
+    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *moveit.notes)
+    notes = (*notes, *_met(made, tree))
+    return Joined(made.data, semantics.data, files.data, names, notes, made.findings, moveit.files)
 
 
 @checked
@@ -114,7 +147,9 @@ def _relative(made: JoinedText) -> Iterator[str]:
             yield f"{what}{more}; write package://NAME/..."
 
 
-def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool) -> JoinedSemantics:
+def _semantics(
+    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int
+) -> JoinedSemantics:
     if not any(it.srdf for it in given):
         return JoinedSemantics(b"", ())
     parts = []
@@ -122,9 +157,29 @@ def _semantics(given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool)
         if it.srdf is None:
             parts.append(PartSemantics(mounted.part, b"", ""))
             continue
-        read_in = read_whole(it.srdf, args_for(it.srdf, it.description, it.xacro_args), trust)
+        read_in = _srdf(it, trust)
         parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
-    return joined_srdf(parts, made.data)
+    return joined_srdf(parts, made.data, samples)
+
+
+def _srdf(part: Part, trust: bool) -> SourceText:
+    if part.srdf is None:
+        return SourceText(b"", "")
+    return read_whole(part.srdf, args_for(part.srdf, part.description, part.xacro_args), trust)
+
+
+def _moveit(
+    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool
+) -> Iterator[PartMoveit]:
+    for it, mounted in zip(given, made.parts, strict=True):
+        part, said = mounted.part, NOTHING
+        before = collect(read_document(part.data, part.file), tree) if it.moveit else part.inventory
+        if it.moveit and it.srdf is not None:
+            text = _srdf(it, trust)
+            document = read_document(text.data, text.file)
+            said = collect(document, tree, before.declared).declared
+        for at in it.moveit:
+            yield part_moveit(read_file(at), at, before, said, part.prefix)
 
 
 def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MoveIt's files of parts that one move_group plans for, one of each kind.
+
+Groups, joints, links and controllers of a part have its prefix. Servo moves one group: its files are
+left out, and told.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+
+import yaml
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import PREFIX, make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.alone import rewrite_alone
+from multibot_rewrite.companions.context import make_context
+from multibot_rewrite.companions.kinds import MOVEIT
+from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, PLANNING, file_kind
+from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
+from multibot_rewrite.companions.params.joined import added
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.description.joining.part import PREFIXED
+from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.made_topics import words_of
+from multibot_rewrite.description.steps.collect import Inventory
+
+# What a kind is called in MoveIt's packages, where that is not the kind.
+_CALLED = {"controllers": "moveit_controllers"}
+
+
+class PartMoveit(NamedTuple):
+    """A file of a part, as its prefix spells it."""
+
+    file: str
+    kind: str
+    document: YamlText
+
+
+class JoinedMoveit(NamedTuple):
+    """The joined files by their names, and what a person should know."""
+
+    files: Mapping[str, bytes]
+    notes: tuple[str, ...]
+
+
+def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix: str) -> PartMoveit:
+    """A file with the prefix of its part, whose SRDF declares what is ``said``; raises InputError for
+    one that is not MoveIt's, UsageError where a part without an SRDF has groups in it."""
+    kind = file_kind(read_yaml(data, file))
+    if prefix and kind == "kinematics" and not said.get("group"):
+        raise UsageError(f"{file}: groups of the part get its prefix; name its SRDF, too")
+    if prefix:
+        named = make_naming("frames-per-robot", PREFIX, topics=PREFIX)
+        naming = named._replace(separators=dict.fromkeys((*PREFIXED, "node", "group"), ""))
+        names = companion_names(with_srdf(part.declared, said), naming, "", {})
+        words = words_of(part.claims)
+        context = make_context(names.declared, naming, (), part.release, names.own, words)
+        data = rewrite_alone(MOVEIT, data, file, context, prefix, 0).text.encode()
+    return PartMoveit(file, kind, read_yaml(data, file))
+
+
+def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
+    """One file of each kind, and of each pipeline."""
+    roots: dict[str, yaml.MappingNode] = {}
+    sources: dict[str, list[str]] = {}
+    notes: list[str] = []
+    for it in files:
+        if it.kind == OF_SERVO:
+            notes.append(f"{it.file}: it is for one group of one servo_node, and left out")
+            continue
+        root = it.document.root
+        name = _name(it)
+        if not isinstance(root, yaml.MappingNode):
+            continue
+        sources.setdefault(name, []).append(os.path.basename(it.file))
+        first = roots.setdefault(name, root)
+        if first is not root:
+            notes += (f"{it.file}: {what}" for what in added(first, root, ""))
+    made = {}
+    for name, root in roots.items():
+        head = f"# joined by multibot from {', '.join(dict.fromkeys(sources[name]))}\n"
+        made[name] = f"{head}{yaml.serialize(root, width=200)}".encode()
+    return JoinedMoveit(made, tuple(notes))
+
+
+def _name(it: PartMoveit) -> str:
+    # A pipeline is told by the name of its file.
+    if it.kind == PLANNING:
+        return os.path.basename(it.file)
+    return f"{_CALLED.get(it.kind, it.kind)}.yaml"

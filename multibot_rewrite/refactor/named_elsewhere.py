@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names of a description that other files of its package hold: code, parameters, worlds.
+
+A prefix does not reach them. In code it is a literal that is exactly the name, in YAML and XML a word.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection, Iterator
+
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.refactor.placing import Left
+
+_CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
+_DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
+_SKIPPED = {"build", "install", "log", "node_modules"}
+# Of one file so many lines are listed.
+_MOST = 20
+
+
+def named_elsewhere(
+    folder: str, names: Collection[str], without: Collection[str]
+) -> Iterator[Left]:
+    """Each line of a file that holds a name; ``without`` are the files that are looked at already."""
+    if not names:
+        return
+    some = "|".join(re.escape(it) for it in sorted(names, key=len, reverse=True))
+    literal = re.compile(rf"([\"'])({some})\1".encode())
+    word = re.compile(rf"(?<![\w./$-])()({some})(?![\w./-])".encode())
+    for path in _files(folder):
+        if os.path.realpath(path) in without:
+            continue
+        pattern = literal if path.endswith(_CODE) else word
+        why = "its code names" if path.endswith(_CODE) else "it names"
+        yield from _lines(path, pattern, why)
+
+
+def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
+    try:
+        data = read_file(path)
+    except InputError:
+        return
+    found: dict[int, str] = {}
+    for it in pattern.finditer(data):
+        found.setdefault(locate(data, it.start())[0], it[2].decode())
+    for line, name in list(found.items())[:_MOST]:
+        yield Left(f"{path}:{line}", f"{why} {name!r}, which a prefix does not reach")
+    if len(found) > _MOST:
+        yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
+
+
+def _files(folder: str) -> Iterator[str]:
+    for at, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
+        for name in sorted(names):
+            if name.endswith((*_CODE, *_DATA)):
+                yield os.path.normpath(os.path.join(at, name))

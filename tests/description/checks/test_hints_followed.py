@@ -1,0 +1,148 @@
+"""A hint that is followed ends in "proved": each reason that a user can mend, with what its hint says.
+
+Expected: the word, and that the hint names what was written here (never what the code thinks of it).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.base.record import NamedTuple
+
+ROVER = '<robot name="rover"><link name="base"/>{}</robot>'
+CONTROL = (
+    '<gazebo><plugin name="c" filename="libgazebo_ros2_control.so">{}</plugin></gazebo>'
+    '<ros2_control name="r" type="system"><hardware><plugin>gazebo_ros2_control/GazeboSystem'
+    "</plugin></hardware></ros2_control>"
+)
+IMU = (
+    '<gazebo reference="base"><sensor name="imu" type="imu"/></gazebo>'
+    '<ros2_control name="r" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>'
+    '</hardware><sensor name="imu"/></ros2_control>'
+)
+HIT = (
+    '<gazebo reference="base"><sensor name="s" type="contact"><topic>{}</topic></sensor></gazebo>'
+    '<gazebo><plugin name="gz::sim::systems::TriggeredPublisher" '
+    'filename="gz-sim-triggered-publisher-system"><input type="gz.msgs.Contacts" topic="hit"/>'
+    '<output type="gz.msgs.Empty" topic="stop"/></plugin></gazebo>'
+)
+SENSORS = (
+    '<gazebo><plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/></gazebo>'
+)
+DRIVE = (
+    '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
+    "<robotNamespace>/a</robotNamespace><updateRate>10</updateRate><commandTopic>cmd_vel</commandTopic></plugin></gazebo>"
+)
+PARAM = (
+    '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>{}</robotParam>'
+    "</plugin></gazebo>"
+)
+LIDAR = (
+    '<joint name="uwl/uwl_base_swivel_joint" type="fixed"><parent link="base"/>'
+    '<child link="eye"/></joint><link name="eye"/>'
+    '<gazebo><plugin name="l" filename="libdave_pulse_lidar_plugin.so">'
+    "<robot_namespace>uwl</robot_namespace></plugin></gazebo>"
+)
+ESTOP = (
+    '<ros2_control name="s" type="system"><hardware><plugin>husarion_ugv_gazebo/EStopSystem</plugin>'
+    "</hardware></ros2_control>"
+)
+OPENARM = (
+    '<link name="hand"/><joint name="openarm_joint1" type="revolute"><parent link="base"/>'
+    '<child link="hand"/></joint><ros2_control name="s" type="system"><hardware>'
+    "<plugin>openarm_hardware/OpenArm_v10HW</plugin></hardware>"
+    '<joint name="openarm_joint1"><command_interface name="position"/></joint></ros2_control>'
+)
+WINCH = '<gazebo><plugin name="w" filename="libacme_winch.so"/></gazebo>'
+
+
+class Followed(NamedTuple):
+    """A description with its options, the code and the words of the hint, and what the hint makes."""
+
+    text: str
+    layout: str
+    distro: str
+    code: str
+    hint: str
+    after: str
+    options: dict[str, str]
+
+
+ROWS = (
+    Followed(LIDAR, "postfix", "humble", "MB422", "--affix prefix", LIDAR, {"affix": "prefix"}),
+    Followed(
+        ESTOP,
+        "postfix",
+        "jazzy",
+        "MG301",
+        "--layout tf-per-robot or both",
+        ESTOP,
+        {"layout": "both"},
+    ),
+    Followed(
+        OPENARM,
+        "postfix",
+        "humble",
+        "MB428",
+        "--layout tf-per-robot",
+        OPENARM,
+        {"layout": "tf-per-robot"},
+    ),
+    Followed(WINCH, "postfix", "jazzy", "MB902", "opens: nothing", "", {}),
+    Followed(
+        SENSORS,
+        "postfix",
+        "jazzy",
+        "MB416",
+        "--world-systems leave",
+        SENSORS,
+        {"world_systems": "leave"},
+    ),
+    Followed(
+        CONTROL.format(""),
+        "postfix",
+        "humble",
+        "MB426",
+        "--topics namespace",
+        CONTROL.format(""),
+        {"topics": "namespace"},
+    ),
+    Followed(IMU, "tf-per-robot", "jazzy", "MB425", "--layout both", IMU, {"layout": "both"}),
+    Followed(
+        HIT.format("~/hit"),
+        "postfix",
+        "jazzy",
+        "MB438",
+        "write both the same way",
+        HIT.format("hit"),
+        {},
+    ),
+    Followed(
+        DRIVE,
+        "tf-per-robot",
+        "humble",
+        "MG320",
+        "--layout frames-per-robot",
+        DRIVE,
+        {"layout": "frames-per-robot"},
+    ),
+    Followed(
+        PARAM.format("/robot_description"),
+        "postfix",
+        "humble",
+        "MB410",
+        "the part after the last slash",
+        PARAM.format("robot_description"),
+        {},
+    ),
+)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[it.code for it in ROWS])
+def test_what_the_hint_says_ends_in_proved(row: Followed) -> None:
+    before = rewrite(ROVER.format(row.text), "robot1", layout=row.layout, distro=row.distro)
+    assert before.not_proved
+    assert [it.hint for it in before.findings if it.code == row.code and row.hint in it.hint]
+    options = {"layout": row.layout, "distro": row.distro, **row.options}
+    assert rewrite(ROVER.format(row.after), "robot1", **options).not_proved == ()

@@ -1,0 +1,164 @@
+"""A whole package takes a prefix: launch files hand it on, an SRDF follows, what is left is listed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import adopt
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.producers.launch.door import missing
+
+SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
+JOINT = '  <joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint>\n'
+LAUNCH = """\
+import os
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+
+PATH = os.path.join(os.path.dirname(__file__), "..", "urdf", "r.urdf.xacro")
+
+
+def generate_launch_description():
+    text = Command(["xacro ", PATH])
+    return LaunchDescription([
+        Node(
+            package="robot_state_publisher",
+            executable="robot_state_publisher",
+            parameters=[{"robot_description": text}],
+        ),
+    ])
+"""
+XML = """\
+<launch>
+  <node pkg="robot_state_publisher" exec="robot_state_publisher">
+    <param name="robot_description" value="$(command 'xacro $(dirname)/../urdf/r.urdf.xacro')"/>
+  </node>
+</launch>
+"""
+# The description is read when the file is loaded, so the argument is not known there.
+EARLY = LAUNCH.replace(
+    'text = Command(["xacro ", PATH])',
+    'text = open(PATH).read()\n    unused = Command(["xacro ", "r.urdf.xacro"])',
+)
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package with one description."""
+    for folder in ("urdf", "launch", "src", "config"):
+        (tmp_path / "r" / folder).mkdir(parents=True)
+    (tmp_path / "r/package.xml").write_text("<package><name>r</name></package>")
+    (tmp_path / "r/urdf/r.urdf.xacro").write_text(ROBOT.format(JOINT))
+    return tmp_path / "r"
+
+
+NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
+FILES = [("a.launch.py", LAUNCH), pytest.param("a.launch.xml", XML, marks=NEEDS_LAUNCH)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "text"), FILES)
+def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text: str) -> None:
+    path = package / "launch" / name
+    path.write_text(text)
+    made = adopt(str(package), trust=True)
+    assert made.launches == (str(path),)
+    assert not [it for it in made.left if it.place.startswith(str(path))]
+    assert b"prefix" in made.after[str(path)]
+    assert made.before[str(path)] == text.encode()
+
+
+@pytest.mark.slow
+def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
+    path = package / "launch/a.launch.py"
+    path.write_text(EARLY)
+    made = adopt(str(package), trust=True)
+    assert made.launches == ()
+    assert str(path) not in made.after
+    (why,) = [it.why for it in made.left if it.place == str(path)]
+    assert why.startswith("it does not hand prefix on")
+
+
+@pytest.mark.slow
+def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path) -> None:
+    path = package / "launch/a.launch.py"
+    path.write_text(f"raise RuntimeError(1)\n{LAUNCH}")
+    made = adopt(str(package), trust=True)
+    assert (str(path) in made.after, made.launches) == (True, ())
+    assert any("not proved" in it.why for it in made.left if it.place == str(path))
+
+
+def test_without_trust_no_program_runs_and_it_is_said(package: Path) -> None:
+    path = package / "launch/a.launch.py"
+    path.write_text(f"{LAUNCH}\nraise SystemExit\n")
+    made = adopt(str(package))
+    assert str(path) in made.after
+    (why,) = [it.why for it in made.left if it.place == str(path)]
+    assert "which is proved with --trust alone" in why
+
+
+def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
+    srdf = package / "config/r.srdf"
+    srdf.write_text(
+        '<robot name="r"><group name="g"><joint name="j"/></group>'
+        '<disable_collisions link1="base" link2="arm" reason="Adjacent"/></robot>'
+    )
+    made = adopt(str(package))
+    text = made.after[f"{srdf}.xacro"].decode()
+    assert '<group name="g"><joint name="${prefix}j"/>' in text
+    assert 'link1="${prefix}base" link2="${prefix}arm"' in text
+    assert str(srdf) not in made.after
+    Path(f"{srdf}.xacro").write_text(text)
+    assert b'link1="base"' in expand(f"{srdf}.xacro", {})
+
+
+def test_names_in_code_and_data_are_listed_with_their_lines(package: Path) -> None:
+    files = {
+        "src/a.cpp": '// base\nauto frame = "base";\nauto other = "base_of_all";\n',
+        "src/b.py": "x = 1\n\nframe = 'arm'\n",
+        "config/c.yaml": "a:\n  ros__parameters: {joints: [j], frame: /base, own: based}\n",
+    }
+    for name, text in files.items():
+        (package / name).write_text(text)
+    made = adopt(str(package))
+    assert [(it.place.removeprefix(f"{package}/"), it.why) for it in made.left] == [
+        ("config/c.yaml:2", "it names 'j', which a prefix does not reach"),
+        ("src/a.cpp:2", "its code names 'base', which a prefix does not reach"),
+        ("src/b.py:3", "its code names 'arm', which a prefix does not reach"),
+    ]
+
+
+@pytest.mark.parametrize("name", ["prefix", "tf_prefix"])
+def test_a_description_that_takes_one_stays(
+    package: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = f'<xacro:arg name="{name}" default=""/>'
+    text = ROBOT.replace('name="base"', f'name="$(arg {name})base"')
+    text = text.replace('name="arm"', f'name="$(arg {name})arm"').replace("<link", f"{own}<link", 1)
+    text = text.format("")
+    (package / "urdf/r.urdf.xacro").write_text(text)
+    made = adopt(str(package))
+    assert made.already == {str(package / "urdf/r.urdf.xacro"): name}
+    assert made.after == {}
+    assert main(["adopt", str(package)]) == 0
+    assert f"it has such an argument already: {name}" in capsys.readouterr().err
+
+
+def test_an_argument_for_something_else_is_none(package: Path) -> None:
+    own = '<xacro:arg name="prefix" default=""/><gazebo reference="$(arg prefix)base"/>\n'
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(own))
+    made = adopt(str(package))
+    assert (made.argument, dict(made.already)) == ("robot_prefix", {})
+
+
+def test_one_that_takes_it_and_one_that_does_not(package: Path) -> None:
+    own = '<xacro:arg name="prefix" default=""/><link name="$(arg prefix)only"/>'
+    (package / "urdf/other.urdf.xacro").write_text(f'<robot name="o" {SPACE}>{own}</robot>')
+    made = adopt(str(package))
+    assert list(made.already) == [str(package / "urdf/other.urdf.xacro")]
+    assert made.proved == (str(package / "urdf/r.urdf.xacro"),)

@@ -1,0 +1,128 @@
+"""MoveIt's files of parts as one of each kind: what they become, by hand; what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from multibot_rewrite import InputError, Joined, Part, UsageError, join
+from multibot_rewrite.cli.multibot import main
+
+ARM = """\
+<robot name="arm">
+  <link name="base"/>
+  <link name="tool"/>
+  <joint name="turn" type="continuous">
+    <parent link="base"/><child link="tool"/><axis xyz="0 0 1"/>
+  </joint>
+</robot>
+"""
+SRDF = '<robot name="arm"><group name="arm"><joint name="turn"/></group></robot>\n'
+TABLE = '<robot name="cell"><link name="table"/></robot>\n'
+FILES = {
+    "kinematics.yaml": "arm:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n"
+    "  kinematics_solver_timeout: 0.05\n",
+    "my_joint_limits.yaml": "default_velocity_scaling_factor: SCALE\n"
+    "joint_limits:\n  turn: {has_velocity_limits: true, max_velocity: 2.0}\n",
+    "moveit_controllers.yaml": "moveit_simple_controller_manager:\n  controller_names: [follow]\n"
+    "  follow: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [turn]}\n",
+    "ompl_planning.yaml": "planner_configs: {Fast: {type: geometric::RRT}}\n"
+    "arm: {planner_configs: [Fast]}\n",
+}
+SOLVER = {
+    "kinematics_solver": "kdl_kinematics_plugin/KDLKinematicsPlugin",
+    "kinematics_solver_timeout": 0.05,
+}
+LIMIT = {"has_velocity_limits": True, "max_velocity": 2.0}
+MANAGER = "moveit_simple_controller_manager"
+
+
+def controller(joint: str) -> dict[str, Any]:
+    return {
+        "type": "FollowJointTrajectory",
+        "action_ns": "follow_joint_trajectory",
+        "joints": [joint],
+    }
+
+
+def arm_files(folder: Path, scale: float = 0.1, names: tuple[str, ...] = tuple(FILES)) -> list[str]:
+    folder.mkdir(exist_ok=True)
+    for name in names:
+        (folder / name).write_text(FILES[name].replace("SCALE", str(scale)))
+    return [str(folder / name) for name in names]
+
+
+def two(folder: Path, srdf: str | None = SRDF, scale: float = 0.1) -> Joined:
+    each = [("left_", 0.1), ("right_", scale)]
+    arms = [
+        Part(ARM, "table", prefix=it, srdf=srdf, moveit=arm_files(folder / it, factor))
+        for it, factor in each
+    ]
+    return join([Part(TABLE), *arms])
+
+
+def test_there_is_one_file_of_each_kind_with_the_names_of_all_parts(tmp_path: Path) -> None:
+    made = {name: yaml.safe_load(data) for name, data in two(tmp_path).moveit.items()}
+    assert made == {
+        "kinematics.yaml": {"left_arm": SOLVER, "right_arm": SOLVER},
+        "joint_limits.yaml": {
+            "default_velocity_scaling_factor": 0.1,
+            "joint_limits": {"left_turn": LIMIT, "right_turn": LIMIT},
+        },
+        "moveit_controllers.yaml": {
+            MANAGER: {
+                "controller_names": ["left_follow", "right_follow"],
+                "left_follow": controller("left_turn"),
+                "right_follow": controller("right_turn"),
+            }
+        },
+        "ompl_planning.yaml": {
+            "planner_configs": {"Fast": {"type": "geometric::RRT"}},
+            "left_arm": {"planner_configs": ["Fast"]},
+            "right_arm": {"planner_configs": ["Fast"]},
+        },
+    }
+
+
+def test_of_two_values_the_first_counts_and_it_is_told(tmp_path: Path) -> None:
+    made = two(tmp_path, scale=0.5)
+    limits = yaml.safe_load(made.moveit["joint_limits.yaml"])
+    assert limits["default_velocity_scaling_factor"] == 0.1
+    told = "default_velocity_scaling_factor is 0.5, before it 0.1, which is taken"
+    assert any(it.endswith(told) for it in made.notes)
+
+
+def test_a_file_of_servo_is_left_out_and_told(tmp_path: Path) -> None:
+    servo = tmp_path / "servo.yaml"
+    servo.write_text("move_group_name: arm\njoint_topic: /joint_states\n")
+    made = join([Part(TABLE), Part(ARM, "table", prefix="l_", srdf=SRDF, moveit=[str(servo)])])
+    assert made.moveit == {}
+    assert any("one servo_node, and left out" in it for it in made.notes)
+
+
+def test_groups_without_an_srdf_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"kinematics.yaml: .*; name its SRDF, too"):
+        two(tmp_path, srdf=None)
+
+
+def test_a_file_that_is_not_moveits_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "other.yaml").write_text("something: {else: 1}\n")
+    with pytest.raises(InputError, match=r"other\.yaml"):
+        join([Part(TABLE), Part(ARM, "table", moveit=[str(tmp_path / "other.yaml")])])
+
+
+def test_the_command_writes_them_beside_the_description(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("table.urdf", TABLE), ("arm.urdf", ARM), ("arm.srdf", SRDF)):
+        (tmp_path / name).write_text(text)
+    given = ",".join(arm_files(tmp_path / "config", names=("kinematics.yaml",)))
+    words = ["join", "table.urdf", "arm.urdf", "--at", "table", "--prefix", "l_"]
+    words += ["--srdf", "", "--srdf", "arm.srdf", "--moveit", "", "--moveit", given]
+    assert main([*words, "-o", "robot.urdf", "-q"]) == 0
+    assert yaml.safe_load(Path("robot_kinematics.yaml").read_text()) == {"l_arm": SOLVER}
+    assert main([*words, "-q"]) == 2
