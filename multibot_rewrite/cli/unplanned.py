@@ -7,7 +7,6 @@ import argparse
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
@@ -107,6 +106,7 @@ def _write(
     if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
+        from multibot_rewrite.base.editors import schema_line
         from multibot_rewrite.knowledge.stacks import built_in
         from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
