@@ -23,7 +23,7 @@ OF_SEVERAL = (
     "rexrov_oberon7_sl3__ns.urdf",  # links of rexrov and of robot1
     "rexrov_predator__ns.urdf",  # the same
     "dg5f_both_gz.urdf",  # two hands, each below the world
-    "aloha_split.urdf",  # four arms, each below the world
+    "aloha_v2.urdf",  # four arms, each below the world
     "three_robots.urdf",
     "daVinci.urdf",  # two mountings, each below the world
     "both_psms.classic.urdf",  # two arms, each below the world
