@@ -19,7 +19,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.producers.ros.headers import HeaderSamples, sensor_topics
+from multibot_rewrite.producers.ros.headers import HeaderSamples, SensorTopic, sensor_topics
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.system.index import index
@@ -252,6 +252,11 @@ def test_images_and_topics_of_two_have_no_rate() -> None:
     assert rate_of(second) == 10.0
     assert rate_of(second, "sensor_msgs/msg/Image") == 0.0
     assert rate_of(second, senders=2) == 0.0
+
+
+def test_what_is_latched_has_no_rate() -> None:
+    topic = SensorTopic("/scan", SCAN, False, 1)
+    assert topic.has_rate and not topic._replace(latched=True).has_rate
 
 
 def test_numbers_that_stand_end_the_subscription() -> None:
