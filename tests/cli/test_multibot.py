@@ -326,6 +326,7 @@ def test_the_json_says_all_of_it(multibot: Multibot, two: Path) -> None:
                 }
             ],
         },
+        "spawners": [],
     }
 
 
