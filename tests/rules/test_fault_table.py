@@ -16,7 +16,7 @@ from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
 from healthy_systems import OF_EACH_RELEASE, SYSTEMS, plan, slam_with_filters, started
 from healthy_twins import TWINS, sent_twice_alike
 from paths import ROOT
-from vendor_systems import RELEASES, VENDORS
+from vendor_graphs import RELEASES, VENDORS
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot

@@ -1,376 +1,318 @@
-"""Two robots of a vendor each, with Nav2 and the nodes that the vendor's own launch files start.
+"""What vendors' launch files start, against what a plan has: by their own files, and by launch files.
 
-Names and types are those of the sources named beside each; nothing is wrong in any of them.
+    python tests/support/vendor_systems.py [SYSTEM ...]      print each node
+    python tests/support/vendor_systems.py --write           write the figures into docs/vendors.md
+
+MULTIBOT_SOURCES names a folder with checkouts of the repositories that ``vendors/*.yaml`` names, under
+these names. Needs launch and launch_ros. The judge is ``launch_recorder.py``: the real launch with
+programs that do nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
 
-from graph_cases import sent, without_node
-from healthy_systems import (
-    CLOCK,
-    JOINTS,
-    ODOMETRY,
-    SCAN,
-    TF,
-    TRIGGER,
-    TWIST,
-    TWO,
-    Row,
-    started,
-    with_ends,
-    with_node,
+import yaml
+from vendor_rows import parameter_rows
+from vendor_sources import WITHOUT, install, packages_below, sources_folder
+
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.system.records import RUNS, System
+
+HERE = Path(__file__).parent
+PAGE = HERE.parent.parent / "docs" / "vendors.md"
+RECORDER = HERE / "launch_recorder.py"
+ROBOT, OTHER = "robot1", "robot2"
+HEAD = """\
+# Vendors' robots: the plan and what their launch files start
+
+Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_systems.py --write`. It runs the vendors'
+launch files in the real `launch`, with programs that do nothing. *Named* are those of the started nodes
+that the plan has, *topics* those whose topics, services and actions it has too, *wrong* nodes that
+must run by the plan and that nothing starts. *Files* is the plan by the robot's own files and stacks,
+*launch* has its launch files besides, *before* stacks alone. Without `--write` it prints each node.
+
+| system | nodes | before | files: named | topics | wrong | launch: named | topics | wrong |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|\
+"""
+# Of the spawner: options with a value.
+_VALUED = (
+    *("-c", "--controller-manager", "-p", "--param-file", "-n", "--namespace", "-t"),
+    *("--controller-type", "--controller-manager-timeout", "--switch-timeout"),
+    *("--service-call-timeout", "--controller-ros-args"),
+)
+_PASSING = (
+    *("create", "spawn_entity.py", "gz_spawn_model", "generate_description", "generate_launch"),
+    *("generate_param", "generate_semantic_description", "wait_for_robot_description"),
 )
 
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, System
 
-RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
-STAMPED, IMU = "geometry_msgs/msg/TwistStamped", "sensor_msgs/msg/Imu"
-BATTERY, JOY, TEXT = "sensor_msgs/msg/BatteryState", "sensor_msgs/msg/Joy", "std_msgs/msg/String"
-BOOL, IMAGE, POINTS = "std_msgs/msg/Bool", "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"
-INFO, DIAGNOSTICS = "sensor_msgs/msg/CameraInfo", "diagnostic_msgs/msg/DiagnosticArray"
-# A node below a robot -> its rows, names below it unless they begin with a slash.
-Rows = Mapping[str, Sequence[Row]]
-DRIVER = ("diff_drive", "joint_states", "lidar_driver", "camera_driver", "imu_driver")
-LISTENS = ((SUBSCRIBES, "tf", TF), (SUBSCRIBES, "tf_static", TF))
+class Vendors(NamedTuple):
+    """The systems, what their nodes are called in their code, and what is only a stand-in."""
+
+    systems: Mapping[str, Mapping[str, Any]]
+    named: Mapping[str, Mapping[str, Any]]
+    empty: Mapping[str, list[str]]
+    sources: Mapping[str, str]
 
 
-def of_vendor(rows: Rows, release: str, leave_out: Iterable[str] = DRIVER) -> System:
-    """Two robots with Nav2, with these nodes in place of the usual drivers."""
-    graph = started(("nav2",), release=release)
-    for robot in TWO:
-        for node in leave_out:
-            graph = without_node(graph, f"/{robot}/{node}")
-        for node, own in rows.items():
-            placed = ((role, _placed(name, robot), type_) for role, name, type_ in own)
-            graph = with_node(graph, f"/{robot}/{node}", *placed)
-    return sent(graph)
+class Started(NamedTuple):
+    """A node that runs, by the judge; ``by`` is package and executable, or what starts it, and
+    ``parameters`` are those that are true."""
+
+    name: str
+    by: str
+    rules: tuple[tuple[str, str], ...] = ()
+    parameters: tuple[str, ...] = ()
 
 
-def _placed(name: str, robot: str) -> str:
-    return name if name.startswith("/") else f"/{robot}/{name}"
+class Outcome(NamedTuple):
+    """A system: the nodes that its launch files start, its plan without and with them, and the
+    fleet of the latter."""
+
+    name: str
+    before: str
+    started: Mapping[str, Started]
+    own: System
+    launched: System
+    fleet: Fleet
 
 
-# The Create 3 itself is hidden below _do_not_use.
-# turtlebot4_bringup@humble: robot.launch.py, standard.launch.py.
-_CREATE = "irobot_create_msgs/msg"
-_HIDDEN = (
-    ("battery_state", BATTERY),
-    ("cliff_intensity", f"{_CREATE}/IrIntensityVector"),
-    ("dock_status", f"{_CREATE}/DockStatus"),
-    ("hazard_detection", f"{_CREATE}/HazardDetectionVector"),
-    ("imu", IMU),
-    ("interface_buttons", f"{_CREATE}/InterfaceButtons"),
-    ("odom", ODOMETRY),
-    ("tf", TF),
-    ("wheel_status", f"{_CREATE}/WheelStatus"),
-)
-_REPUBLISHED = (
-    *((SUBSCRIBES, f"_do_not_use/{name}", type_) for name, type_ in _HIDDEN),
-    *((PUBLISHES, name, type_) for name, type_ in _HIDDEN),
-    (SUBSCRIBES, "cmd_vel", TWIST), (PUBLISHES, "_do_not_use/cmd_vel", TWIST),
-    (SERVES, "e_stop", "irobot_create_msgs/srv/EStop"),
-    (CALLS, "_do_not_use/e_stop", "irobot_create_msgs/srv/EStop"),
-    (SERVES, "dock", "irobot_create_msgs/action/Dock"),
-    (CALLS, "_do_not_use/dock", "irobot_create_msgs/action/Dock"),
-)  # fmt: skip
-TURTLEBOT4: Rows = {
-    "_do_not_use/create3": (
-        *((PUBLISHES, f"_do_not_use/{name}", type_) for name, type_ in _HIDDEN),
-        (SUBSCRIBES, "_do_not_use/cmd_vel", TWIST),
-        (SERVES, "_do_not_use/e_stop", "irobot_create_msgs/srv/EStop"),
-        (SERVES, "_do_not_use/dock", "irobot_create_msgs/action/Dock"),
-    ),
-    "create3_repub": _REPUBLISHED,
-    # turtlebot4.cpp
-    "turtlebot4_node": (
-        (SUBSCRIBES, "battery_state", BATTERY), (SUBSCRIBES, "joy", JOY),
-        (SUBSCRIBES, "dock_status", f"{_CREATE}/DockStatus"),
-        (SUBSCRIBES, "wheel_status", f"{_CREATE}/WheelStatus"),
-        (SUBSCRIBES, "interface_buttons", f"{_CREATE}/InterfaceButtons"),
-        (SUBSCRIBES, "hmi/buttons", "turtlebot4_msgs/msg/UserButton"),
-        (SUBSCRIBES, "hmi/led", "turtlebot4_msgs/msg/UserLed"),
-        (SUBSCRIBES, "hmi/display/message", TEXT),
-        (PUBLISHES, "ip", TEXT), (PUBLISHES, "function_calls", TEXT),
-        (PUBLISHES, "hmi/display", "turtlebot4_msgs/msg/UserDisplay"),
-        (CALLS, "e_stop", "irobot_create_msgs/srv/EStop"),
-        (CALLS, "robot_power", "irobot_create_msgs/srv/RobotPower"),
-        (CALLS, "start_motor", "std_srvs/srv/Empty"), (CALLS, "oakd/start_camera", TRIGGER),
-        (CALLS, "dock", "irobot_create_msgs/action/Dock"),
-    ),
-    "turtlebot4_base_node": (
-        (PUBLISHES, "hmi/buttons", "turtlebot4_msgs/msg/UserButton"),
-        (SUBSCRIBES, "hmi/display", "turtlebot4_msgs/msg/UserDisplay"),
-        *((SUBSCRIBES, f"hmi/led/_{it}", "std_msgs/msg/Int32") for it in ("power", "motors")),
-    ),
-    "joy_linux_node": (
-        (PUBLISHES, "joy", JOY), (SUBSCRIBES, "joy/set_feedback", "sensor_msgs/msg/JoyFeedback"),
-    ),
-    "rplidar_composition": (
-        (PUBLISHES, "scan", SCAN), (SERVES, "start_motor", "std_srvs/srv/Empty"),
-        (SERVES, "stop_motor", "std_srvs/srv/Empty"),
-    ),
-    "oakd": (
-        (PUBLISHES, "oakd/rgb/preview/image_raw", IMAGE),
-        (PUBLISHES, "oakd/rgb/preview/camera_info", INFO),
-        (SERVES, "oakd/start_camera", TRIGGER), (SERVES, "oakd/stop_camera", TRIGGER),
-    ),
-    "joint_state_publisher": (
-        (SUBSCRIBES, "robot_description", TEXT), (PUBLISHES, "joint_states", JOINTS),
-    ),
-    "turtlebot4_diagnostics": (
-        (SUBSCRIBES, "battery_state", BATTERY), (SUBSCRIBES, "scan", SCAN),
-        (PUBLISHES, "diagnostics", DIAGNOSTICS),
-    ),
-    "analyzers": (
-        (SUBSCRIBES, "diagnostics", DIAGNOSTICS), (PUBLISHES, "diagnostics_agg", DIAGNOSTICS),
-    ),
-}  # fmt: skip
+def read_vendors() -> Vendors:
+    """All systems of ``vendors/*.yaml``."""
+    parts = [
+        yaml.load(it.read_bytes(), yaml.CSafeLoader) for it in sorted(HERE.glob("vendors/*.yaml"))
+    ]
+    merged: dict[str, dict[str, Any]] = {key: {} for key in Vendors._fields}
+    for part in parts:
+        for system in part["systems"].values():
+            system.setdefault("uses", list(part["sources"]))
+        for key, rows in part.items():
+            merged[key] |= rows or {}
+    return Vendors(**merged)
 
 
-def turtlebot4(release: str) -> System:
-    """What the Create 3 sends on its own tf comes once more on the robot's.
-
-    Without its teleop_twist_joy, which sends cmd_vel beside Nav2: what MG312 says of that is true.
-    """
-    graph = of_vendor(TURTLEBOT4, release)
-    hidden = (Edge("base_link", "odom", f"/{it}/_do_not_use/tf", False, ()) for it in TWO)
-    return sent(graph._replace(edges=(*graph.edges, *hidden)))
-
-
-# husarion_ugv_ros@ros2: controller.launch.py,
-# localization.launch.py, *_node.cpp, system_ros_interface.cpp.
-_UGV, _SET_BOOL = "husarion_ugv_msgs/msg", "std_srvs/srv/SetBool"
-HUSARION: Rows = {
-    "controller_manager": (
-        (SUBSCRIBES, "robot_description", TEXT), (PUBLISHES, "diagnostics", DIAGNOSTICS),
-    ),
-    "joint_state_broadcaster": (
-        (PUBLISHES, "joint_states", JOINTS),
-        (PUBLISHES, "dynamic_joint_states", "control_msgs/msg/DynamicJointState"),
-    ),
-    # Chained before drive_controller.
-    "twist_mux_controller": (
-        (SUBSCRIBES, "manual/cmd_vel", STAMPED), (SUBSCRIBES, "autonomous/cmd_vel", STAMPED),
-        (SUBSCRIBES, "cmd_vel", STAMPED),
-    ),
-    "drive_controller": (
-        (PUBLISHES, "odometry/wheels", ODOMETRY),
-        (PUBLISHES, "drive_controller/_transition_event", "lifecycle_msgs/msg/TransitionEvent"),
-    ),
-    "imu_broadcaster": ((PUBLISHES, "imu/data", IMU),),
-    "hardware_controller": (
-        (PUBLISHES, "hardware/robot_driver_state", f"{_UGV}/RobotDriverState"),
-        (PUBLISHES, "hardware/io_state", f"{_UGV}/IOState"), (PUBLISHES, "hardware/e_stop", BOOL),
-        (SERVES, "hardware/e_stop_trigger", TRIGGER), (SERVES, "hardware/e_stop_reset", TRIGGER),
-        (SERVES, "hardware/led_control_enable", _SET_BOOL),
-    ),
-    "battery_driver": (
-        (SUBSCRIBES, "hardware/robot_driver_state", f"{_UGV}/RobotDriverState"),
-        (SUBSCRIBES, "hardware/io_state", f"{_UGV}/IOState"),
-        (PUBLISHES, "battery/battery_status", BATTERY),
-        (PUBLISHES, "_battery/battery_1_status_raw", BATTERY),
-        (PUBLISHES, "_battery/battery_2_status_raw", BATTERY),
-    ),
-    "ekf_filter": (
-        (SUBSCRIBES, "odometry/wheels", ODOMETRY), (SUBSCRIBES, "imu/data", IMU),
-        (PUBLISHES, "odom", ODOMETRY), (PUBLISHES, "tf", TF),
-        (SUBSCRIBES, "set_pose", "geometry_msgs/msg/PoseWithCovarianceStamped"), *LISTENS,
-    ),
-    "joy2twist": (
-        (SUBSCRIBES, "joy", JOY), (PUBLISHES, "manual/cmd_vel", STAMPED),
-        (CALLS, "hardware/e_stop_trigger", TRIGGER), (CALLS, "hardware/e_stop_reset", TRIGGER),
-    ),
-    "joy_node": ((PUBLISHES, "joy", JOY),),
-    "lights_controller": (
-        (PUBLISHES, "lights/channel_1_frame", IMAGE), (PUBLISHES, "lights/channel_2_frame", IMAGE),
-        (SERVES, "lights/set_animation", "husarion_ugv_msgs/srv/SetLEDAnimation"),
-    ),
-    "lights_driver": (
-        (SUBSCRIBES, "lights/channel_1_frame", IMAGE), (SUBSCRIBES, "lights/channel_2_frame", IMAGE),
-        (CALLS, "hardware/led_control_enable", _SET_BOOL),
-    ),
-    "lights_manager": (
-        (SUBSCRIBES, "battery/battery_status", BATTERY), (SUBSCRIBES, "hardware/e_stop", BOOL),
-        (CALLS, "lights/set_animation", "husarion_ugv_msgs/srv/SetLEDAnimation"),
-    ),
-    "safety_manager": (
-        (SUBSCRIBES, "battery/battery_status", BATTERY), (SUBSCRIBES, "hardware/e_stop", BOOL),
-        (SUBSCRIBES, "hardware/io_state", f"{_UGV}/IOState"),
-        (SUBSCRIBES, "hardware/robot_driver_state", f"{_UGV}/RobotDriverState"),
-        (SUBSCRIBES, "system_status", f"{_UGV}/SystemStatus"),
-        (CALLS, "hardware/e_stop_trigger", TRIGGER),
-    ),
-    "system_monitor": (
-        (PUBLISHES, "system_status", f"{_UGV}/SystemStatus"), (PUBLISHES, "diagnostics", DIAGNOSTICS),
-    ),
-    "lidar": ((PUBLISHES, "scan", SCAN),),
-}  # fmt: skip
+def filled(value: Any, words: Mapping[str, str]) -> Any:
+    """A value with ``{sources}``, ``{work}`` and ``{robot}`` replaced in every text."""
+    if isinstance(value, str):
+        for word, text in words.items():
+            value = value.replace(f"{{{word}}}", text)
+        return value
+    if isinstance(value, dict):
+        return {filled(key, words): filled(it, words) for key, it in value.items()}
+    return [filled(it, words) for it in value] if isinstance(value, list) else value
 
 
-def husarion(release: str) -> System:
-    """Nav2 with enable_stamped_cmd_vel, which all of Husarion's nodes want."""
-    graph = of_vendor(HUSARION, release)
-    ends = (it._replace(type=STAMPED) if it.type == TWIST else it for it in graph.ends)
-    return sent(graph._replace(ends=tuple(ends)))
+def prepare(system: Mapping[str, Any], words: Mapping[str, str]) -> None:
+    """Write the files of a robot, and run the vendor's generators for it."""
+    for path, text in filled(system.get("files", {}), words).items():
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        Path(path).write_text(text)
+    for path, source in filled(system.get("links", {}), words).items():
+        if not Path(path).exists():
+            Path(path).symlink_to(source)
+    for command in filled(system.get("prepare", []), words):
+        subprocess.run([sys.executable, *command.split()], check=True, stdout=subprocess.DEVNULL)
 
 
-# clearpath_common@jazzy, clearpath_control:
-# (control, localization, teleop_base, teleop_joy launch files, a200).
-_MARKERS = "visualization_msgs/msg/InteractiveMarker"
-CLEARPATH: Rows = {
-    "controller_manager": (
-        (SUBSCRIBES, "robot_description", TEXT), (PUBLISHES, "diagnostics", DIAGNOSTICS),
-    ),
-    "joint_state_broadcaster": (
-        (PUBLISHES, "platform/joint_states", JOINTS),
-        (PUBLISHES, "platform/dynamic_joint_states", "control_msgs/msg/DynamicJointState"),
-    ),
-    "platform_velocity_controller": (
-        (SUBSCRIBES, "platform/cmd_vel_unstamped", TWIST), (PUBLISHES, "platform/odom", ODOMETRY),
-    ),
-    "ekf_node": (
-        (SUBSCRIBES, "platform/odom", ODOMETRY), (SUBSCRIBES, "sensors/imu_0/data", IMU),
-        (PUBLISHES, "platform/odom/filtered", ODOMETRY), (PUBLISHES, "tf", TF), *LISTENS,
-    ),
-    "twist_mux": (
-        (SUBSCRIBES, "joy_teleop/cmd_vel", TWIST), (SUBSCRIBES, "twist_marker_server/cmd_vel", TWIST),
-        (SUBSCRIBES, "rc_teleop/cmd_vel", TWIST), (SUBSCRIBES, "cmd_vel", TWIST),
-        (SUBSCRIBES, "platform/emergency_stop", BOOL), (PUBLISHES, "platform/cmd_vel_unstamped", TWIST),
-        (PUBLISHES, "diagnostics", DIAGNOSTICS),
-    ),
-    "joy_teleop/joy_node": ((PUBLISHES, "joy_teleop/joy", JOY),),
-    "joy_teleop/teleop_twist_joy_node": (
-        (SUBSCRIBES, "joy_teleop/joy", JOY), (PUBLISHES, "joy_teleop/cmd_vel", TWIST),
-    ),
-    "twist_server_node": (
-        (PUBLISHES, "twist_marker_server/cmd_vel", TWIST),
-        (PUBLISHES, "twist_marker_server/update", f"{_MARKERS}Update"),
-        (SUBSCRIBES, "twist_marker_server/feedback", f"{_MARKERS}Feedback"),
-    ),
-    "puma_control": ((PUBLISHES, "platform/emergency_stop", BOOL),),
-    "sensors/imu_0/imu_filter_node": (
-        (SUBSCRIBES, "sensors/imu_0/data_raw", IMU), (PUBLISHES, "sensors/imu_0/data", IMU),
-    ),
-    "sensors/imu_0/driver": ((PUBLISHES, "sensors/imu_0/data_raw", IMU),),
-    "sensors/lidar2d_0/driver": ((PUBLISHES, "sensors/lidar2d_0/scan", SCAN),),
-}  # fmt: skip
+def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str]) -> list[Started]:
+    """The nodes of one robot, by the real launch."""
+    rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
+    below = filled(system.get("below", ""), words)
+    nodes = [it for row in rows for it in started_by(row, vendors.named)]
+    found = [_below(it, below) for it in nodes]
+    also = filled(system.get("simulator", {}), words)
+    return [*found, *(Started(f"/{words['robot']}/{name}", by) for name, by in also.items())]
 
 
-def clearpath(release: str) -> System:
-    """Nav2 takes the platform's odometry and the lidar's scan by remap rules (clearpath_nav2_demos)."""
-    graph = of_vendor(CLEARPATH, release)
-    moved = {"odom": "platform/odom/filtered", "scan": "sensors/lidar2d_0/scan"}
-    moved["joint_states"] = "platform/joint_states"
-    full = {f"/{it}/{old}": f"/{it}/{new}" for it in TWO for old, new in moved.items()}
-    ends = (it._replace(name=full.get(it.name, it.name)) for it in graph.ends)
-    return sent(graph._replace(ends=tuple(ends)))
+def _recorded(line: str) -> list[dict[str, Any]]:
+    command = [sys.executable, str(RECORDER), *line.split()]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    # The world that Nav2 makes is looked for at the end; the program that makes it did not run.
+    bad = [it for it in done.stderr.splitlines() if "Caught" in it and "/nav2_" not in it]
+    if bad:
+        raise SystemExit(f"{line}\n{bad[0]}")
+    *_, rows = done.stdout.rpartition("\n[")
+    found: list[dict[str, Any]] = json.loads(f"[{rows.lstrip('[')}")
+    return found
 
 
-# rmf_ros2@main: rmf_fleet_adapter agv/Node.cpp, rmf_traffic_ros2 StandardNames.hpp, rmf_task_ros2;
-# free_fleet (nav2 over Zenoh): its adapter is a client of each robot.
-_RMF = (
-    ("/rmf_traffic_schedule_primary", (
-        (PUBLISHES, "/rmf_traffic/participants", "rmf_traffic_msgs/msg/Participants"),
-        (PUBLISHES, "/rmf_traffic/heartbeat", "rmf_traffic_msgs/msg/Heartbeat"),
-        (SUBSCRIBES, "/rmf_traffic/itinerary_set", "rmf_traffic_msgs/msg/ItinerarySet"),
-        (SERVES, "/rmf_traffic/register_participant", "rmf_traffic_msgs/srv/RegisterParticipant"),
-    )),
-    ("/rmf_traffic_schedule_monitor", (
-        (SUBSCRIBES, "/rmf_traffic/heartbeat", "rmf_traffic_msgs/msg/Heartbeat"),
-    )),
-    ("/rmf_traffic_blockade_node", (
-        (SUBSCRIBES, "/rmf_traffic/blockade_set", "rmf_traffic_msgs/msg/BlockadeSet"),
-        (PUBLISHES, "/rmf_traffic/blockade_heartbeat", "rmf_traffic_msgs/msg/BlockadeHeartbeat"),
-    )),
-    ("/building_map_server", (
-        (PUBLISHES, "/map", "rmf_building_map_msgs/msg/BuildingMap"),
-        (SERVES, "/get_building_map", "rmf_building_map_msgs/srv/GetBuildingMap"),
-    )),
-    ("/door_supervisor", (
-        (SUBSCRIBES, "/adapter_door_requests", "rmf_door_msgs/msg/DoorRequest"),
-        (PUBLISHES, "/door_requests", "rmf_door_msgs/msg/DoorRequest"),
-        (PUBLISHES, "/door_supervisor_heartbeat", "rmf_door_msgs/msg/SupervisorHeartbeat"),
-        (SUBSCRIBES, "/door_states", "rmf_door_msgs/msg/DoorState"),
-    )),
-    ("/lift_supervisor", (
-        (SUBSCRIBES, "/adapter_lift_requests", "rmf_lift_msgs/msg/LiftRequest"),
-        (PUBLISHES, "/lift_requests", "rmf_lift_msgs/msg/LiftRequest"),
-        (SUBSCRIBES, "/lift_states", "rmf_lift_msgs/msg/LiftState"),
-    )),
-    ("/rmf_dispatcher_node", (
-        (SUBSCRIBES, "/task_api_requests", "rmf_task_msgs/msg/ApiRequest"),
-        (PUBLISHES, "/task_api_responses", "rmf_task_msgs/msg/ApiResponse"),
-        (PUBLISHES, "/rmf_task/bid_notice", "rmf_task_msgs/msg/BidNotice"),
-        (SUBSCRIBES, "/rmf_task/bid_response", "rmf_task_msgs/msg/BidResponse"),
-    )),
-    ("/fleet_adapter", (
-        (SUBSCRIBES, "/door_states", "rmf_door_msgs/msg/DoorState"),
-        (PUBLISHES, "/adapter_door_requests", "rmf_door_msgs/msg/DoorRequest"),
-        (SUBSCRIBES, "/lift_states", "rmf_lift_msgs/msg/LiftState"),
-        (PUBLISHES, "/adapter_lift_requests", "rmf_lift_msgs/msg/LiftRequest"),
-        (PUBLISHES, "/fleet_states", "rmf_fleet_msgs/msg/FleetState"),
-        (SUBSCRIBES, "/map", "rmf_building_map_msgs/msg/BuildingMap"),
-        (PUBLISHES, "/mutex_group_request", "rmf_fleet_msgs/msg/MutexGroupRequest"),
-        (SUBSCRIBES, "/mutex_group_request", "rmf_fleet_msgs/msg/MutexGroupRequest"),
-        (SUBSCRIBES, "/rmf_task/bid_notice", "rmf_task_msgs/msg/BidNotice"),
-        (PUBLISHES, "/rmf_task/bid_response", "rmf_task_msgs/msg/BidResponse"),
-        (PUBLISHES, "/rmf_traffic/itinerary_set", "rmf_traffic_msgs/msg/ItinerarySet"),
-        (CALLS, "/rmf_traffic/register_participant", "rmf_traffic_msgs/srv/RegisterParticipant"),
-    )),
-    ("/fleet_manager", tuple(
-        row for it in TWO for row in (
-            (SUBSCRIBES, f"/{it}/battery_state", BATTERY),
-            (CALLS, f"/{it}/navigate_to_pose", "nav2_msgs/action/NavigateToPose"),
-            (SUBSCRIBES, f"/{it}/tf", TF),
+def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
+    """The nodes of a program: it may have several, and a spawner has its controllers."""
+    by = f"{row['package']}/{row['executable']}"
+    if not row["package"] or row["executable"] in _PASSING:
+        return
+    namespace = f"/{row['namespace'].strip('/')}".rstrip("/")
+    if row["executable"] == "spawner":
+        home = _home(row["own"], namespace)
+        yield from (Started(f"{home}/{it}", by) for it in _positional(row["own"]))
+        return
+    names = named.get(by, {}).get("nodes", [""])
+    own = row["name"] or names[0]
+    if not own:
+        raise SystemExit(f"{by} has no name in its launch file: add it to named, with its source")
+    rules = tuple((old, new) for old, new in row["rules"])
+    for name in (own, *names[1:]):
+        full = f"{namespace}/{name}"
+        values = parameter_rows((it["text"] for it in row.get("values", ())), full)
+        yield Started(full, by, rules, tuple(key for key, it in values.items() if it == "True"))
+
+
+def _below(it: Started, namespace: str) -> Started:
+    """The node in a namespace; one RViz serves all robots."""
+    alone = not namespace or it.by.startswith("rviz2/")
+    return it if alone else it._replace(name=f"/{namespace}{it.name}")
+
+
+def _home(words: list[str], namespace: str) -> str:
+    """The namespace of the controller manager that a spawner is told: controllers run in it. A relative
+    name is below that of the spawner, which is an option, too (spawner.py)."""
+    given = dict(pairwise(words))
+    manager = given.get("-c") or given.get("--controller-manager") or "controller_manager"
+    own = given.get("-n") or given.get("--namespace") or namespace
+    above = "" if manager.startswith("/") else f"/{own.strip('/')}"
+    return f"{above}/{manager.strip('/')}".rpartition("/")[0].replace("//", "/").rstrip("/")
+
+
+def _positional(words: Iterable[str]) -> Iterator[str]:
+    rest = iter(words)
+    for word in rest:
+        if word in _VALUED:
+            next(rest, None)
+        elif not word.startswith("-"):
+            yield word
+
+
+def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Fleet:
+    """The plan of two robots by the vendor's files, with its launch files or without."""
+    work = Path(words["work"])
+    robots = []
+    for robot in (ROBOT, OTHER):
+        mine = {**words, "robot": robot}
+        entry = {"name": robot, **filled(system.get("robot", {}), mine)}
+        robots.append(entry | ({"launch": filled(system["launch"], mine)} if launch else {}))
+    fleet = {"layout": "tf-per-robot", "distro": system["release"], "robots": robots}
+    file = work / "fleet.yaml"
+    file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
+    return plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet
+
+
+def missing(system: Mapping[str, Any], folder: Path) -> list[str]:
+    """The checkouts that a system needs and that are not there."""
+    return [it for it in system["uses"] if not (folder / it).is_dir()]
+
+
+def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
+    """Run the judge and both plans of a system."""
+    system = vendors.systems[name]
+    used = (packages_below(folder / it) for it in reversed(system["uses"]))
+    packages = {name: path for found in used for name, path in found.items()}
+    with tempfile.TemporaryDirectory() as work:
+        environment = install(packages, Path(work) / "prefix", vendors.empty)
+        before = dict(os.environ)
+        os.environ.update(
+            environment, ROS_DISTRO=system["release"], **system.get("environment", {})
         )
-    )),
-)  # fmt: skip
+        try:
+            words = {"sources": str(folder), "work": work, "robot": ROBOT}
+            for robot in (ROBOT, OTHER):
+                prepare(system, {**words, "robot": robot})
+            nodes = {it.name: it for it in started(system, vendors, words)}
+            own, launched = (planned(system, words, launch) for launch in (False, True))
+        finally:
+            os.environ.clear()
+            os.environ.update(before)
+    plans = (expected(own), expected(launched))
+    return Outcome(name, str(system.get("before", "")), nodes, *plans, launched)
 
 
-def open_rmf(release: str) -> System:
-    graph = started(("nav2",), release=release)
-    for robot in TWO:
-        graph = with_node(
-            graph, f"/{robot}/battery", (PUBLISHES, f"/{robot}/battery_state", BATTERY)
+def nodes_of(plan: System) -> dict[str, bool]:
+    """The nodes of a plan that belong to the first robot or to all, and whether each has to run."""
+    own = {it.name: it.sure == RUNS for it in plan.nodes if it.robot == ROBOT}
+    return {**own, **{it.name: False for it in plan.nodes if not it.robot}}
+
+
+def wrong(plan: System, there: Mapping[str, Started]) -> list[str]:
+    """Nodes that have to run by the plan, and that nothing starts."""
+    return [it for it, runs in nodes_of(plan).items() if runs and it not in there]
+
+
+def with_topics(plan: System, there: Mapping[str, Started]) -> list[str]:
+    """Nodes that run, and whose topics, services and actions the plan has."""
+    known = {it.node for it in plan.ends}
+    return [it for it in nodes_of(plan) if it in there and it in known]
+
+
+def page(outcomes: Iterable[Outcome]) -> str:
+    """The page: a row a system."""
+    return "\n".join([HEAD, *map(_row, outcomes), ""])
+
+
+def _row(it: Outcome) -> str:
+    there = it.started
+    cells = [it.name, len(there), it.before or "-"]
+    for plan in (it.own, it.launched):
+        named = [name for name in nodes_of(plan) if name in there]
+        cells += [len(named), len(with_topics(plan, there)), len(wrong(plan, there))]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def _table(it: Outcome) -> Iterator[str]:
+    plans = [
+        (
+            nodes_of(plan),
+            {it.name: f"stack {it.stack}" if it.stack else str(it.place) for it in plan.nodes},
         )
-    for node, rows in _RMF:
-        graph = with_node(graph, node, *rows)
-    return sent(graph)
+        for plan in (it.own, it.launched)
+    ]
+    yield from ("", f"## {it.name}", "")
+    yield "| node | started by | by its files | by its launch files | topics |"
+    yield "|---|---|---|---|---|"
+    for name, node in sorted(it.started.items()):
+        cells = [
+            _short(origins.get(name, "added")) if name in there else "" for there, origins in plans
+        ]
+        topics = "known" if name in with_topics(it.launched, it.started) else ""
+        yield f"| `{name}` | {node.by} | {cells[0]} | {cells[1]} | {topics} |"
+    for word, plan in (("files", it.own), ("launch files", it.launched)):
+        bad = wrong(plan, it.started)
+        yield from [f"\nWrong by its {word}: {', '.join(bad)}."] if bad else []
 
 
-# Isaac Sim: one process whose OmniGraph nodes are ROS nodes, one an end, named after their place in the
-# stage (isaacsim.ros2.bridge); carter_navigation multiple_robot_carter_navigation_hospital.launch.py.
-ISAAC: Rows = {
-    "ros2_publish_odometry": ((PUBLISHES, "odom", ODOMETRY),),
-    "ros2_publish_raw_transform_tree": ((PUBLISHES, "tf", TF),),
-    "ros2_publish_transform_tree": ((PUBLISHES, "tf", TF),),
-    "ros2_publish_joint_state": ((PUBLISHES, "joint_states", JOINTS),),
-    "ros2_subscribe_joint_state": ((SUBSCRIBES, "joint_command", JOINTS),),
-    "ros2_subscribe_twist": ((SUBSCRIBES, "cmd_vel", TWIST),),
-    "ros2_rtx_lidar_helper": ((PUBLISHES, "front_3d_lidar/lidar_points", POINTS),),
-    "ros2_camera_helper": ((PUBLISHES, "front_stereo_camera/left/image_raw", IMAGE),),
-    "ros2_camera_info_helper": ((PUBLISHES, "front_stereo_camera/left/camera_info", INFO),),
-    "pointcloud_to_laserscan": (
-        (SUBSCRIBES, "front_3d_lidar/lidar_points", POINTS), (PUBLISHES, "scan", SCAN), *LISTENS,
-    ),
-}  # fmt: skip
+def _short(origin: str) -> str:
+    """A place without the folders above its file."""
+    return origin.rpartition("/")[2]
 
 
-def isaac(release: str) -> System:
-    """All on the simulator's clock; it sends the frames of the description, so nothing else does."""
-    graph = of_vendor(ISAAC, release)
-    own = [it.name for it in graph.nodes if "/ros2_" not in it.name]
-    for node in own:
-        graph = with_ends(graph, node, (SUBSCRIBES, "/clock", CLOCK))
-    return with_node(graph, "/ros2_publish_clock", (PUBLISHES, "/clock", CLOCK))
+def main(words: list[str]) -> int:
+    """Print the nodes of some systems, or write the figures of all."""
+    folder = sources_folder()
+    if folder is None:
+        print(WITHOUT, file=sys.stderr)
+        return 2
+    vendors = read_vendors()
+    names = [it for it in words if not it.startswith("--")] or list(vendors.systems)
+    lacking = {it for name in names for it in missing(vendors.systems[name], folder)}
+    if lacking:
+        print(f"{folder} lacks {', '.join(sorted(lacking))}", file=sys.stderr)
+        return 2
+    found = [outcome(it, vendors, folder) for it in names]
+    if "--write" in words:
+        PAGE.write_text(page(found))
+    else:
+        print("\n".join([page(found), *(line for it in found for line in _table(it))]))
+    return 0
 
 
-VENDORS: Mapping[str, Callable[[str], System]] = {
-    "TurtleBot 4": turtlebot4,
-    "Husarion": husarion,
-    "Clearpath": clearpath,
-    "Open-RMF": open_rmf,
-    "Isaac Sim": isaac,
-}
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
