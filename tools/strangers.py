@@ -22,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import IO, NamedTuple
 
+HALVES = ("work", "last", "fresh", "more", "kept", "more2", "kept2")
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
@@ -36,7 +37,7 @@ LONGEST = 200
 
 
 class Stranger(NamedTuple):
-    """A repository of the list; ``half`` is "work", "last", "fresh", "more" or "kept"."""
+    """A repository of the list; ``half`` is one of HALVES."""
 
     name: str
     kind: str
@@ -181,8 +182,13 @@ def _package(folder: Path, checkout: Path) -> str:
 
 
 def _is_told(why: str, told: str) -> bool:
-    """Does the build name the topic, node or frame that this is about, as a whole word?"""
-    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", why)
+    """Does the build name the topic, controller or frame that this is about, as a whole word? That the
+    node is named that reads or sends it says nothing of it."""
+    if " looks for " in why:
+        node = why.partition(" ")[0].rpartition("/")[2]
+        return any(node in line and "frame" in line for line in told.splitlines())
+    about = re.sub(r"^/\S+ |\b\w+/msg/\w+", "", why)
+    names = re.findall(r"/?[\w/]*[/_]\w+|(?<=ROS 2 has )\w+", about)
     bare = {re.sub(r"^/?robot\d+/", "", name).lstrip("/") for name in names}
     words = {word.strip("/") for word in re.findall(r"[\w/]+", told)}
     said = {re.sub(r"^robot\d+/", "", word) for word in words}
@@ -215,7 +221,7 @@ def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "last", "fresh", "more", "kept"), default="work")
+    parser.add_argument("--half", choices=HALVES, default="work")
     parser.add_argument("--only", default="", help="a part of the names")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")

@@ -26,11 +26,14 @@ _INSTALLED = "/opt/ros/"
 # The last release with Gazebo Classic and with the names of Ignition (REP 2000; gazebosim.org/docs,
 # "Installing Gazebo with ROS"): its libraries, and names that only later ones have.
 OF_OLD = "humble"
-_OLD_WORDS = (b"libgazebo_", b"ignition-", b"ign_ros2_control")
+# MoveIt's adapters of planning requests have had another package since Jazzy (moveit2 MIGRATION.md).
+_ADAPTERS = b"default_planner_request_adapters/"
+_OLD_WORDS = (b"libgazebo_", b"ignition-", b"ign_ros2_control", _ADAPTERS)
 _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
+    rb"|(" + _ADAPTERS + rb"\w+)"
 )
-_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control")
+_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")
 _COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
@@ -91,7 +94,7 @@ def evidence(text: bytes) -> str:
         return ""
     text = _COMMENT.sub(b"", text)
     found = None if any(it in text for it in _NEW_WORDS) else _OLD.search(text)
-    return found[1].decode() if found else ""
+    return (found[1] or found[2]).decode() if found else ""
 
 
 def release_here(given: str | None = None) -> str:

@@ -64,7 +64,7 @@ class CoverageReport(NamedTuple):
     total: Survey
     unreadable: Sequence[Unreadable]
     release: str
-    spawners: Sequence[SpawnerRules]
+    spawners: Sequence[SpawnerRules] = ()
 
 
 def run(options: argparse.Namespace) -> int:

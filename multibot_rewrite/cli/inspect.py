@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import Site, UsageError
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli import coverage, explain
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
@@ -98,7 +99,7 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """One line a section."""
     columns = ("type", "name", "ROS", "also called", "rows", "source")
     rows = [
-        (it.type, it.names[0], it.ros, " ".join(it.names[1:]), str(len(it.sites)), it.source)
+        (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
         for it in sections
     ]
     yield Grid(columns, rows)

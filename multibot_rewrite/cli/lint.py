@@ -52,7 +52,8 @@ if TYPE_CHECKING:
 SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
 # What says a release by the libraries that it loads.
-_ROBOTS = (".urdf", ".xacro", ".sdf")
+# What says by what it loads which release it is for.
+_TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
 CRASHED = "MB001"
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
@@ -67,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         note(options, f"warning: {doubt}")
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_ROBOTS)))
+    said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_TELLING)))
     config = config._replace(settings=config.settings._replace(distro=said.release))
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]

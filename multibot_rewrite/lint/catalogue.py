@@ -66,6 +66,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
+            "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",
             "fleet.robots.own_ports",

@@ -6,11 +6,12 @@ from __future__ import annotations
 import re
 import signal
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import unrepeatable
+from multibot_rewrite.description.sources.packages import is_for_ros_1
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
@@ -32,6 +33,8 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
 
     code = next((code for said, code in _CODES if said.search(message)), "MB101")
     level = level_of(settings, code, RULES[code].level)
+    if "ROS 1" in message and is_for_ros_1(path):  # as it should be there
+        level = NOTE
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)

@@ -115,10 +115,10 @@ def adopt(
     for it in found:
         _prove(it, wanted[it.path], after, argument, how)
     after = as_named(after, found)
-    given = package.found.launch
-    launches = with_launches(folder, given, argument, after, TRIED, trust)
+    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust)
     left += launches.left
-    looked_at = {os.path.realpath(it) for it in (*texts, *given, *launches.after)}
+    # A plain description that becomes a xacro is one of them.
+    looked_at = {*texts, *(it.removesuffix(".xacro") for it in texts)}
     left += named_elsewhere(folder, set(_names(found)), looked_at)
     before = {path: data for path, data in as_named(texts, found).items() if path in after}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
@@ -142,16 +142,17 @@ def _has(it: Description, tree: Tree, how: Expanding) -> str:
 
 
 def _is_prefix(it: Argument) -> bool:
-    """Is it before links? ``world`` and some that were forgotten may lack it."""
+    """Is it before links, for each robot another word? ``world`` and some that were forgotten may lack
+    it."""
     links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
-    return it.is_empty and any(2 * use.names >= use.total for use in links)
+    return bool(it.value) and any(2 * use.names >= use.total for use in links)
 
 
 def _names(found: Iterable[Description]) -> Iterator[str]:
     """What gets the prefix."""
-    for it in found:
-        for kind in PREFIXED:
-            yield from it.inventory.declared.get(kind, ())
+    shared = prefixing().shared_frames
+    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
+    yield from (name for names in declared for name in names if name not in shared)
 
 
 def _as_xacros(

@@ -23,6 +23,7 @@ from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
+from multibot_rewrite.lint import catalogue
 from tools import unclaimed
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
@@ -527,8 +528,9 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
 @pytest.mark.slow
 def test_the_list_has_every_section(multibot: Multibot) -> None:
     sections = load_vocabulary((), "").sections(*TYPES)
-    listed = multibot("inspect").out.splitlines()
+    listed, codes = (it.splitlines() for it in multibot("inspect").out.split("\n\n"))
     assert len(listed) == len(sections) + 1
+    assert {it.split()[0] for it in codes[1:]} == catalogue.rules().keys()
     table = [it for it in multibot.json("inspect")["sections"] if it["type"] == "hardware"]
     assert {section["type"] for section in table} == {"hardware"}
     assert len(table) == len(load_vocabulary((), NEWEST_LTS).sections("hardware"))

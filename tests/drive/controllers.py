@@ -53,7 +53,11 @@ def read(
         fits = [it for it in managers if f"{it.namespace.rstrip('/')}/{it.name}" == wanted]
         if not fits:
             found.faults.append((who, f"a spawner waits for {wanted}, which is not there"))
-        for name in names_of(start["arguments"]) if fits else ():
+        bare = [it for it in fits if it.inside and roots[it.robot].find("ros2_control") is None]
+        if bare:
+            # component_parser.cpp throws, and the plugin of the simulator catches it.
+            found.faults.append((who, f"{wanted}: no ros2_control is in its description"))
+        for name in names_of(start["arguments"]) if fits and not bare else ():
             robot, inside = fits[0].robot, fits[0].inside
             has = exported(roots.get(robot), joints.get(robot) if inside else None)
             manager = with_files(fits[0], name, files_of(start["arguments"]))

@@ -155,6 +155,8 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
         whom = reached(fleet, it.name, it.type)
         if whom != {robot}:
             why = f"{it.node} sends {it.type} on {it.name}: that moves {sorted(whom) or 'nothing'}"
+            last = {name for name, _ in carried(fleet, it.name, it.type)} - {it.name}
+            why += f"; it goes on to {', '.join(sorted(last))}" if last else ""
             yield Fault(robot, "drives", why)
 
 

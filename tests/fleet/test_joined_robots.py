@@ -98,6 +98,7 @@ def names(data: bytes, tag: str) -> list[str | None]:
     return [it.get("name") for it in etree.fromstring(data).iterchildren(tag)]
 
 
+@pytest.mark.slow
 def test_parts_are_one_robot_and_get_its_name(folder: Path) -> None:
     made = outputs()
     urdf = made["cell1/robot.urdf"]
@@ -118,6 +119,7 @@ def test_arguments_of_the_robot_reach_parts_that_have_none_of_their_own(folder: 
     assert [it.text for it in root.iter("param")] == ["10.0.0.1", "10.0.0.2"]
 
 
+@pytest.mark.slow
 def test_it_is_what_a_fleet_makes_of_the_joined_files(folder: Path) -> None:
     made = outputs()
     (folder / "robot.urdf.join").write_text(
@@ -139,6 +141,7 @@ def _elements(data: bytes) -> list[tuple[str, dict[str, str]]]:
     return [(str(it.tag), dict(it.attrib)) for it in etree.fromstring(data).iter("*")]
 
 
+@pytest.mark.slow
 def test_a_file_that_lists_the_parts_does_the_same(folder: Path) -> None:
     made = outputs()
     (folder / "robot.urdf.join").write_text(PARTS)
@@ -147,6 +150,7 @@ def test_a_file_that_lists_the_parts_does_the_same(folder: Path) -> None:
     assert outputs()["cell1/robot.urdf"] == made["cell1/robot.urdf"]
 
 
+@pytest.mark.slow
 def test_robots_may_be_of_other_parts(folder: Path) -> None:
     own = (
         "robots:\n  - name: a\n    join: [{description: parts/table.urdf}, OTHER]\n  - {name: b}\n"
@@ -160,6 +164,26 @@ def test_robots_may_be_of_other_parts(folder: Path) -> None:
 
 
 @pytest.mark.slow
+def test_each_robot_may_have_a_list_of_its_own(folder: Path) -> None:
+    own = "  - {{name: {}, join: [{{description: parts/table.urdf}}, {}]}}\n"
+    arm = "{{description: parts/arm.urdf.xacro, prefix: {}, at: {{parent: table}}}}"
+    robots = "".join(own.format(name, arm.format(f"{name}1_")) for name in "ab")
+    (folder / "fleet.yaml").write_text(f"{KEYS}robots:\n{robots}")
+    made = outputs()
+    for it in "ab":
+        links = [f"{it}_table", f"{it}_{it}1_base", f"{it}_{it}1_tool"]
+        assert names(made[f"{it}/robot.urdf"], "link") == links
+
+
+def test_an_srdf_of_the_robot_is_taken_instead_of_the_parts(folder: Path) -> None:
+    (folder / "own.srdf").write_text('<robot name="cell"><group name="own"/></robot>')
+    (folder / "fleet.yaml").write_text(FLEET.replace("robots:", "srdf: own.srdf\nrobots:"))
+    made = outputs()
+    assert names(made["cell1/own.srdf"], "group") == ["own"]
+    assert "cell1/robot.srdf" not in made
+
+
+@pytest.mark.slow
 def test_a_build_knows_the_parts_as_its_inputs(folder: Path) -> None:
     assert main(["build", "fleet.yaml", "-o", "out", "-q"]) == 0
     read = json.loads(Path("out/manifest.json").read_text())["inputs"]
@@ -170,6 +194,7 @@ def test_a_build_knows_the_parts_as_its_inputs(folder: Path) -> None:
     assert main(["build", "fleet.yaml", "-o", "out", "--check", "-q"]) == 1
 
 
+@pytest.mark.slow
 def test_it_is_the_same_from_every_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = outputs()
     monkeypatch.chdir(folder / "parts")
@@ -182,6 +207,7 @@ def test_every_part_is_an_input(folder: Path) -> None:
     assert found == {"fleet.yaml", *(f"parts/{it}" for it in parts)}
 
 
+@pytest.mark.slow
 def test_a_launch_script_has_it_and_can_pickle_it(folder: Path) -> None:
     fleet = load_fleet("fleet.yaml")
     again = pickle.loads(pickle.dumps(fleet))

@@ -137,3 +137,64 @@ def test_a_mesh_that_cmake_installs(tmp_path: Path, installed: str, found: list[
     file.write_text(f'<robot name="r"><link name="a">{mesh}</link></robot>')
     codes = [it.code for it in lint_file(str(file), Settings(distro="jazzy", select=("MB701",)))]
     assert codes == found
+
+
+def rover(
+    left: str = "0.2", axis: str = "<xyz>0 0 1</xyz>", sizes: tuple[str, str] = ("0.4", "0.1")
+) -> str:
+    shape = "<geometry><cylinder><radius>0.1</radius><length>0.04</length></cylinder></geometry>"
+    parts = "".join(
+        f'<link name="{side}"><pose>0 {at} 0 -1.5708 0 0</pose><collision name="c">{shape}</collision>'
+        f'</link><joint name="{side}_joint" type="revolute"><parent>base</parent><child>{side}</child>'
+        f"<axis>{axis}</axis></joint>"
+        for side, at in (("left", left), ("right", "-0.2"))
+    )
+    joints = "<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>"
+    written = (
+        f"<wheel_separation>{sizes[0]}</wheel_separation><wheel_radius>{sizes[1]}</wheel_radius>"
+    )
+    plugin = '<plugin filename="{}" name="{}">{}</plugin>'.format(*DRIVE, joints + written)
+    return world(
+        f'<model name="m"><pose>3 3 0 0 0 1</pose><link name="base"/>{parts}{plugin}</model>'
+    )
+
+
+# gz-sim DiffDrive.cc: a left wheel gets (v - w * separation / 2) / radius about its own axis.
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        (rover(), []),
+        (rover(axis='<xyz expressed_in="__model__">0 1 0</xyz>'), []),
+        (rover(sizes=("0.8", "0.1")), ["MB620"]),
+        (rover(sizes=("0.4", "0.2")), ["MB620"]),
+        (rover(left="0.6"), ["MB620"]),
+        (rover(left="-0.6"), ["MB622"]),
+        (rover(axis="<xyz>0 0 -1</xyz>"), ["MB622"]),
+        (rover(axis="<xyz>0 1 0</xyz>"), ["MB622"] * 2),
+        (rover().replace("<pose>0 0.2 0", '<pose relative_to="left">0 0.2 0'), []),
+    ],
+)
+def test_the_drive_of_a_model_is_measured(text: str, codes: list[str]) -> None:
+    settings = JAZZY._replace(select=("MB620", "MB622"))
+    assert [it.code for it in lint_data("m.sdf", text.encode(), settings)] == codes
+
+
+@pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
+def test_a_mass_of_nothing_hurts_no_static_model_of_classic(distro: str, level: str) -> None:
+    text = model("0", "0.02").replace('<model name="m">', '<model name="m"><static>1</static>')
+    settings = Settings(distro=distro, select=("MB606",))
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+    moving = text.replace("<static>1</static>", "")
+    assert [it.level for it in lint_data("m.sdf", moving.encode(), settings)] == ["error"]
+
+
+@pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
+def test_a_range_that_classic_does_not_know_is_a_note_there(distro: str, level: str) -> None:
+    friction = "<surface><friction><ode><mu>-1</mu></ode></friction></surface>"
+    collision = f'<collision name="c"><geometry><box/></geometry>{friction}</collision>'
+    text = world(f'<model name="m"><link name="a">{collision}</link></model>')
+    settings = Settings(distro=distro, select=("MB125",))
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+    system = '<plugin filename="ignition-gazebo-physics-system" name="Physics"/></world>'
+    other = text.replace("</world>", system)
+    assert [it.level for it in lint_data("m.sdf", other.encode(), settings)] == ["error"]

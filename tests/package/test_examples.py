@@ -73,7 +73,7 @@ def test_every_fleet_is_shown_and_rehearsed() -> None:
     found = {
         file: lines for commands in PAGES.values() for file, lines in rehearsed(commands).items()
     }
-    assert len(FLEETS) == 10
+    assert len(FLEETS) == 11
     assert {str(it.relative_to(ROOT)) for it in FLEETS} <= found.keys()
     assert all(": as planned" in lines[-1] for lines in found.values())
     assert any(line.startswith("multibot: 5 robots") for it in found.values() for line in it)

@@ -113,6 +113,7 @@ def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
     assert '<group name="g"><joint name="${prefix}j"/>' in text
     assert 'link1="${prefix}base" link2="${prefix}arm"' in text
     assert str(srdf) not in made.after
+    assert made.left == ()
     Path(f"{srdf}.xacro").write_text(text)
     assert b'link1="base"' in expand(f"{srdf}.xacro", {})
 
@@ -147,6 +148,21 @@ def test_a_description_that_takes_one_stays(
     assert made.after == {}
     assert main(["adopt", str(package)]) == 0
     assert f"it has such an argument already: {name}" in capsys.readouterr().err
+
+
+def test_an_argument_with_the_name_of_the_robot_is_one(package: Path) -> None:
+    own = '<xacro:arg name="robot_name" default="lbr"/>'
+    text = ROBOT.format(JOINT).replace("<link", f"{own}<link", 1)
+    for it in ("base", "arm", "j"):
+        text = text.replace(f'"{it}"', f'"$(arg robot_name)_{it}"')
+    (package / "urdf/r.urdf.xacro").write_text(text)
+    assert list(adopt(str(package)).already.values()) == ["robot_name"]
+
+
+def test_the_world_is_no_name_of_the_robot(package: Path) -> None:
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format('  <link name="world"/>\n'))
+    (package / "config/c.yaml").write_text("a: {frame: world, other: base}\n")
+    assert [it.why.split()[2] for it in adopt(str(package)).left] == ["'base',"]
 
 
 def test_an_argument_for_something_else_is_none(package: Path) -> None:

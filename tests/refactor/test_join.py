@@ -149,8 +149,10 @@ def test_a_material_of_two_parts_is_there_once_and_renamed_where_it_differs() ->
     assert names(odd, "material") == ["a & b--c, %", "p_1_a & b--c, %"]
     bare = joined('<material name="grey"/>' + link("a"), GREY.format("0.5") + LOOKS)
     assert names(bare, "material") == ["grey", "p_1_grey"]
-    with pytest.raises(InputError, match="material 'grey' looks otherwise"):
-        joined(GREY.format("0.5") + link("a"), GREY.format("0.6") + link("b"), prefix="")
+    # A part without a prefix has a name.
+    alone = joined(GREY.format("0.5") + link("b"), GREY.format("0.6") + LOOKS, prefix="")
+    assert names(alone, "material") == ["grey", "n1_grey"]
+    assert tree_of(alone).xpath("//visual/material/@name") == ["n1_grey"]
 
 
 def test_a_controller_manager_is_there_once_with_the_files_of_both() -> None:

@@ -78,6 +78,30 @@ def test_it_is_the_same_each_time_and_knows_where_the_part_is() -> None:
     assert ("bar", "far") not in disabled(joined(pose=-0.6))
 
 
+# Blocks of which the bar touches one at a time.
+AROUND = [(0.7, 0), (-0.7, 0), (0, 0.7), (0, -0.7)]
+
+
+@pytest.mark.slow
+def test_what_touches_in_some_poses_is_checked() -> None:
+    pytest.importorskip("pinocchio")
+    links = "".join(
+        f'<link name="b{at}">{BOX.format(f"{x} {y} 0", "0.2 0.2 0.2")}</link>'
+        f'<joint name="j{at}" type="fixed"><parent link="floor"/><child link="b{at}"/></joint>'
+        for at, (x, y) in enumerate(AROUND)
+    )
+    made = joined(f'<robot name="blocks"><link name="floor"/>{links}</robot>')
+    assert [it for it in disabled(made) if "bar" in it] == []
+
+
+@pytest.mark.slow
+def test_the_poses_are_the_same_each_time() -> None:
+    pytest.importorskip("pinocchio")
+    # In one pose the bar is in this half or it is not.
+    half = BLOCKS.replace(BOX.format("1.5 0 0", "0.2 0.2 0.2"), BOX.format("0 5 0", "10 9.9 1"))
+    assert len({joined(half, samples=1).srdf for _ in range(8)}) == 1
+
+
 @pytest.mark.slow
 def test_limits_are_kept() -> None:
     pytest.importorskip("pinocchio")

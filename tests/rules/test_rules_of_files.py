@@ -63,6 +63,7 @@ BROKEN = {
     "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB120:3:16"),
     "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB312:3:17"),
     "a misspelt frame": ("params", AMCL.format("base_frame_id: base_lnik"), "MB853:3:20"),
+    "a frame to itself": ("params", AMCL.format("odom_frame_id: map"), "MB894:3:20"),
     "a misspelt joint": ("params", ARM.format("left_whel_joint"), "MB854:3:14"),
     "a slash": ("params", AMCL.format("odom_frame_id: /odom"), "MB301:3:20"),
     "white space": ("params", AMCL.format('odom_frame_id: "odom "'), "MB865:3:20"),

@@ -33,7 +33,6 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("iRobotEducation+create3_sim", "e027fe3", "", {}),
     ("roccosalazar+Multi-Robot-Nav", "7ba566c", "", {}),
     ("lbr-stack+lbr_fri_ros2_stack", "88945b6", "", {}),
-    ("moveit+moveit2_tutorials", "60dd8373", "", {}),
     ("vortexntnu+vortex-auv", "f02f9512", "", {}),
     ("husarion+husarion_ugv_ros", "7f3c1c29", "", {}),
     ("husarion+rosbot_ros", "5762b53", "", {}),

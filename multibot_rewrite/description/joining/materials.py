@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import was
 from multibot_rewrite.description.joining.part import ReadPart
@@ -44,17 +44,18 @@ def _look(material: _Element) -> _Look | None:
     return numbers(rgba) or (), "" if texture is None else texture.get("filename", "")
 
 
-def other_looks(joined: _Element, part: ReadPart, file: str) -> tuple[str, ...]:
-    """The materials of a part that look otherwise before it; raises InputError without a prefix."""
+def other_looks(joined: _Element, part: ReadPart) -> tuple[str, ...]:
+    """The materials of a part that look otherwise before it."""
     known, own = looks(joined), looks(part.inventory.document.root)
     # One without a look below the root is another one, too.
     bare_names = {it.get("name", "") for it in joined.iterchildren(_TAG)} - known.keys()
     met = known.keys() | bare_names
-    names = tuple(name for name, look in own.items() if name in met and known.get(name) != look)
-    if names and not part.prefix:
-        what = f"material {names[0]!r} looks otherwise in {file}"
-        raise InputError(f"{part.file}: {what}; give the part a prefix, or rename the material")
-    return names
+    return tuple(name for name, look in own.items() if name in met and known.get(name) != look)
+
+
+def word_of(name: str, prefix: str) -> str:
+    """What goes before materials of a part: its prefix, else its name."""
+    return prefix or f"{name}_"
 
 
 def prefixed(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:

@@ -38,7 +38,7 @@ _ADVICE = {
     TWO_SERVERS: _ALLOW,
     COMMAND: _ALLOW,
     DATA: _ALLOW,
-    OPENED: "write another for each robot; a fleet file gives it by `arguments`, and numbers ports",
+    OPENED: "write another for each robot, or give it by `arguments` of a fleet file",
     FRAMES: "set the frame for each robot, or allow it with --shared-frames",
 }
 # The rule that is about a kind of shared name.

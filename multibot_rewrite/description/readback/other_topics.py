@@ -96,7 +96,9 @@ def _coded(
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:
     """What the plugin puts in front of relative names; None where that is the model's name."""
-    sites = [it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole"]
+    named = (it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole")
+    # What is below a <ros> is a node's of ROS 2.
+    sites = [it for it in named if it.path[:4] != "ros/" or host.find("ros") is not None]
     values = [value for site in sites for value in values_of(host, site)]
     if not values and any(it.empty == "itself" and [*values_at(host, it.path)] for it in sites):
         return "/"

@@ -151,11 +151,19 @@ def _of_plugins(
     root: _Element, hosts: list[_Host], nodes: Container[int], vocabulary: Vocabulary
 ) -> Iterator[RuntimeName]:
     for host in hosts:
-        if host.number not in nodes:
+        if host.number not in nodes or _is_of_either(host):
             yield from _topics(*host, "plugin", vocabulary.release)
         yield from _frames(host, "plugin")
         yield from _lookups(root, host, vocabulary)
         yield from _opened(host, "plugin")
+
+
+def _is_of_either(host: _Host) -> bool:
+    """May ROS 1 load it, too? Its plugin of that name takes no rules, and reads a namespace beside its
+    other parameters; only ROS 2 reads a <ros>."""
+    if host.section.ros or host.element.find("ros") is not None:
+        return False
+    return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
 
 
 def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:

@@ -24,6 +24,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
@@ -92,7 +93,8 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
         return
     made = {it.path: it.data for it in files}
     arms = [_arm(plan, robot) for robot in plan.robots]
-    urdf = joined_urdf(cell.name, world_of(plan.file, plan.fleet.naming), arms)
+    tree = builtin_tree(plan.file.vocabulary, plan.file.distro)
+    urdf = joined_urdf(cell.name, world_of(plan.file, plan.fleet.naming), arms, tree)
     srdf = joined_srdf(cell, arms)
     values: dict[str, Any] = {"robot_description": urdf.decode(), SEMANTIC: srdf.decode()}
     for robot in plan.robots:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.base.editors import FLEET, schema_line
@@ -58,13 +58,23 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
             left.items(),
             key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
         )
-        yield from (f"#   {path}: {' '.join(why.split())}" for path, why in rows[:MOST])
-        if rows[MOST:]:
-            yield f"#   and {len(rows) - MOST} more"
+        yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
+    if it.launched:
+        yield ""
+        yield "# Launch files give nodes what is not carried into the fleet: write the values into a"
+        yield "# file of params; a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
+        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in it.launched)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+
+
+def _capped(lines: Iterable[str]) -> Iterator[str]:
+    every = [*lines]
+    yield from (f"#   {line}" for line in every[:MOST])
+    if every[MOST:]:
+        yield f"#   and {len(every) - MOST} more"
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:

@@ -17,6 +17,7 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.fleet_file import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of, srdf_of
+from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     NO_SIMULATOR,
@@ -58,7 +59,8 @@ class Choice(NamedTuple):
 class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
-    ``refused`` files that do not go with the robots, and why."""
+    ``refused`` files that do not go with the robots, and why; ``launched`` is what launch files give
+    its nodes, by file and line."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -66,6 +68,7 @@ class Proposal(NamedTuple):
     notes: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
     refused: Mapping[str, str] = {}
+    launched: tuple[tuple[str, int, str], ...] = ()
 
 
 def layout_of(members: Sequence[Member]) -> Choice:
@@ -311,7 +314,9 @@ def propose(
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
-    return Proposal(keys, members, poses, (), _others(found, robots), refused)
+    stacks = dict.fromkeys(stack for it in members for stack in it.companions.stacks)
+    launched = tuple(given_by_launch(found.launch, stacks, release.value))
+    return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
 
 
 def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:

@@ -15,10 +15,13 @@ from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.fleet.manifest import MANIFEST
+from multibot_rewrite.fleet.outputs.output_file import PLAN
 
 # Files that are looked at; of a larger one nothing is read.
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 _SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
+_BUILT = frozenset((MANIFEST, PLAN))
 _ENDS = (".urdf", ".sdf", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
 _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
@@ -96,6 +99,10 @@ def home_of(file: str) -> str:
 def _files(folder: str) -> Iterator[str]:
     seen = 0
     for above, folders, names in os.walk(folder):
+        # What a build has written is made of the robots that are meant.
+        if above != folder and _BUILT.issubset(names):
+            folders[:] = []
+            continue
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
         for name in sorted(names):
             seen += 1

@@ -7,7 +7,7 @@ robot_model.cpp (``buildModel``: a virtual joint counts only where its child is 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 from lxml import etree
 from lxml.etree import _Element
@@ -15,13 +15,16 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.joining.join import Given, join_texts
+from multibot_rewrite.description.joining.kept import without_marks
+from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.joining.semantic import without_virtual_joints, xml_text
 from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.fleet.file.cell_file import Cell
 from multibot_rewrite.fleet.file.fleet_file import Pose
 
 _STANDING = Pose()
-_NAMED = ("link", "joint", "transmission", "ros2_control")
 
 
 class Arm(NamedTuple):
@@ -36,23 +39,20 @@ class Arm(NamedTuple):
     place: str
 
 
-def joined_urdf(name: str, world: str, arms: Sequence[Arm]) -> bytes:
+def joined_urdf(name: str, world: str, arms: Sequence[Arm], tree: Tree) -> bytes:
     """One URDF of all arms, each fixed to the link ``world`` where it stands.
 
-    Raises InputError for an arm that has no single root, or no place, and for names that two arms
-    have.
+    Raises InputError for an arm that has no place, and as ``join_texts``.
     """
     root = etree.Element("robot", name=name)
     etree.SubElement(root, "link", name=world)
-    materials: dict[str, bytes] = {}
+    parts = [Given(Part("", name=name), etree.tostring(root), name)]
     for arm in arms:
-        own = read_xml(arm.urdf, arm.place)
-        base = _root_link(own, arm)
-        mounted = list(_mount(arm, base, world))
-        root.extend(list(_parts(own, arm, world if base == world else "", materials)))
-        root.extend(mounted)
-    _check_names(root, _NAMED, arms)
-    return xml_text(root)
+        pose = tuple(arm.pose or _STANDING)
+        part = Part("", world, pose, name=arm.tag)
+        _check_place(arm, _root_link(read_xml(arm.urdf, arm.place), arm), world)
+        parts.append(Given(part, arm.urdf, f"{arm.place}: cell: robot {arm.name!r}"))
+    return without_marks(join_texts(parts, tree).data)
 
 
 def joined_srdf(cell: Cell, arms: Sequence[Arm]) -> bytes:
@@ -88,48 +88,15 @@ def _root_link(own: _Element, arm: Arm) -> str:
     return found[0]
 
 
-def _mount(arm: Arm, base: str, world: str) -> Iterator[_Element]:
-    """The joint that holds an arm; none where its own description fixes it to the world."""
+def _check_place(arm: Arm, base: str, world: str) -> None:
     where = f"{arm.place}: cell: robot {arm.name!r}"
-    if base == world:
-        if arm.pose not in (None, _STANDING):
-            what = f"has a pose, but its description fixes it to {world!r}"
-            raise InputError(f"{where} {what}; set shared_frames: [map], or remove the pose")
-        return
-    if arm.pose is None:
+    if base == world and arm.pose not in (None, _STANDING):
+        what = f"has a pose, but its description fixes it to {world!r}"
+        raise InputError(f"{where} {what}; set shared_frames: [map], or remove the pose")
+    if base != world and arm.pose is None:
         raise InputError(
             f"{where} has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
         )
-    joint = etree.Element("joint", name=f"{arm.tag}_mount", type="fixed")
-    etree.SubElement(joint, "parent", link=world)
-    etree.SubElement(joint, "child", link=base)
-    it = arm.pose
-    xyz, rpy = f"{it.x} {it.y} {it.z}", f"{it.roll} {it.pitch} {it.yaw}"
-    etree.SubElement(joint, "origin", xyz=xyz, rpy=rpy)
-    yield joint
-
-
-def _parts(own: _Element, arm: Arm, shared: str, materials: dict[str, bytes]) -> Iterator[_Element]:
-    """The parts of an arm without the link that all share. Of equal ``materials`` the first is enough;
-    one that another arm has otherwise gets a name of its own."""
-    for it in list(own):
-        name = it.get("name", "")
-        if it.tag == "link" and name == shared:
-            continue
-        if it.tag == "material":
-            plain = etree.tostring(it, method="c14n", with_tail=False)
-            if materials.get(name) == plain:
-                continue
-            if name in materials:
-                _rename_material(own, name, f"{arm.tag}_{name}")
-            materials[name] = plain
-        yield it
-
-
-def _rename_material(own: _Element, name: str, new: str) -> None:
-    for it in own.iter("material"):
-        if it.get("name") == name:
-            it.set("name", new)
 
 
 def _check_stands(joint: _Element, arm: Arm) -> None:

@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
+from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import (
@@ -92,6 +93,7 @@ def robot_nodes(
     started = launched.started if launched else {}
     lost = set_by_launch(given, started, parameters)
     said = (*notes, *findings, *shared, *lost)
+    said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
     return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
 

@@ -23,6 +23,7 @@ from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.facts.memo import link_poses, memoized
+from multibot_rewrite.rules.facts.model_wheels import ModelWheels, model_wheels
 from multibot_rewrite.rules.subject import Subject
 
 # Axes that point the same way, as a cosine.
@@ -83,8 +84,10 @@ class Wheel(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """A plugin, its wheels, and the elements of its sizes, None where it takes its default."""
+    """A plugin, its wheels, and the elements of its sizes, None where it takes its default. ``robot``
+    has the links of the wheels: of an SDF those of the model that the plugin is in."""
 
+    robot: Robot
     plugin: _Element
     tags: Tags
     left: tuple[Wheel, ...]
@@ -121,17 +124,28 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
 
 
 def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
+    above = plugin.getparent()
+    model = model_wheels(above) if above is not None and above.tag == "model" else None
     for tags in kinds:
-        left, right = (tuple(_wheels(subject, plugin, it)) for it in (tags.left, tags.right))
+        left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:
             sizes = {it: plugin.find(it) for it in (tags.separation, tags.radius)}
-            return Drive(plugin, tags, left, right, sizes)
+            robot = model.robot if model else subject.robot
+            return Drive(robot, plugin, tags, left, right, sizes)
     return None
 
 
-def _wheels(subject: Subject, plugin: _Element, tags: Sequence[str]) -> Iterator[Wheel]:
-    found = (wheel_of(subject, text_of(it), it) for it in plugin.iterchildren(*tags))
-    return (it for it in found if it is not None)
+def _wheels(
+    subject: Subject, model: ModelWheels | None, plugin: _Element, tags: Sequence[str]
+) -> Iterator[Wheel]:
+    for it in plugin.iterchildren(*tags):
+        name = text_of(it)
+        if model is None:
+            found = wheel_of(subject, name, it)
+        else:
+            found = Wheel(it, *model.wheels[name]) if name in model.wheels else None
+        if found is not None:
+            yield found
 
 
 def wheel_of(subject: Subject, name: str, named: object) -> Wheel | None:
@@ -177,7 +191,7 @@ def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measur
     ]
     most = SKIDDING if several else 1 + slack
     low, high = min(found) * (1 - slack) - ROUNDING, max(found) * most + ROUNDING
-    return Measured(low, high, found[0]) if found[0] > 0 else None
+    return Measured(low, high, found[0]) if found[0] > ROUNDING else None
 
 
 def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:

@@ -18,7 +18,10 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import Value
+from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED, Declared
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
@@ -129,7 +132,8 @@ def value_of(section: Section, name: str) -> Value | None:
     WARNING,
     what="A parameter has no effect, or fails, with the value of another one of its node: an initial "
     "pose without set_initial_pose, the config of an input that is not there, frames of an EKF that "
-    "have to differ, a world_frame that is neither map_frame nor odom_frame.",
+    "have to differ, a transform from a frame to itself, a world_frame that is neither map_frame nor "
+    "odom_frame.",
     why="The node says little or nothing: amcl waits for a pose, an EKF fuses nothing or sends no "
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
@@ -149,6 +153,27 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
             level = ERROR if it.check in _STOPS and not it.releases else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
+    for section in sections(file):
+        node = load_nodes(file.context.distro).get(section.node.name) if section.node else None
+        yield from _to_itself(section, node) if node else ()
+
+
+def _to_itself(section: Section, node: NodeFacts) -> Iterator[Remark]:
+    """A transform that a node sends from a frame to itself: buffer_core.cpp of tf2 refuses it."""
+    defaults: dict[str, Value | None] = {it.parameter: it.default for it in node.frames}
+    values = {**defaults, **{name: it.value for name, it in section.whole.items()}}
+    for parent, child, condition in node.sends:
+        given = section.whole.get(child) or section.whole.get(parent)
+        frame = values.get(parent)
+        if given and frame and frame == values.get(child) and holds(condition, values.get):
+            message = f"{section.title}: {parent} and {child} are both {frame!r}"
+            hint = f"tf2 refuses a transform from a frame to itself; {_usual(node, parent, child)}"
+            yield remark_at(given.node, message, hint)
+
+
+def _usual(node: NodeFacts, *parameters: str) -> str:
+    usual = {it.parameter: it.default for it in node.frames}
+    return "by default they are " + " and ".join(usual[it] for it in parameters)
 
 
 def _with(it: Demand) -> str:

@@ -149,7 +149,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
         bodies = _bodies(node.values)
         used = {word for it in node.values.values() for word in _words(it)}
         for parameter, value in node.values.items() if bodies else ():
-            own = bodies.get(parameter.rpartition(".")[0], {})
+            own = bodies.get(parameter.rpartition(".")[0], {}) if _is_list(parameter, value) else {}
             left = [it for it in own if it not in used]
             for word in _words(value) if left and is_in(file, value.place) else ():
                 # A word with a dot has its parameters below several names.
@@ -158,6 +158,11 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
                     message = f"{node.name} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])
                     yield Remark(value.place.line, 1, message, hint)
+
+
+def _is_list(parameter: str, given: Given) -> bool:
+    """Are these names? A text is a list in ``observation_sources``, a joint of a controller is not."""
+    return isinstance(given.value, list) or parameter.endswith(("s", "plugin"))
 
 
 def _bodies(values: Mapping[str, Given]) -> dict[str, dict[str, Place]]:

@@ -183,6 +183,8 @@ def _without_type(file: NamedFile) -> Iterator[Remark]:
             continue
         for key, body in pairs(section.body):
             free = isinstance(body, yaml.MappingNode) and key.value not in own
+            # A plugin is hardware, which no manager looks for here.
+            free = free and all(it.value != "plugin" for it, _ in pairs(body))
             if free and key.value not in types and key.value not in typed:
                 message = f"{section.path}: controller {key.value} has no type"
                 yield remark_at(key, message, f"add {key.value}.type: PACKAGE/CLASS", ERROR)

@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
-from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch import spawner_managers
@@ -227,13 +227,17 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
             continue
         if it.program == UNTYPED:
             continue
-        given = GivenNode(it.name, facts.known, it.program, it.values, it.place)
-        commands = [claim for claim in facts.claims if claim.kind == COMMAND]
-        by_joint = commands and all(claim.template.startswith("<") for claim in commands)
-        if by_joint and not any(True for _ in claims_of(commands, given)):
+        if moves_nothing(facts, GivenNode(it.name, facts.known, it.program, it.values, it.place)):
             message = f"controller {it.full_name} gets no parameter that names a joint"
             hint = f"write its parameters in a section {it.full_name}"
             yield at(no_joints, it.place, message, hint)
+
+
+def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
+    """Claims a controller interfaces of the joints that its parameters name, and these name none?"""
+    commands = [claim for claim in facts.claims if claim.kind == COMMAND]
+    by_joint = bool(commands) and all(claim.template.startswith("<") for claim in commands)
+    return by_joint and not any(True for _ in claims_of(commands, given))
 
 
 @launch_rule(
@@ -257,8 +261,7 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
         kind = it.facts.kind if it.facts else ""
-        managed = kind in NAV2 and kind not in _SELF and not _activates_itself(it)
-        if managed and it.full_name not in listed:
+        if is_managed(kind) and not _activates_itself(it) and it.full_name not in listed:
             message = f"{it.full_name} is in the list of no lifecycle manager"
             hint = f"add it to node_names of {managers[0].full_name}"
             yield at(not_listed, it.place, message, hint)
@@ -274,6 +277,11 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 # Some releases of it have no life cycle, in others its own launch file brings it up.
 _SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_server")
+
+
+def is_managed(kind: str) -> bool:
+    """Does it come up by a lifecycle manager of Nav2 alone?"""
+    return kind in NAV2 and kind not in _SELF
 
 
 def _activates_itself(it: RunningNode) -> bool:

@@ -15,7 +15,7 @@ from math import radians, tau
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.rewriters.text import text_of
@@ -47,6 +47,7 @@ ANGLES = frozenset({"min_angle", "max_angle"})
 # What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
 _CLASSICS = "gazebo_ros_"
+_SYSTEMS = ("ignition-gazebo", "gz-sim")
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
@@ -71,8 +72,13 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
 def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
     """Every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
-    found = root.iterchildren("model", "world")
-    return tuple(fault for it in found for fault in _element(it, str(it.tag), version))
+    tops = root.iterchildren("model", "world")
+    found = tuple(fault for it in tops for fault in _element(it, str(it.tag), version))
+    # libsdformat 9, with which Gazebo Classic reads, has no ranges: a friction of -1 is endless there.
+    old = version <= CLASSIC and not any(
+        system in it.get("filename", "") for it in root.iter("plugin") for system in _SYSTEMS
+    )
+    return tuple(it._replace(level=NOTE) if old and it.kind == "range" else it for it in found)
 
 
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:

@@ -11,6 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
 from multibot_rewrite.rules.system.slips import alike
@@ -21,6 +22,7 @@ from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, la
 
 # A person drives with these.
 _BY_HAND = re.compile("teleop|joy|keyboard|gamepad")
+_VELOCITY = "geometry_msgs/msg/Twist"
 # The topics of RViz's own tools.
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
@@ -113,9 +115,12 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """The velocities that a robot's drive reads and no node sends, where its twist_mux is unread."""
-    robot, kinds = seen.robot(ends.name), set(ends.type.split(" | "))
-    if not any(map(chooses, nodes_of(ends.publishers))):
+    """The velocities that a robot's drive reads and no node sends, where those that its twist_mux or
+    its Nav2 sends are unread."""
+    robot, kinds = seen.robot(ends.name), _kinds(ends)
+    # MoveIt's nodes have drives of their own kind, and each its own goal.
+    of_nav2 = kinds == {_VELOCITY} and any(team(it) != it for it in nodes_of(ends.publishers))
+    if not of_nav2 and not any(map(chooses, nodes_of(ends.publishers))):
         return ""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     # Who sends velocities of its own is no drive.
@@ -123,10 +128,15 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     drives = (
         it.name
         for it in moving
-        if seen.robot(it.name) == robot and not it.publishers and kinds & set(it.type.split(" | "))
+        if seen.robot(it.name) == robot and not it.publishers and kinds & _kinds(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
     )
     return next(drives, "")
+
+
+def _kinds(ends: Ends) -> set[str]:
+    """Its types; stamped or not is a switch of the sender."""
+    return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
 
 
 def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
@@ -157,6 +167,9 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
     message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
+    wanted = seen.by_name[TOPIC, meant].type
+    if set(wanted.split(" | ")).isdisjoint(ends.type.split(" | ")):
+        several += f"; it reads {wanted}, not {ends.type}"
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     # RViz offers these from the start.
     usual = last_word(ends.name) in _OFFERED and is_viewer(node) and not is_hidden(node)

@@ -150,7 +150,8 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
     "MG514",
     "use-sim-time-differs",
     WARNING,
-    what="Nodes of one robot have different values of `use_sim_time`. Asked for by `--state`.",
+    what="Nodes of one robot have different values of `use_sim_time`: of a launch file by "
+    "`check-launch`, of running nodes by `--state`.",
     why="Their messages are decades apart: tf refuses lookups between them.",
     fix="Set `use_sim_time` alike for all nodes of a robot (`SetParameter` in the launch file).",
     bad="""\

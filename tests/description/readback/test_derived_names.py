@@ -114,3 +114,15 @@ def test_a_frame_that_is_fixed_in_code_is_shared_on_one_tf(layout: str) -> None:
     )
     made = rewrite(text, "r1", layout=layout, distro="humble")
     assert made.not_proved and "MG402" in {it.code for it in made.findings}
+
+
+def test_a_rule_that_ros_1_does_not_read_keeps_nothing_apart() -> None:
+    """LinearBatteryROSPlugin.cc of uuv_simulator advertises battery_state below its <namespace>; only
+    its successor in Plankton, for ROS 2, reads rules."""
+    text = (
+        '<robot name="auv"><link name="base"/><gazebo>'
+        '<plugin name="b" filename="liblinear_battery_ros_plugin.so"><namespace>/</namespace>'
+        "<link_name>base</link_name></plugin></gazebo></robot>"
+    )
+    assert "MG320" in codes(text)
+    assert codes(text, layout="both") == []

@@ -72,3 +72,10 @@ def test_several_files_say_one_release_or_none(tmp_path: Path) -> None:
     other = repository(tmp_path / "x", "ROS_DISTRO: jazzy")
     assert release_of_all("", [*files, other]) == (NEWEST_LTS, "")
     assert release_of_all("jazzy", files) == ("jazzy", "")
+
+
+def test_adapters_of_moveit_say_the_release() -> None:
+    old = b"request_adapters: default_planner_request_adapters/FixWorkspaceBounds"
+    assert release_said("", old, "").release == "humble"
+    new = b"[default_planning_request_adapters/CheckForStackedConstraints] # not " + old
+    assert release_said("", new, "").release == NEWEST_LTS

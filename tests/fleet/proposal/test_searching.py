@@ -57,6 +57,12 @@ def put(folder: Path, **files: str) -> None:
         path.write_text(text)
 
 
+def test_what_a_build_has_written_is_no_other_robot(tmp_path: Path) -> None:
+    made = {"fleet__manifest_dot_json": "{}", "fleet__plan_dot_yaml": "robots: {}"}
+    put(tmp_path, own_dot_urdf=ROBOT, fleet__robot1__own_dot_urdf=ROBOT, **made)
+    assert search([str(tmp_path)]).descriptions == (str(tmp_path / "own.urdf"),)
+
+
 def test_hidden_and_built_folders_are_left_out(tmp_path: Path) -> None:
     left = ("build", "install", "log", "node_modules", "test", "tests", "__pycache__", ".git")
     for folder in (*left, "urdf", "builds"):

@@ -65,6 +65,7 @@ that topics are made of, a ``subtopic`` is below a stem or namespace.
     form=suffixed    ``link/light``, ``link::visual``: a declared name with something else behind it
     form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
     form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
+    form=below       an absolute name, ``/robot/description``: what it is below is the name
     form=regex       a regular expression for whole names, alternatives affixed one by one
     form=prefix      put in front of names in code: a postfix cannot reach them (MB422)
     form=lettered    the same behind a letter, which the code drops

@@ -15,6 +15,11 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.sources.packages import (
+    package_folder,
+    packages_below,
+    sources_around,
+)
 from multibot_rewrite.rules.facts.simulators import library_of, simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 
@@ -106,10 +111,20 @@ def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
             name = text_of(it)
             known = [*subject.tree.vocabulary.names("hardware")]
             near = "" if name in known or "$" in name else _slip(name, known)
-            if near:
+            if near and not _is_own(subject, name, known):
                 yield Problem(
                     it, f"no known hardware is called {name!r}", "", f"did you mean {near!r}?"
                 )
+
+
+def _is_own(subject: Subject, name: str, known: Iterable[str]) -> bool:
+    """Is a class of a package that is in the sources, and has no class that is known?"""
+    package = name.partition("/")[0]
+    if any(it.startswith(f"{package}/") for it in known):
+        return False
+    file = subject.document.file
+    around = packages_below((sources_around(file), *subject.settings.roots))
+    return package in around or bool(package_folder(package, file, subject.settings.roots))
 
 
 @rule(

@@ -49,7 +49,7 @@ def wheel_size(subject: Subject) -> Iterator[Problem]:
     """The distance along the axis of the first pair, of joints or of shapes, and the radii of round
     shapes of all wheels; of other wheels they are unknown."""
     for drive in drives(subject):
-        tags, robot = drive.tags, subject.robot
+        tags, robot = drive.tags, drive.robot
         value = size_of(drive, tags.separation, tags.defaults[0])
         found = separation(robot, *drive.pairs[0], bool(drive.left[1:]))
         if value is not None and value > 0 and found and not found.holds(value):
@@ -97,7 +97,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
         for left, right in drive.pairs:
-            for words in rolling_faults(subject.robot, left, right):
+            for words in rolling_faults(drive.robot, left, right):
                 yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"

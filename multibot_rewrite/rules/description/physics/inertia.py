@@ -10,6 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Inertial, Link, Robot
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.problem import Problem
@@ -97,9 +98,10 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
         if inertial is None or inertial.get("auto", "").lower() in ("true", "1"):
             continue
         mass, inertia = number_at(inertial, "mass"), inertial.find("inertia")
+        level = NOTE if _is_unread(subject, link) else ERROR
         if mass is not None and mass <= 0:
             message = f"mass of link {link.get('name')!r} is {mass:g}"
-            yield Problem(inertial, f"{message}, and has to be above 0", None)
+            yield Problem(inertial, f"{message}, and has to be above 0", None, level=level)
         found = [] if inertia is None else [_moment(inertia, it) for it in _MOMENTS]
         moments = tuple(it for it in found if it is not None)
         if len(moments) != len(_MOMENTS) or inertia is None or _is_possible(moments):
@@ -107,7 +109,15 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
         low, middle, high = own = eigenvalues(moments) if any(moments) else (0.0, 0.0, 0.0)
         if high < NOTHING or is_negative(own) or high > (low + middle) * (1 + ROUNDING):
             message = "is 0" if high < NOTHING else fault_of(own)
-            yield Problem(inertia, f"inertia of link {link.get('name')!r} {message}", None)
+            words = f"inertia of link {link.get('name')!r} {message}"
+            yield Problem(inertia, words, None, level=level)
+
+
+def _is_unread(subject: Subject, link: _Element) -> bool:
+    """Is the mass of a link nothing to Gazebo Classic: that of a static model (Link.cc)?"""
+    model = link.getparent()
+    static = "" if model is None else (model.findtext("static") or "").strip()
+    return subject.settings.distro == OF_OLD and static in ("1", "true")
 
 
 # With what sdformat takes where one is left out.

@@ -8,13 +8,15 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.outside import is_folder, is_there
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import in_sources
+from multibot_rewrite.description.sources.read import XACRO
+from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
     ARM,
@@ -33,6 +35,7 @@ from multibot_rewrite.rules.facts.simulators import (
     simulated,
     simulator_of,
 )
+from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 
 _GZ = "gz_ros2_control/GazeboSimSystem"
@@ -97,24 +100,62 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
         library = library_of(plugin)
         given = [it for it in plugin.iterchildren("parameters") if text_of(it)]
         if not given and library in GAZEBO.plugins:
-            yield Problem(
-                plugin,
-                f"{library} has no <parameters>, so it makes no controller_manager",
-                None,
-                "name the controllers' file",
-            )
+            words = f"{library} has no <parameters>, so it makes no controller_manager"
+            level = WARNING if _is_told(subject, plugin) else ERROR
+            yield Problem(plugin, words, None, "name the controllers' file", level=level)
         for it in given:
             path = text_of(it)
             if "$(" in path:
                 words = "is a substitution of xacro, which the plugin does not know"
                 hint = "expand the file with xacro first, and name it .xacro"
-                yield Problem(it, f"<parameters> {path!r} {words}", "", hint, level=WARNING)
+                level = NOTE if _is_for_xacro(subject.document) else WARNING
+                yield Problem(it, f"<parameters> {path!r} {words}", "", hint, level=level)
                 continue
             # Where xacro has expanded $(find), the folder of the package is there.
             home = os.path.dirname(os.path.dirname(path))
             is_here = subject.origins and os.path.isabs(path) and is_folder(home)
             if is_here and not is_there(path) and not in_sources(path):
                 yield Problem(it, f"there is no file {path}", "", "correct the path")
+
+
+def _is_told(subject: Subject, plugin: _Element) -> bool:
+    """Is the file an argument of xacro, which the launch file passes?"""
+    starts = starts_of(subject, list(plugin.iterchildren("parameters")))
+    return any(not is_fixed(subject, it, "") for it in starts.values())
+
+
+def _is_for_xacro(document: Document) -> bool:
+    """Does a description say that xacro reads it first, as the demos of gz_ros2_control do?"""
+    spaces = (it for it in document.root.nsmap.values() if it.endswith("/xacro"))
+    return XACRO in os.path.basename(document.file) or any(spaces)
+
+
+@rule(
+    "MB242",
+    "nothing-to-control",
+    ERROR,
+    what="A plugin makes the controller manager in a simulator, and the description has no "
+    "<ros2_control>.",
+    why="The plugin gets no hardware: it reports 'no ros2_control tag' and is not active, so no joint "
+    "moves and spawners wait for /controller_manager in vain.",
+    fix="Add a <ros2_control> with the simulator's class and the joints, or include the xacro that has "
+    "it. A <transmission> is for ROS 1.",
+    bad=ARM + _LOADS,
+    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
+    line=7,
+    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
+)
+def nothing_to_control(subject: Subject) -> Iterator[Problem]:
+    """Plugins of the two simulators in a whole description without a system: component_parser.cpp
+    throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch it."""
+    if not subject.robot.links or subject.elements.every("ros2_control"):
+        return
+    for plugin in manager_plugins(subject):
+        found = (it for it in SIMULATORS if library_of(plugin) in it.plugins)
+        for simulator in () if subject.document.root.tag == "sdf" else found:
+            message = f"{library_of(plugin)} is not active: the description has no <ros2_control>"
+            hint = f"add one with the class {simulator.hardware[0]} and the joints"
+            yield Problem(plugin, message, "filename", hint)
 
 
 @rule(

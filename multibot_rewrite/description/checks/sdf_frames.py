@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the links, joints and frames of an SDF model are.
+
+Source: sdformat.org, "Pose Frame Semantics": a pose is in the frame ``relative_to``; else that of a
+joint is in its child, of a frame in what it is attached to, of all others in its model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import radians
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.numbers import numbers
+from multibot_rewrite.description.checks.poses import HERE, Pose, minus, placed, sdf_pose
+from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion
+
+MODEL = "__model__"
+_FRAMES = ("link", "joint", "frame", "model")
+
+
+class Named(NamedTuple):
+    """A link, joint, frame or nested model; ``scope`` is the model that it is in, with its ``::``."""
+
+    name: str
+    element: _Element
+    scope: str
+
+    @property
+    def tag(self) -> str:
+        return str(self.element.tag)
+
+    def text(self, path: str) -> str:
+        """The text of an element below, without spaces around."""
+        return (self.element.findtext(path) or "").strip()
+
+    def within(self, name: str) -> str:
+        """A name of its model, from the top."""
+        if name == MODEL:
+            return self.scope.removesuffix("::")
+        return name if name == "world" else f"{self.scope}{name}"
+
+
+def named_in(model: _Element, scope: str) -> Iterator[Named]:
+    for it in model.iterchildren(*_FRAMES):
+        name = f"{scope}{it.get('name', '')}"
+        yield Named(name, it, scope)
+        if it.tag == "model":
+            yield from named_in(it, f"{name}::")
+
+
+class Frames(NamedTuple):
+    """All that poses can be relative to, by its name from the top."""
+
+    named: dict[str, Named]
+    source: str
+
+    def pose(self, name: str, below: tuple[str, ...] = ()) -> Pose:
+        """Where a frame is in the top model, whose own name is empty."""
+        it = self.named.get(name)
+        if it is None:
+            return HERE
+        if name in below:
+            raise InputError(f"{self.source}: the pose of {name!r} depends on itself")
+        written = it.element.find("pose")
+        relative = "" if written is None else written.get("relative_to", "")
+        base = it.within(relative or self._base(it))
+        return placed(self.pose(base, (*below, name)), written_pose(written))
+
+    def _base(self, it: Named) -> str:
+        if it.tag == "joint":
+            return it.text("child")
+        return it.element.get("attached_to", "") or MODEL
+
+    def link(self, name: str) -> str:
+        """The link that a frame or joint belongs to."""
+        for _ in self.named:
+            it = self.named.get(name)
+            if it is None or it.tag == "link":
+                return name
+            if it.tag == "model":
+                first = next((n for n in self.named.values() if n.scope == f"{name}::"), it)
+                canonical = it.element.get("canonical_link", "")
+                name = f"{name}::{canonical}" if canonical else first.name
+            else:
+                name = it.within(self._base(it))
+        return name
+
+
+def written_pose(written: _Element | None) -> Pose:
+    """A ``<pose>``; one that is no pose counts as none, the lint reports it."""
+    if written is None:
+        return HERE
+    values = numbers(written.text or "") or ()
+    if written.get("rotation_format") == "quat_xyzw" and len(values) == 7:
+        x, y, z, *turn = values
+        return Pose((x, y, z), matrix_of_quaternion((turn[0], turn[1], turn[2], turn[3])))
+    if written.get("degrees") in ("true", "1") and len(values) == 6:
+        return sdf_pose(" ".join(map(repr, (*values[:3], *map(radians, values[3:]))))) or HERE
+    return sdf_pose(written.text or "") or HERE
+
+
+class Ends(NamedTuple):
+    """A joint, and the links that it is between."""
+
+    joint: str
+    parent: str
+    child: str
+
+
+def ends_of(frames: Frames) -> dict[str, Ends]:
+    """The joint above each link. A second joint of a link closes a loop, a tree has the first."""
+    found: dict[str, Ends] = {}
+    for it in frames.named.values():
+        if it.tag == "joint":
+            parent, child = (frames.link(it.within(it.text(end))) for end in ("parent", "child"))
+            if {parent, child} <= frames.named.keys():
+                found.setdefault(child, Ends(it.name, parent, child))
+    return found
+
+
+def seen_from(above: Pose, below: Pose) -> Pose:
+    back = Pose((0.0, 0.0, 0.0), inverse(above.matrix))
+    return placed(back, Pose(minus(below.at, above.at), below.matrix))

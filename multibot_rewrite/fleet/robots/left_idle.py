@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes of a robot that its own files leave idle: in no list of a lifecycle manager, or controllers
+without a joint. What ``check-launch`` says of a launch file, by the same rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.rules.launch.declaration import at
+from multibot_rewrite.rules.launch.started import (
+    is_managed,
+    moves_nothing,
+    no_joints,
+    not_listed,
+)
+
+
+def left_idle(
+    nodes: Sequence[NodeFacts], given: Iterable[GivenNode], known: Mapping[str, NodeFacts]
+) -> Iterator[Finding]:
+    """What starts and does nothing, by the robot's own files of parameters."""
+    own = {it.name: it for it in given}
+    yield from _unlisted(nodes, own)
+    running = {it.name for it in nodes if not it.when}
+    for it in own.values():
+        facts = known.get(it.known)
+        if it.manager and it.name in running and facts and moves_nothing(facts, it):
+            message = f"controller {it.name} gets no parameter that names a joint"
+            yield at(
+                no_joints, it.place, message, "write them into a section of its name", level=WARNING
+            )
+
+
+def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Iterator[Finding]:
+    """Where a file has the list; a manager of the stack alone lists what the stack starts."""
+    managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
+    place = next((own[it.name].place for it in managers if it.name in own), None)
+    listed = {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}
+    for it in nodes if place else ():
+        idle = is_managed(it.kind) and it.name not in listed and not (it.when or it.shared)
+        if idle and place:
+            message = f"{it.name} is in the list of no lifecycle manager"
+            yield at(not_listed, place, message, "add it to node_names", level=WARNING)

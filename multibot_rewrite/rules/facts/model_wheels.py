@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The links and joints of an SDF model as those of a URDF, as far as rules about wheels ask for them.
+
+Source: sdformat.org, joint.sdf and "Pose Frame Semantics": an axis is in the frame of its joint, or in
+the one that it is ``expressed_in``; up to SDF 1.6 in that of the model if it says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml import etree
+from lxml.etree import _Element
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, read_robot
+from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
+from multibot_rewrite.description.checks.poses import Pose
+from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_of, named_in
+
+_Z: Vector = (0.0, 0.0, 1.0)
+_SIZES = ("size", "radius", "length")
+
+
+class ModelWheels(NamedTuple):
+    """The links of a model with their shapes, and its joints: each with the pose of its child in the
+    model and the axis there."""
+
+    robot: Robot
+    wheels: dict[str, tuple[Joint, Pose, Vector]]
+
+
+def model_wheels(model: _Element) -> ModelWheels | None:
+    """None where the poses of a model are in a circle."""
+    frames = Frames({it.name: it for it in named_in(model, "")}, "")
+    root = etree.Element("robot")
+    try:
+        wheels = dict(_wheels(frames))
+    except InputError:
+        return None
+    for it in frames.named.values():
+        if it.tag == "link":
+            root.append(_link(it))
+    return ModelWheels(read_robot(root), wheels)
+
+
+def _wheels(frames: Frames) -> Iterator[tuple[str, tuple[Joint, Pose, Vector]]]:
+    for ends in ends_of(frames).values():
+        it = frames.named[ends.joint]
+        joint = Joint(it.name, it.element.get("type", ""), ends.parent, ends.child, it.element, {})
+        axis = _axis(frames, it)
+        if axis is not None:
+            yield it.name, (joint, frames.pose(ends.child), axis)
+
+
+def _axis(frames: Frames, joint: Named) -> Vector | None:
+    written = joint.element.find("axis/xyz")
+    axis = _Z if written is None else vector(written.text or "")
+    if axis is None or joint.text("axis/use_parent_model_frame") in ("1", "true"):
+        return axis
+    within = "" if written is None else written.get("expressed_in", "")
+    return turned(frames.pose(joint.within(within) if within else joint.name).matrix, axis)
+
+
+def _link(link: Named) -> _Element:
+    made = etree.Element("link", name=link.name)
+    for written in link.element.iterchildren("collision", "visual"):
+        pose = written.find("pose")
+        six = (0.0,) * 6 if pose is None else numbers(pose.text or "") or (0.0,) * 6
+        if len(six) != 6 or (pose is not None and pose.attrib):
+            continue
+        element = etree.SubElement(made, str(written.tag))
+        at, turn = (" ".join(map(repr, it)) for it in (six[:3], six[3:]))
+        etree.SubElement(element, "origin", xyz=at, rpy=turn)
+        geometry = etree.SubElement(element, "geometry")
+        for shape in written.iterfind("geometry/*"):
+            sizes = {it: (shape.findtext(it) or "").strip() for it in _SIZES}
+            etree.SubElement(geometry, str(shape.tag), {k: v for k, v in sizes.items() if v})
+    return made

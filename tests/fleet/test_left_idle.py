@@ -1,0 +1,53 @@
+"""Nodes that a robot's own files leave idle: build says it as check-launch does."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.fleet.robots.left_idle import left_idle
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.system.records import CALLS, Place
+
+FILE = Place("nav2.yaml", 7)
+NODES = load_nodes("jazzy")
+SMOOTHER, MAPPER = (NODES[it] for it in ("velocity_smoother", "slam_toolbox"))
+ARM = NODES["joint_trajectory_controller"]
+
+
+def manager(*listed: str) -> NodeFacts:
+    made = (Endpoint("service", CALLS, f"{it}/change_state") for it in listed)
+    base = NODES.get("lifecycle_manager") or NodeFacts("manager", "nav2_lifecycle_manager", ())
+    return base._replace(name="manager", known="lifecycle_manager", endpoints=tuple(made))
+
+
+def given(name: str, known: str = "", manager: str = "", **values: list[str]) -> GivenNode:
+    of = {key: Given(value, FILE) for key, value in values.items()}
+    return GivenNode(name, known or name, "", of, FILE, manager)
+
+
+@pytest.mark.parametrize(
+    ("listed", "own", "idle"),
+    [
+        (("velocity_smoother",), ("manager",), []),
+        (("amcl",), ("manager",), ["velocity_smoother"]),
+        (("amcl",), (), []),
+    ],
+)
+def test_a_node_that_the_robots_own_list_leaves_out_is_told(
+    listed: tuple[str, ...], own: tuple[str, ...], idle: list[str]
+) -> None:
+    nodes = [manager(*listed), SMOOTHER, MAPPER]
+    found = list(left_idle(nodes, [given(it) for it in own], NODES))
+    assert [(it.code, it.message.split()[0], it.file, it.line) for it in found] == [
+        ("MG726", it, "nav2.yaml", 7) for it in idle
+    ]
+
+
+@pytest.mark.parametrize(("joints", "told"), [([], ["MG725"]), (["shoulder"], [])])
+def test_a_controller_that_moves_nothing_is_told(joints: list[str], told: list[str]) -> None:
+    values = {"joints": joints, "command_interfaces": ["position"]} if joints else {}
+    own = given("arm", ARM.name, "controller_manager", **values)
+    found = list(left_idle([ARM._replace(name="arm", when="")], [own], NODES))
+    assert [it.code for it in found] == told

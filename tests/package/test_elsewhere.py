@@ -1,0 +1,51 @@
+"""On macOS, and where the kernel has no fences, everything can be imported and a file is linted."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# What the standard library has on Linux alone, and of ``os`` that a Mac does not have.
+_PROGRAM = """
+import os, pkgutil, importlib, sys
+sys.platform = "darwin"
+for name in ("sched_getaffinity", "sched_setaffinity", "posix_fadvise", "memfd_create", "pidfd_open",
+             "splice", "copy_file_range", "getrandom", "setns", "unshare", "eventfd", "O_PATH"):
+    if hasattr(os, name):
+        delattr(os, name)
+for name in ("spwd", "ossaudiodev"):
+    sys.modules[name] = None
+import multibot_rewrite
+names = [it.name for it in pkgutil.walk_packages(multibot_rewrite.__path__, "multibot_rewrite.")]
+failed = []
+for name in names:
+    if name.endswith("__main__"):
+        continue
+    try:
+        importlib.import_module(name)
+    except ImportError as error:
+        if (error.name or "").partition(".")[0] in ("multibot_rewrite", "os", "spwd"):
+            failed.append(f"{name}: {error}")
+print(len(names), failed)
+from multibot_rewrite.cli.urdf_lint import main
+sys.exit(main(sys.argv[1:]))
+"""
+XACRO = (
+    '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>'
+    '<xacro:property name="n" value="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="${n}"/></joint></robot>'
+)
+
+
+@pytest.mark.deep
+def test_nothing_asks_for_what_only_linux_has(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf.xacro"
+    file.write_text(XACRO)
+    words = [sys.executable, "-c", _PROGRAM, str(file), "--select", "MB202"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=100, check=False)
+    first, _, rest = done.stdout.partition("\n")
+    assert first.endswith(" []") and int(first.split()[0]) > 500, done.stdout + done.stderr
+    assert done.returncode == 1 and "MB202" in rest, done.stdout + done.stderr
