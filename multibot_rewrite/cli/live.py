@@ -67,14 +67,16 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
         return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
     asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
-    with shown(f"looking at the graph, for {asked.timeout:g} s at most"):
+    looking = f"looking at the graph, for {asked.timeout:g} s at most"
+    with shown(looking) as show:
         if options.zenoh:
             from multibot_rewrite.producers.zenoh.observe import look
 
             return look(asked, _router(options))
         from multibot_rewrite.producers.ros.child import observe
 
-        return observe(asked, environ(options.domain))
+        tell = lambda text: show(f"{looking}: {text}")  # noqa: E731
+        return observe(asked, environ(options.domain), tell)
 
 
 def with_states(

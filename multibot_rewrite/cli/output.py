@@ -128,12 +128,12 @@ def status() -> Callable[[str], None]:
 
 
 @contextmanager
-def shown(text: str) -> Iterator[None]:
-    """``status`` with one line as long as the block runs."""
+def shown(text: str) -> Iterator[Callable[[str], None]]:
+    """``status`` with a line as long as the block runs, which may show another one."""
     show = status()
     show(text)
     try:
-        yield
+        yield show
     finally:
         show("")
 

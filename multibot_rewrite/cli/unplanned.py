@@ -7,7 +7,6 @@ import argparse
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
@@ -26,10 +25,8 @@ from multibot_rewrite.cli.report import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.live.suggestion import FILES, SCHEMAS, suggestion
 from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
@@ -67,6 +64,8 @@ def _check_use(options: argparse.Namespace) -> None:
     if options.output:
         check_target(options.output, options.snapshot)
     if options.suggest:
+        from multibot_rewrite.live.suggestion import FILES  # reads descriptions: as long as a check
+
         for name in FILES:
             path = os.path.join(options.suggest, name)
             check_folder(path)
@@ -107,6 +106,10 @@ def _write(
     if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
+        from multibot_rewrite.base.editors import schema_line
+        from multibot_rewrite.knowledge.stacks import built_in
+        from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
+
         files = suggestion(seen, built_in(release_here(options.distro)))
         lines = {it: f"{schema_line(schema, options.suggest)}\n" for it, schema in SCHEMAS.items()}
         paths = {

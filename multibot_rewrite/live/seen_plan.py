@@ -54,9 +54,10 @@ def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
     """Frames without a robot's name are those of the robot on whose topic they are."""
     whose = seen.whose
     mine = _mine(robot)
-    topics = [topic for topic, _ in seen.tf if whose.robot(topic) == mine]
+    topics = [it for it in seen.tf if whose.robot(it[0]) == mine]
     shared = f"/{TF_TOPICS[0]}"
-    tf = next(iter(topics), shared)
+    # A base may send its own on a topic beside, from where a node sends it again (TurtleBot 4).
+    tf, _ = max(topics, key=lambda it: len(it[1]), default=(shared, ()))
     own = {
         it
         for edge in seen.graph.edges

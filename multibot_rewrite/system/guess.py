@@ -77,7 +77,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     words = _last_words(graph)
     if words:
         return tuple(with_frames(GuessedRobot(it, ""), frames) for it in words)
-    return tuple(_by_frames(frames - parts))
+    return tuple(_by_frames(frames - parts, _parents(graph.edges)))
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
@@ -144,22 +144,54 @@ def _last_words(graph: System) -> list[str]:
     )
 
 
-def _by_frames(frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Two or more words that are beside the usual names of frames in the same way."""
-    ways: dict[tuple[str, bool], set[str]] = defaultdict(set)
+def _parents(edges: Iterable[Edge]) -> Mapping[str, frozenset[str]]:
+    """The frames on which each hangs, and those on which these do."""
+    direct: dict[str, set[str]] = defaultdict(set)
+    for edge in edges:
+        direct[edge.child].add(edge.parent)
+
+    def above(frame: str) -> frozenset[str]:
+        todo, found = [frame], set[str]()
+        for it in todo:  # grows
+            todo += direct.get(it, set()) - found
+            found |= direct.get(it, set())
+        return frozenset(found - {frame})
+
+    return {frame: above(frame) for frame in [*direct]}
+
+
+def _by_frames(
+    frames: Iterable[str], parents: Mapping[str, Collection[str]]
+) -> Iterator[GuessedRobot]:
+    """Two or more words that are beside the usual names of frames in the same way, none of which hangs
+    on another: that would be a part of it."""
+    ways: dict[tuple[str, bool], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for frame in frames:
         for separator in ("/", *SEPARATORS):
             for usual in USUAL_FRAMES:
                 if frame.endswith(separator + usual):
-                    ways[separator, True].add(frame.removesuffix(separator + usual))
+                    ways[separator, True][frame.removesuffix(separator + usual)].add(frame)
                 if frame.startswith(usual + separator):
-                    ways[separator, False].add(frame.removeprefix(usual + separator))
-    several = {way: words for way, words in ways.items() if len(words) > 1}
+                    ways[separator, False][frame.removeprefix(usual + separator)].add(frame)
+    whole = {way: _not_parts(words, parents) for way, words in ways.items()}
+    several = {way: words for way, words in whole.items() if len(words) > 1}
     if several:
         (separator, first), words = max(several.items(), key=lambda it: len(it[1]))
         for word in sorted(words):
             before, behind = (word + separator, "") if first else ("", separator + word)
             yield GuessedRobot(word, "", before, behind, True)
+
+
+def _not_parts(
+    words: Mapping[str, Collection[str]], parents: Mapping[str, Collection[str]]
+) -> set[str]:
+    """The words whose frames hang on none of another word's."""
+    owners = {frame: word for word, frames in words.items() for frame in frames}
+    above = {
+        word: {owners.get(it, word) for frame in frames for it in parents.get(frame, ())}
+        for word, frames in words.items()
+    }
+    return {word for word, found in above.items() if found <= {word}}
 
 
 def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:

@@ -183,11 +183,14 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, 0 for less than a second or not known."""
+    for a stamp of 0, 0 for less than a second or not known. ``rate`` are messages a second, 0 if not
+    known, ``child`` the ``child_frame_id`` of odometry."""
 
     topic: str
     frame: str
     age: float = 0.0
+    rate: float = 0.0
+    child: str = ""
 
 
 class Lookup(NamedTuple):

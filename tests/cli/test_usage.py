@@ -143,7 +143,7 @@ def test_a_live_graph_is_asked_for_with_what_the_options_say(
     asked: list[tuple[Any, str]] = []
     monkeypatch.setenv("ROS_DOMAIN_ID", "3")
     monkeypatch.setattr(
-        child, "observe", lambda it, around: asked.append((it, around["ROS_DOMAIN_ID"]))
+        child, "observe", lambda it, around, _: asked.append((it, around["ROS_DOMAIN_ID"]))
     )
     monkeypatch.setattr(
         child, "watch", lambda it, around: asked.append((it, around["ROS_DOMAIN_ID"]))

@@ -19,7 +19,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.producers.ros.headers import HeaderSamples, sensor_topics
+from multibot_rewrite.producers.ros.headers import HeaderSamples, SensorTopic, sensor_topics
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.system.index import index
@@ -213,6 +213,105 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
     assert ended == ["/scan"]
     assert [it[:2] for it in samples.heard()] == [("/scan", "laser"), ("/two", "x"), ("/two", "y")]
     assert samples.keep_waiting(1000) and not samples.keep_waiting(0)
+
+
+def rate_of(messages: list[tuple[int | None, float]], type_: str = SCAN, senders: int = 1) -> float:
+    """By the numbers and stamps of messages; a subscription that has ended receives no more."""
+    receive, ended = [], []
+    samples = HeaderSamples(lambda *it: receive.append(it[3]) or (lambda: ended.append(1)))  # type: ignore[arg-type, func-returns-value]
+    samples.update([end("/scan", type_, f"/n{at}") for at in range(senders)])
+    for number, stamp in messages:
+        if not ended:
+            receive[0](serialized("laser", stamp=stamp), number)  # type: ignore[operator]
+    return samples.heard()[0].rate
+
+
+@pytest.mark.parametrize(
+    ("messages", "rate"),
+    [
+        ([(1, 10.0), (2, 10.1), (7, 10.6)], 10.0),
+        # Half a second is enough, and then no more is received.
+        ([(1, 10.0), (6, 10.5), (100, 10.6)], 10.0),
+        ([(1, 10.0), (2, 11.0)], 1.0),
+        ([(1, 10.0), (2, 10.1)], 0.0),
+        ([(1, 10.0)], 0.0),
+        ([(None, 10.0), (None, 11.0)], 0.0),
+        ([(1, 0.0), (2, 0.0)], 0.0),
+        # A publisher that was started anew counts from the beginning.
+        ([(50, 10.0), (2, 11.0)], 0.0),
+    ],
+)
+def test_a_rate_is_that_of_numbers_and_stamps(
+    messages: list[tuple[int | None, float]], rate: float
+) -> None:
+    assert rate_of(messages) == rate
+
+
+def test_images_and_topics_of_two_have_no_rate() -> None:
+    second = [(1, 10.0), (11, 11.0)]
+    assert rate_of(second) == 10.0
+    assert rate_of(second, "sensor_msgs/msg/Image") == 0.0
+    assert rate_of(second, senders=2) == 0.0
+
+
+def test_what_is_latched_has_no_rate() -> None:
+    topic = SensorTopic("/scan", SCAN, False, 1)
+    assert topic.has_rate and not topic._replace(latched=True).has_rate
+
+
+def test_numbers_that_stand_end_the_subscription() -> None:
+    assert rate_of([(1, 10.0)] * 100 + [(11, 11.0)]) == 0.0
+    assert rate_of([(1, 10.0)] * 98 + [(11, 11.0)]) == 10.0
+
+
+def test_the_child_of_odometry_is_heard() -> None:
+    receive: list[Callable[[bytes], None]] = []
+    samples = HeaderSamples(lambda *it: receive.append(it[3]) or (lambda: None))  # type: ignore[arg-type, func-returns-value]
+    samples.update([end("/odom", "nav_msgs/msg/Odometry"), end("/scan")])
+    child = struct.pack("<I", 5) + b"base\0"
+    for at in range(2):
+        receive[at](serialized("odom", rest=b"\0" * 3 + child))
+    assert [(it.frame, it.child) for it in samples.heard()] == [("odom", "base"), ("odom", "")]
+
+
+def slower(rate: float, topic: str = "scan", type_: str = SCAN) -> list[Finding]:
+    """Two robots, the second of which sends at this rate, the first at 10 Hz."""
+    lines = (f"/{it}/lidar publishes /{it}/{topic} {type_}" for it in ("robot1", "robot2"))
+    graph = read_system("".join(f"running: {it}\n" for it in lines))
+    one = Heard(f"/robot1/{topic}", "laser", rate=10.0)
+    heard = (one, one._replace(topic=f"/robot2/{topic}", rate=rate))
+    return judge(index(graph.system._replace(heard=heard), Whose(*graph[1:6])))
+
+
+def test_a_sensor_that_is_three_times_slower_than_a_siblings_is_told() -> None:
+    (it,) = slower(3.3)
+    assert (it.code, it.robot, it.node) == ("MG326", "robot2", "/robot2/lidar")
+    assert it.message.startswith("publishes /robot2/scan at 3.3 Hz, /robot1/scan comes at 10.0 Hz")
+    # So many are usual, or nobody knows, or what it sends is no measure of a sensor.
+    assert not slower(3.4) and not slower(0.0)
+    assert not slower(1.0, "goal", "geometry_msgs/msg/PoseStamped")
+
+
+def test_a_child_frame_of_another_robot_is_told() -> None:
+    text = (
+        "running: transform robot1/odom -> robot1/base_link on /tf\n"
+        "running: transform robot2/odom -> robot2/base_link on /tf\n"
+        "running: /robot1/drive publishes /robot1/odom nav_msgs/msg/Odometry\n"
+    )
+    graph = read_system(text)
+
+    def with_child(child: str) -> list[str]:
+        heard = (Heard("/robot1/odom", "robot1/odom", child=child),)
+        found = judge(index(graph.system._replace(heard=heard), Whose(*graph[1:6])))
+        return [f"{it.code} {it.message}" for it in found]
+
+    assert with_child("robot1/base_link") == []
+    (it,) = with_child("robot2/base_link")
+    assert it.startswith(
+        "MG411 child_frame_id of /robot1/odom is robot2/base_link, a frame of robot2"
+    )
+    (it,) = with_child("base_link")
+    assert it.startswith("MG412 child_frame_id of /robot1/odom is base_link")
 
 
 # ---------------------------------------------------------------- the file

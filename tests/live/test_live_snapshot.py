@@ -20,7 +20,10 @@ import tf2_build
 from live_commands import PATIENTLY, domain
 from waiting import wait_until
 
+from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.assemble import ALL_KNOWN_SECONDS
+from multibot_rewrite.producers.ros.child import observe
+from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import EXPECTED, QUIET, TIMEOUT, Edge, End, System
 
@@ -209,6 +212,31 @@ def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build)
 
     # On a busy machine the second publisher may come long after its node: nobody can expect it.
     wait_until(lambda: deadlines() == [0.5, 0.5])
+
+
+def test_what_is_seen_is_told_while_the_graph_is_waited_for(fleet: Build) -> None:
+    told: list[str] = []
+    observe(Request(15.0), {**live_fleet.environ(domain(0)), **fleet}, told.append)
+    # Two nodes have one name, so there is a second look.
+    assert int(told[-1].split()[0]) >= 6
+    assert told[-1].endswith(" nodes in robot1, robot2 so far")
+
+
+def test_a_header_is_known_without_its_message_being_imported() -> None:
+    from importlib import import_module
+
+    for package, count in (("sensor_msgs", 27), ("geometry_msgs", 30), ("nav_msgs", 5)):
+        module = import_module(f"{package}.msg")
+        types = {name: it for name, it in vars(module).items() if isinstance(it, type)}
+        assert len(types) >= count
+        for name, type_ in types.items():
+            first = next(iter(type_.get_fields_and_field_types().values()))
+            found = ros.begins_with_header(f"{package}/msg/{name}")
+            assert found == (first == "std_msgs/Header"), name
+            assert ros.raw_message_class(f"{package}/msg/{name}")[0], name
+    assert not ros.begins_with_header("no_such_package/msg/Scan")
+    assert ros.raw_message_class("no_such_package/msg/Scan")[1]
+    assert ros.raw_message_class("sensor_msgs/msg/NoSuchScan")[1]
 
 
 def test_a_view_out_of_time_is_written_and_inconclusive(fleet: Build, tmp_path: Path) -> None:

@@ -628,7 +628,7 @@ def test_a_second_look_has_the_time_that_is_left(
 ) -> None:
     now, asked = [0.0], []
 
-    def look(request: Request, environ: object) -> System:
+    def look(request: Request, environ: object, tell: object) -> System:
         asked.append(request.timeout)
         now[0] += took
         return TWINS._replace(environment=AROUND._replace(seconds=took, caveats=()))

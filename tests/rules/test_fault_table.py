@@ -16,12 +16,15 @@ from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
 from healthy_systems import OF_EACH_RELEASE, SYSTEMS, plan, slam_with_filters, started
 from healthy_twins import TWINS, sent_twice_alike
 from paths import ROOT
+from vendor_graphs import RELEASES, VENDORS
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE, check
+from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
 from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import to_json
 
@@ -59,6 +62,23 @@ def test_what_stands_as_planned_has_no_finding_in_any_release(
 def test_slam_with_filters_has_no_finding_in_any_release(release: str) -> None:
     graph = slam_with_filters(release)
     assert [str(it) for it in diagnose(graph).findings] == []
+
+
+@pytest.mark.slow
+@pytest.mark.sample(4)
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("name", VENDORS)
+def test_a_vendors_robots_have_no_finding_in_any_release(name: str, release: str) -> None:
+    graph = VENDORS[name](release)
+    seen = diagnose(graph)
+    assert [str(it) for it in seen.findings] == []
+    planned = from_yaml(to_yaml(seen_plan(seen)).encode(), "plan.yaml")
+    assert [str(it) for it in check(planned, graph)] == []
+
+
+def test_the_tf_of_a_hidden_base_is_not_its_robots() -> None:
+    seen = diagnose(VENDORS["TurtleBot 4"]("jazzy"))
+    assert {it.tf_topic for it in seen_plan(seen).robots} == {"/robot1/tf", "/robot2/tf"}
 
 
 @pytest.mark.parametrize("name", ["parts of a robot", "arms on a base", "one robot"])

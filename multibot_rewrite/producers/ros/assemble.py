@@ -10,6 +10,7 @@ from typing import Any
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.json_values import FARTHEST
 from multibot_rewrite.system.records import (
     EXPECTED,
@@ -95,6 +96,13 @@ class ObservationClock(NamedTuple):
                 " so what is missing may only be late; look again when the machine is less busy"
             )
             yield Caveat(BUSY_MACHINE, True, text)
+
+
+def so_far(names: Sequence[str]) -> str:
+    """What is seen of a graph that may not be whole yet: its nodes, and where they are."""
+    spaces = sorted({name.split("/")[1] for name in names if name.count("/") > 1})
+    where = f" in {shorten(spaces, SEVERAL)}" if spaces else ""
+    return f"{plural(len(names), 'node')}{where} so far"
 
 
 def cut_short() -> Iterator[Caveat]:

@@ -11,14 +11,21 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, cast
 
 from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.ros.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
+from multibot_rewrite.producers.ros.request import (
+    ENDED,
+    NO_RCLPY,
+    RMW_MISMATCH,
+    SO_FAR,
+    Request,
+    to_text,
+)
 from multibot_rewrite.system.json import from_json, record_from
 from multibot_rewrite.system.parameters import Answer
 from multibot_rewrite.system.questions import Question
@@ -60,13 +67,16 @@ class RosProcess(NamedTuple):
         raise Unusable(_explain(code, output, self.environ))
 
 
-def observe(request: Request, environ: Mapping[str, str]) -> System:
+def observe(
+    request: Request, environ: Mapping[str, str], tell: Callable[[str], None] = lambda _: None
+) -> System:
     """A snapshot of the graph with the variables of ``environ``; raises Unusable.
 
-    No process is left running, however this call ends.
+    ``tell`` gets what is seen while the graph is waited for. No process is left running, however this
+    call ends.
     """
     began = time.monotonic()
-    seen = _observe_once(request, environ)
+    seen = _observe_once(request, environ, tell)
     doubtful = _may_contain_dead_nodes(seen)
     # On a busy machine the first messages of the discovery may be lost: an empty view is doubted, too.
     if seen.nodes and not doubtful:
@@ -74,7 +84,7 @@ def observe(request: Request, environ: Mapping[str, str]) -> System:
     # A node that was killed meanwhile stays visible for 20 s, but not for a new participant.
     left = request.timeout - (time.monotonic() - began)
     if left >= seen.environment.seconds:
-        return _observe_once(request._replace(timeout=left), environ)
+        return _observe_once(request._replace(timeout=left), environ, tell)
     return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK)) if doubtful else seen
 
 
@@ -90,10 +100,13 @@ def _may_contain_dead_nodes(seen: System) -> bool:
     return nameless or len(set(names)) < len(names)
 
 
-def _observe_once(request: Request, environ: Mapping[str, str]) -> System:
+def _observe_once(
+    request: Request, environ: Mapping[str, str], tell: Callable[[str], None]
+) -> System:
     limit = request.timeout + SLACK_SECONDS
     with running(OBSERVE, to_text(request), environ, limit) as child:
-        data = child.next_message()
+        while (data := child.next_message()) and data.startswith(SO_FAR):
+            tell(data.removeprefix(SO_FAR).decode())
         assert data is not None
         return from_json(data, "the view of the graph")
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One message a sensor topic, for the frame that its header names; the function that subscribes is
-passed in.
+"""A few messages a sensor topic, for the frame that their header names and for their rate; the function
+that subscribes is passed in.
 
-Images are large: of a message only the frame is kept, and its topic is left at once.
+Images are large: of a message only the frame is kept, and their topic is left at once.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterable, Iterator
 
 from multibot_rewrite.base.conventions import LISTENER
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.zenoh.cdr import read_header_frame, read_stamp
+from multibot_rewrite.producers.ros.voices import Mark
+from multibot_rewrite.producers.zenoh.cdr import read_child_frame, read_header_frame, read_stamp
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
@@ -32,8 +33,17 @@ WITHOUT_FRAME = frozenset({
 MOST_TOPICS = 200
 # Of a topic with several publishers.
 MOST_FRAMES = 8
+# Of these one message is enough.
+LARGE = frozenset({
+    "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2",
+    "nav_msgs/msg/OccupancyGrid", "stereo_msgs/msg/DisparityImage",
+})  # fmt: skip
+# A rate is that of so many seconds at least, so that 2 Hz are known, and of no more messages.
+RATE_SECONDS, MOST_MESSAGES = 0.4, 100
+ODOMETRY = "nav_msgs/msg/Odometry"
 # topic, type, latched, callback -> what ends the subscription; None for a type without a header first.
-Subscribe = Callable[[str, str, bool, Callable[[bytes], None]], "Callable[[], None] | None"]
+Receive = Callable[[bytes, Mark], None]
+Subscribe = Callable[[str, str, bool, Receive], "Callable[[], None] | None"]
 
 
 class SensorTopic(NamedTuple):
@@ -43,6 +53,27 @@ class SensorTopic(NamedTuple):
     type: str
     latched: bool
     publishers: int
+
+    @property
+    def has_rate(self) -> bool:
+        """Whether it is worth more than one message: small ones, of one publisher, now and then."""
+        return self.publishers == 1 and not self.latched and self.type not in LARGE
+
+
+class _Span(NamedTuple):
+    """The numbers and stamps of the first message of a topic and of the last."""
+
+    first: int
+    began: float
+    last: int
+    ended: float
+    messages: int
+
+    def rate(self) -> float:
+        """Messages a second by their numbers, so that one that was missed counts; 0 if not known."""
+        seconds = self.ended - self.began
+        known = seconds >= RATE_SECONDS and self.last > self.first
+        return round((self.last - self.first) / seconds, 1) if known else 0.0
 
 
 def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
@@ -67,13 +98,14 @@ def _names_a_frame(end: End) -> bool:
 
 
 class HeaderSamples:
-    """Subscriptions to sensor topics, each until its first message; what their headers name."""
+    """Subscriptions to sensor topics, each until its frame and its rate are known."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
         self._asked: set[str] = set()
         self._open: dict[str, Callable[[], None]] = {}
-        self._heard: dict[str, dict[str, float]] = defaultdict(dict)
+        self._heard: dict[str, dict[str, Heard]] = defaultdict(dict)
+        self._spans: dict[str, _Span] = {}
         self._left_out = 0
         self._began = time.monotonic()
 
@@ -88,18 +120,31 @@ class HeaderSamples:
 
     def _add(self, topic: SensorTopic) -> None:
         end = self._subscribe(
-            topic.name, topic.type, topic.latched, lambda data: self._receive(topic, data)
+            topic.name, topic.type, topic.latched, lambda *it: self._receive(topic, *it)
         )
         if end:
             self._open[topic.name] = end
             self._began = time.monotonic()
 
-    def _receive(self, topic: SensorTopic, data: bytes) -> None:
-        frame = read_header_frame(data)
-        if frame is not None:
-            self._heard[topic.name][frame] = 0.0 if topic.latched else _age(read_stamp(data))
-        if topic.publishers == 1 or len(self._heard[topic.name]) >= MOST_FRAMES:
+    def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
+        frame, own = read_header_frame(data), self._heard[topic.name]
+        if frame is not None and frame not in own:
+            age = 0.0 if topic.latched else _age(read_stamp(data))
+            child = read_child_frame(data) if topic.type == ODOMETRY else ""
+            own[frame] = Heard(topic.name, frame, age, child=child or "")
+        more = topic.has_rate and self._spanned(topic, data, mark)
+        if not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES):
             self._close(topic.name)
+
+    def _spanned(self, topic: SensorTopic, data: bytes, mark: Mark) -> bool:
+        """Count a message; whether more are wanted for a rate."""
+        stamp = read_stamp(data)
+        if not stamp or not isinstance(mark, int):
+            return False
+        span = self._spans.get(topic.name, _Span(mark, stamp, mark, stamp, 0))
+        span = span._replace(last=mark, ended=stamp, messages=span.messages + 1)
+        self._spans[topic.name] = span
+        return not span.rate() and span.messages < MOST_MESSAGES
 
     def _close(self, topic: str) -> None:
         end = self._open.pop(topic, None)
@@ -112,9 +157,10 @@ class HeaderSamples:
         return bool(silent) and time.monotonic() - self._began < seconds
 
     def heard(self) -> tuple[Heard, ...]:
-        """The frames by topic; several of a topic that several nodes publish."""
-        heard = (Heard(topic, *it) for topic, own in self._heard.items() for it in own.items())
-        return tuple(sorted(heard))
+        """What was heard by topic; several of a topic that several nodes publish."""
+        rates = {topic: span.rate() for topic, span in self._spans.items()}
+        heard = (it for own in self._heard.values() for it in own.values())
+        return tuple(sorted(it._replace(rate=rates.get(it.topic, 0.0)) for it in heard))
 
     def caveats(self) -> Iterator[Caveat]:
         """Where there were more topics than are listened to."""

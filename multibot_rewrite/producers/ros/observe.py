@@ -19,11 +19,13 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
-from multibot_rewrite.producers.ros.headers import HeaderSamples
+from multibot_rewrite.producers.ros.headers import HeaderSamples, Receive
 from multibot_rewrite.producers.ros.participants import participants_here
-from multibot_rewrite.producers.ros.request import ENDED, Request, from_text
+from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
+from multibot_rewrite.producers.ros.voices import Mark
 from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, with_answers
@@ -64,13 +66,15 @@ LONGEST_SETTLE_SECONDS = 1.0
 
 
 class GraphSession(NamedTuple):
-    """A node that observes the graph; ``stop`` is set when the observation has to end."""
+    """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
+    what is seen so far."""
 
     ros: ros.Session
     node: Any
     request: Request
     stop: threading.Event
     started: float
+    tell: Callable[[str], None]
 
     def now(self) -> float:
         """Seconds since the observation began."""
@@ -84,7 +88,8 @@ class GraphSession(NamedTuple):
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Observe as ``order`` says; returns the exit code."""
     request = from_text(order)
-    with _open_session(request, stop) as session:
+    tell = lambda text: send(SO_FAR + text.encode())  # noqa: E731
+    with _open_session(request, stop, tell) as session:
         if request.watch:
             for snapshot in watch(session):
                 send(to_json(snapshot))
@@ -98,10 +103,12 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
 
 
 @contextmanager
-def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSession]:
+def _open_session(
+    request: Request, stop: threading.Event, tell: Callable[[str], None]
+) -> Iterator[GraphSession]:
     with ros.opened() as opened:
         node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
-        yield GraphSession(opened, node, request, stop, time.monotonic())
+        yield GraphSession(opened, node, request, stop, time.monotonic(), tell)
 
 
 def take_snapshot(session: GraphSession) -> System:
@@ -116,7 +123,7 @@ def take_snapshot(session: GraphSession) -> System:
     more = [*late, *(assemble.cut_short() if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
-        ros.spin(session.ros, POLL_SECONDS)
+        _receive(session, POLL_SECONDS)
     return _snapshot(session, names, endpoints, ears, (why, seconds), more)
 
 
@@ -149,7 +156,7 @@ def watch(session: GraphSession) -> Iterator[System]:
     answers = Answers(partial(_ask, session), session.request.asks)
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
     while not session.stop.is_set():
-        ros.spin(session.ros, pause)
+        _receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
         state = (*_overview(session), ears.tf.transforms())
@@ -171,6 +178,16 @@ def watch(session: GraphSession) -> Iterator[System]:
             if new or other:
                 yield with_answers(seen, answers.states)
         spent = time.thread_time() - began
+
+
+def _receive(session: GraphSession, seconds: float) -> None:
+    """Receive messages for so long, or until the observation has to end."""
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        session.stop.wait(min(left, POLL_SECONDS))
+        ros.receive(session.node)
+        if session.stop.is_set():
+            return
 
 
 def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
@@ -199,7 +216,7 @@ def _wait_until_settled(
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
-        ros.spin(session.ros, pause)
+        _receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
         view = _overview(session)
@@ -207,6 +224,7 @@ def _wait_until_settled(
         # While it changes the moment of the last change is wanted.
         if changed.all == now:
             last_change = clock
+            session.tell(assemble.so_far(view[0]))
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         known = _all_are_known(session)
@@ -295,15 +313,27 @@ def _subscribe(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
 ) -> Callable[[], None] | str:
     """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
-    class_, reason = ros.message_class(type_)
-    return ros.subscribe(session.node, class_, topic, latched, callback) if class_ else reason
+    class_, reason = ros.raw_message_class(type_)
+    if not class_:
+        return reason
+    read = read_tf if type_ == assemble.TF_TYPES[0] else read_transform
+
+    def received(data: bytes, mark: Mark) -> None:
+        message = read(data)
+        if message:
+            callback(message, mark)
+
+    return ros.subscribe(session.node, class_, topic, latched, received)
 
 
 def _subscribe_to_headers(
-    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
 ) -> Callable[[], None] | None:
-    class_, _ = ros.message_class(type_)
-    return class_ and ros.subscribe_to_headers(session.node, class_, topic, latched, callback)
+    """Subscribe to the last message only, since there may be large images; None without a header."""
+    if not ros.begins_with_header(type_):
+        return None
+    class_, _ = ros.raw_message_class(type_)
+    return class_ and ros.subscribe(session.node, class_, topic, latched, callback, depth=1)
 
 
 def _snapshot(

@@ -13,6 +13,8 @@ from multibot_rewrite.system.records import End
 # The child's exit codes besides 0; rcl itself ends a process with 102.
 NO_RCLPY, ENDED = 4, 130
 RMW_MISMATCH = 102
+# Before a message that says what is seen so far, in words.
+SO_FAR = b"#"
 _LINE = b"\n"
 
 

@@ -6,11 +6,16 @@ It runs in child processes (``live.observe``, ``live.stub_nodes``), since rcl ma
 
 from __future__ import annotations
 
+import re
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, cast
 
 from multibot_rewrite.base.record import NamedTuple
 
@@ -20,6 +25,12 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _BROKEN = (ImportError, AttributeError, OSError)
+# The functions of a message type in C that rclpy asks its class for.
+_SUPPORT = (
+    "type_support", "create_ros_message", "convert_from_py", "convert_to_py", "destroy_ros_message",
+)  # fmt: skip
+# In the Python source of a message type.
+_FIRST_FIELD = re.compile(r"_fields_and_field_types\b[^={]*=\s*\{\s*'\w+':\s*'([^']+)'")
 
 
 class Session(NamedTuple):
@@ -31,6 +42,8 @@ class Session(NamedTuple):
 
 def missing() -> str:
     """Why rclpy cannot be imported, or an empty string."""
+    # Every message type imports this package. Its generator needs lark and does without it.
+    sys.modules.setdefault("rosidl_generator_py.generate_py_impl", cast(ModuleType, None))
     try:
         import rclpy  # noqa: F401
     except (ImportError, OSError) as error:  # OSError: a shared library that does not load
@@ -144,6 +157,50 @@ def message_class(type_: str) -> tuple[Any, str]:
     return found, ""
 
 
+def raw_message_class(type_: str) -> tuple[Any, str]:
+    """The same for messages that are received serialized: the C type support and nothing of Python,
+    which imports numpy for most packages, as long as all the rest takes."""
+    from rosidl_generator_py import import_type_support
+    from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
+
+    package, kind, name = type_.split("/")
+    try:
+        import_module(package)
+        module = import_type_support(package)
+        parts = {
+            f"_{it.upper()}": getattr(module, _support_name(it, kind, name)) for it in _SUPPORT
+        }
+    except (*_BROKEN, UnsupportedTypeSupport) as error:
+        return None, str(error)
+    # Where rclpy looks for it.
+    return type(type_, (type,), parts)(name, (), {}), ""
+
+
+def _support_name(part: str, kind: str, name: str) -> str:
+    """How rosidl_generator_py calls a part of a type: ``tf_message`` for TFMessage."""
+    return f"{part}_{kind}__{kind}__{_file_name(name)}"
+
+
+def _file_name(name: str) -> str:
+    """Source: convert_camel_case_to_lower_case_underscore of rosidl_pycommon."""
+    parted = re.sub("(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub("([a-z0-9])([A-Z])", r"\1_\2", parted).lower()
+
+
+def begins_with_header(type_: str) -> bool:
+    """Whether the first field of an installed message type is a header: read in its source, beside
+    which nothing is imported."""
+    package, kind, name = type_.split("/")
+    spec = find_spec(package)
+    folders = (spec and spec.submodule_search_locations) or ()
+    for folder in folders:
+        with suppress(OSError):
+            text = Path(folder, kind, f"_{_file_name(name)}.py").read_text(encoding="utf-8")
+            first = _FIRST_FIELD.search(text)
+            return first is not None and first[1] == "std_msgs/Header"
+    return False
+
+
 def _check_support(kind: str, type_: Any) -> None:
     from rclpy.type_support import check_for_type_support
 
@@ -154,38 +211,56 @@ def _check_support(kind: str, type_: Any) -> None:
 
 
 def subscribe(
-    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[Any, int | None], None]
+    node: Node,
+    type_: Any,
+    topic: str,
+    latched: bool,
+    callback: Callable[[bytes, int | None], None],
+    depth: int = 0,
 ) -> Callable[[], None]:
-    """Subscribe; returns what ends it. With ``latched`` earlier messages are received too.
+    """Subscribe to serialized messages, the last ``depth`` of which wait to be received, else as many
+    as a listener to tf keeps; returns what ends it. With ``latched`` earlier messages are received too.
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
 
-    def numbered(message: Any, info: Any) -> None:
+    def numbered(message: bytes, info: Any) -> None:
         name = "publication_sequence_number"
         # A dictionary in Jazzy.
         number = info.get(name) if isinstance(info, dict) else getattr(info, name, None)
         callback(message, number)
 
     # Best effort works with reliable publishers too, but latched samples need a reliable reader.
-    subscription = node.create_subscription(type_, topic, numbered, _qos(latched, latched))
-    return lambda: node.destroy_subscription(subscription)
-
-
-def subscribe_to_headers(
-    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[bytes], None]
-) -> Callable[[], None] | None:
-    """Subscribe to serialized messages; returns what ends it, None for a type without a header first.
-
-    Only the last message waits to be taken: there may be large images.
-    """
-    fields = list(type_.get_fields_and_field_types().values())
-    if fields[:1] != ["std_msgs/Header"]:
-        return None
     qos = _qos(latched, latched)
-    qos.depth = 1
-    subscription = node.create_subscription(type_, topic, callback, qos, raw=True)
+    qos.depth = depth or qos.depth
+    subscription = node.create_subscription(type_, topic, numbered, qos, raw=True)
     return lambda: node.destroy_subscription(subscription)
+
+
+def receive(node: Node) -> None:
+    """Hand out what the subscriptions of a node have received.
+
+    An executor waits for all of them anew for each message: a millisecond and more in a fleet.
+    """
+    for subscription in list(node.subscriptions):
+        for message, info in _taken(subscription):
+            subscription.callback(message, info)
+
+
+def _taken(subscription: Any) -> Iterator[tuple[bytes, Any]]:
+    """Its messages, until there is none, or a callback has ended it."""
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    with suppress(rclpy_implementation.InvalidHandle):
+        while taken := _take(subscription):
+            yield taken
+
+
+def _take(subscription: Any) -> tuple[bytes, Any] | None:
+    with subscription.handle:
+        taken: tuple[bytes, Any] | None
+        taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    return taken
 
 
 def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:

@@ -9,6 +9,7 @@ stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation 
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable, Iterable
 
 from multibot_rewrite.base.record import NamedTuple
 
@@ -54,26 +55,47 @@ class TfMessage(NamedTuple):
 
 def read_tf(data: bytes) -> TfMessage | None:
     """The message in these bytes, or None if it is cut short or no plain CDR."""
+    return _read(data, lambda reader: (_stamped(reader) for _ in range(reader.number())))
+
+
+def read_transform(data: bytes) -> TfMessage | None:
+    """The same for a single TransformStamped."""
+    return _read(data, lambda reader: [_stamped(reader)])
+
+
+def _read(data: bytes, parts: Callable[[_Reader], Iterable[_Stamped]]) -> TfMessage | None:
     mark = _ENDS.get(data[:2])
     if mark is None:
         return None
     try:
-        return _read(_Reader(data[_HEADER:], mark))
+        return TfMessage(tuple(parts(_Reader(data[_HEADER:], mark))))
     except (struct.error, UnicodeDecodeError, IndexError):
         return None
 
 
 def read_header_frame(data: bytes) -> str | None:
     """The ``header.frame_id`` of a message that begins with a header, or None as above."""
+    found = _header_texts(data, 1)
+    return found[0] if found else None
+
+
+def read_child_frame(data: bytes) -> str | None:
+    """The ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
+    found = _header_texts(data, 2)
+    return found[1] if found else None
+
+
+def _header_texts(data: bytes, many: int) -> list[str]:
+    """The first texts after the stamp; none as above."""
     mark = _ENDS.get(data[:2])
     if mark is None:
-        return None
+        return []
     try:
         reader = _Reader(data[_HEADER:], mark)
         reader.skip(_STAMP)
-        return reader.text()
+        return [reader.text() for _ in range(many)]
     except (struct.error, UnicodeDecodeError, IndexError):
-        return None
+        return []
 
 
 def read_stamp(data: bytes) -> float | None:
@@ -85,16 +107,13 @@ def read_stamp(data: bytes) -> float | None:
     return float(seconds + parts / 1e9)
 
 
-def _read(reader: _Reader) -> TfMessage:
-    found = []
-    for _ in range(reader.number()):
-        reader.align(4)
-        reader.skip(_STAMP)
-        parent, child = reader.text(), reader.text()
-        reader.align(8)
-        transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
-        found.append(_Stamped(_Header(parent), child, transform))
-    return TfMessage(tuple(found))
+def _stamped(reader: _Reader) -> _Stamped:
+    reader.align(4)
+    reader.skip(_STAMP)
+    parent, child = reader.text(), reader.text()
+    reader.align(8)
+    transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
+    return _Stamped(_Header(parent), child, transform)
 
 
 class _Reader:

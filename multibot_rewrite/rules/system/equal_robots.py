@@ -42,6 +42,7 @@ running: /robot2/scan came 588 times
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     """Of the robots that have the topic, the one with the most messages is the measure."""
     yield from _silent(seen)
+    yield from _slow(seen)
     for there in _of_each(seen).values():
         best = max(there.values(), key=lambda it: seen.known.messages[it])
         most = seen.known.messages[best]
@@ -63,6 +64,28 @@ def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
         if robot := seen.robot(name):
             found[seen.plain(name)][robot] = name
     return found
+
+
+def _slow(seen: Index) -> Iterator[Finding]:
+    """Of a running system the rate of a sensor is known, from a second of it."""
+    rates = {it.topic: it.rate for it in seen.system.heard if it.rate}
+    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
+    for it in seen.topics if rates else ():
+        robot = seen.robot(it.name)
+        if robot and it.name in rates and words.kind_of_data(it.name, it.type):
+            there[seen.plain(it.name), it.type][robot] = it.name
+    for own in there.values():
+        best = max(own.values(), key=lambda it: rates[it])
+        for robot, name in own.items():
+            if rates[name] * RATIO <= rates[best]:
+                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
+                message = (
+                    f"publishes {name} at {rates[name]:.1f} Hz, {best} comes at {rates[best]:.1f}"
+                )
+                yield less_than_another_robot.finding(
+                    f"{message} Hz", "see its log, and the processor time that it has",
+                    robot=robot, node=node, names=(name,),
+                )  # fmt: skip
 
 
 def _silent(seen: Index) -> Iterator[Finding]:

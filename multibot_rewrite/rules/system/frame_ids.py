@@ -33,13 +33,15 @@ class _Message(NamedTuple):
     frame: str
     robot: str
     senders: tuple[str, ...]
+    field: str = "frame_id"
 
 
 @system_rule(
     "MG411",
     "frame-id-of-another-robot",
     ERROR,
-    what="`header.frame_id` of what a robot measures is a frame of another robot.",
+    what="`header.frame_id` of what a robot measures, or `child_frame_id` of its odometry, is a frame"
+    " of another robot.",
     why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
     fix="Set the frame of the sender (`frame_id`, `base_frame`, or `gz_frame_id` in the description) to"
     " its own robot's; a launch file may have the other robot's name.",
@@ -63,7 +65,7 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
         if _is_of_another(seen, frame, robot, messages):
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
-            message = f"frame_id of {shorten(topics)} is {frame}, a frame of {owner}"
+            message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
             cause = f"set the frame of {_who(senders)} to that of {robot}"
             yield frame_id_of_another_robot.finding(
                 f"{message}; sent by {_who(senders)}",
@@ -118,7 +120,8 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         elsewhere = [topic for topic, it in frames.items() if frame in it]
         topics = shorten([it.topic for it in messages])
         yield frame_id_unknown.finding(
-            f"frame_id of {topics} is {frame}, which is in no transform of {robot or 'tf'}; sent by"
+            f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
+            f" {robot or 'tf'}; sent by"
             f" {_who(senders)}",
             _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own), elsewhere),
             level=ERROR if meant or elsewhere else WARNING,
@@ -130,7 +133,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
 
 def _nameless(seen: Index) -> Iterator[Finding]:
     """What a sensor or odometry sends without any frame: tf2 refuses it (an empty frame_id)."""
-    for topic, written, _ in seen.system.heard:
+    for topic, written, *_ in seen.system.heard:
         ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         if ends and senders and not written and ends.type in _PLACED:
@@ -190,13 +193,14 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 
 def _messages(seen: Index) -> Iterator[_Message]:
     """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
-    for topic, written, _ in seen.system.heard:
-        ends = seen.by_name.get((TOPIC, topic))
+    for it in seen.system.heard:
+        ends = seen.by_name.get((TOPIC, it.topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
-        frame = written.removeprefix("/")
-        if ends and senders and frame:
-            robot = seen.robot(topic) or only(robots_of(seen, senders))
-            yield _Message(topic, ends.type, frame, robot, senders)
+        for field, written in (("frame_id", it.frame), ("child_frame_id", it.child)):
+            frame = written.removeprefix("/")
+            if ends and senders and frame:
+                robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+                yield _Message(it.topic, ends.type, frame, robot, senders, field)
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:

@@ -47,7 +47,7 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
     """All topics of a sender that are wrong in one way are one; what a bag plays is of then."""
     clock = CLOCK in seen.published
     found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)
-    for topic, _, age in seen.system.heard:
+    for topic, _, age, *_ in seen.system.heard:
         ends = seen.by_name.get((TOPIC, topic))
         senders = nodes_of(at_work(ends.publishers)) if ends else ()
         played = any(last_word(it).startswith(words.PLAYER) for it in senders)

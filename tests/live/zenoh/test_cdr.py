@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from zenoh_robots import tf_message
 
 from multibot_rewrite.producers.ros.assemble import numbers_of
-from multibot_rewrite.producers.zenoh.cdr import read_tf
+from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
 
 # One transform, odom -> base: count, stamp, "odom" with its zero, "base" with its zero, then
 # seven doubles at a multiple of 8 (36 bytes are before them, so 4 are empty).
@@ -32,6 +32,13 @@ def edges(data: bytes) -> list[tuple[str, str]] | None:
 
 def test_one_transform() -> None:
     assert edges(ONE) == [("odom", "base")]
+
+
+def test_a_single_transform_has_no_count() -> None:
+    # Without the count what is behind it moves by 4 bytes, which the seven doubles take up.
+    single = ONE[:4] + ONE[8:40] + struct.pack("<7d", 1, 2, 3, 0, 0, 0, 1)
+    assert read_transform(single) == read_tf(ONE)
+    assert read_transform(single[:-1]) is None
 
 
 @pytest.mark.parametrize("mark", ["<", ">"])
