@@ -101,7 +101,7 @@ LIVE_FILES = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """With ``-n 2`` the tests of a file stay together, and all files with nodes: two of them at once
+    """With ``-n 3`` the tests of a file stay together, and all files with nodes: two of them at once
     would meet in a domain."""
     from xdist.scheduler import LoadFileScheduling
 

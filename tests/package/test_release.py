@@ -222,7 +222,7 @@ def test_the_tests_that_are_run_are_those_of_the_readme() -> None:
         r"(?m)^    (python3 -m venv .*pytest.*)$", (ROOT / "README.md").read_text()
     )
     script = (ROOT / ".ci" / "run").read_text()
-    for step in ("python3 -m venv .venv", "'.[test]'", "-m pytest -n 2"):
+    for step in ("python3 -m venv .venv", "'.[test]'", "-m pytest -n 3"):
         assert step in command and step in script
     assert any(it.get("run") == ".ci/run" for it in workflow("ci.yml")["jobs"]["tests"]["steps"])
 
