@@ -15,7 +15,8 @@ import pytest
 
 from multibot_rewrite.producers.ros import ask, ros
 from multibot_rewrite.producers.ros.assemble import ReceivedTransform
-from multibot_rewrite.producers.ros.observe import _ChangeTimes, _complete_view, _pause_after
+from multibot_rewrite.producers.ros.look import complete_view
+from multibot_rewrite.producers.ros.observe import _ChangeTimes, _pause_after
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.system.parameters import Answer
@@ -281,7 +282,7 @@ def test_a_pause_is_as_long_as_a_poll_took_and_never_too_long(took: float, pause
 
 
 def test_a_view_with_a_node_without_ends_is_taken_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    from multibot_rewrite.producers.ros import observe
+    from multibot_rewrite.producers.ros import look
 
     views = [
         (["/n", "/m"], [tf_end("/tf")]),
@@ -290,9 +291,9 @@ def test_a_view_with_a_node_without_ends_is_taken_again(monkeypatch: pytest.Monk
         (["/never"], []),
     ]
     taken = iter(views)
-    monkeypatch.setattr(observe, "_view", lambda session, cache: next(taken))
+    monkeypatch.setattr(look, "view", lambda session, cache: next(taken))
     stop = SimpleNamespace(wait=lambda seconds: False)
     session: Any = SimpleNamespace(request=Request(9.0), now=lambda: 0.0, stop=stop)
-    assert _complete_view(session, {}) == views[2]
+    assert complete_view(session, {}) == views[2]
     late = SimpleNamespace(request=Request(9.0), now=lambda: 9.5, stop=stop)
-    assert _complete_view(late, {}) == views[3]  # type: ignore[arg-type]
+    assert complete_view(late, {}) == views[3]  # type: ignore[arg-type]

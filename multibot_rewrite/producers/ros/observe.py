@@ -10,79 +10,52 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
-from typing import Any
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
-from multibot_rewrite.producers.ros.headers import HeaderSamples, Receive
+from multibot_rewrite.producers.ros.ears import TF_SECONDS, Ears
+from multibot_rewrite.producers.ros.look import (
+    POLL_SECONDS,
+    GraphSession,
+    complete_view,
+    overview,
+    receive,
+    view,
+)
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
-from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
-from multibot_rewrite.producers.ros.voices import Mark
 from multibot_rewrite.producers.ros.worker import Send, run_worker
-from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
 from multibot_rewrite.system.records import (
-    ACTION,
-    CALLS,
     CHANGING,
     EXPECTED,
     QUIET,
-    SERVES,
-    UNKNOWN_NODE,
     Caveat,
     End,
     Environment,
     System,
 )
 
-# The shortest pause between two polls. A pause is also so many times as long as a poll took: a
-# large fleet is polled less often, even less where the graph is not watched.
-POLL_SECONDS, PAUSE_FACTOR, LONG_PAUSE_FACTOR = 0.1, 10, 30
+# A pause between two polls is so many times as long as a poll took: a large fleet is polled less
+# often, even less where the graph is not watched.
+PAUSE_FACTOR, LONG_PAUSE_FACTOR = 10, 30
 # The longest pause; a poll may only have been slow because the machine was busy.
 LONGEST_PAUSE_SECONDS = 1.0
-# tf has 10 Hz or more; a shared topic of 100 robots took 1.3 s to be received completely.
-TF_SECONDS = (1.5, 3.0)
-# Sensors have 5 Hz or more; what is sent once a minute is not waited for.
-HEADER_SECONDS = 1.5
 # After so long without a change there will probably be none; tf is received until that is known.
 IDLE_SECONDS = assemble.QUIET_SECONDS - TF_SECONDS[0]
 # The same where all participants are known.
 SHORT_IDLE_SECONDS = 0.3
-# What a look may take beyond its timeout, for the last queries.
-GRACE_SECONDS = 1.0
 # When watching, a snapshot comes so long after the last change, because changes come in groups,
 SETTLE_SECONDS = 0.15
 # but it waits no longer than this while the graph goes on changing.
 LONGEST_SETTLE_SECONDS = 1.0
-
-
-class GraphSession(NamedTuple):
-    """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
-    what is seen so far."""
-
-    ros: ros.Session
-    node: Any
-    request: Request
-    stop: threading.Event
-    started: float
-    tell: Callable[[str], None]
-
-    def now(self) -> float:
-        """Seconds since the observation began."""
-        return time.monotonic() - self.started
-
-    def over(self) -> bool:
-        """Whether it has to end, also in the midst of queries."""
-        return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
 
 
 def main(order: str, stop: threading.Event, send: Send) -> int:
@@ -114,41 +87,22 @@ def _open_session(
 def take_snapshot(session: GraphSession) -> System:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
-    ears = _Ears(session)
+    ears = Ears(session)
     why, clock = _wait_until_settled(session, cache, ears)
     seconds = session.now()
-    names, endpoints = _complete_view(session, cache)
+    names, endpoints = complete_view(session, cache)
     # Who names what is expected does not wait for anything that may be late.
     late = () if why == EXPECTED else clock.starved()
     more = [*late, *(assemble.cut_short() if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
-        _receive(session, POLL_SECONDS)
+        receive(session, POLL_SECONDS)
     return _snapshot(session, names, endpoints, ears, (why, seconds), more)
-
-
-class _Ears:
-    """What is received while the graph is looked at: transforms, and headers if they are asked for."""
-
-    def __init__(self, session: GraphSession) -> None:
-        self._request = session.request
-        self.tf = TfSubscriptions(partial(_subscribe, session))
-        self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
-
-    def update(self, endpoints: Sequence[End]) -> None:
-        """Subscribe to what is published now."""
-        self.tf.update(endpoints, self._request.substitutes)
-        if self._request.headers:
-            self.headers.update(endpoints)
-
-    def keep_waiting(self) -> bool:
-        """Whether something may still come."""
-        return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 
 def watch(session: GraphSession) -> Iterator[System]:
     """A snapshot after each change, and one when nothing has changed for a while."""
-    ears = _Ears(session)
+    ears = Ears(session)
     cache: queries.TopicCache = {}
     before: object = None
     sent: object = None
@@ -156,10 +110,10 @@ def watch(session: GraphSession) -> Iterator[System]:
     answers = Answers(partial(_ask, session), session.request.asks)
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
     while not session.stop.is_set():
-        _receive(session, pause)
+        receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
-        state = (*_overview(session), ears.tf.transforms())
+        state = (*overview(session), ears.tf.transforms())
         pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
         if state != before:
             before, changed = state, now
@@ -170,7 +124,7 @@ def watch(session: GraphSession) -> Iterator[System]:
             sent, sent_at = (state, quiet), now
             if quiet:
                 cache.clear()
-            names, endpoints = _view(session, cache)
+            names, endpoints = view(session, cache)
             ears.tf.update(endpoints, session.request.substitutes)
             why = QUIET if quiet else CHANGING
             seen = _snapshot(session, names, endpoints, ears, (why, session.now()))
@@ -180,31 +134,12 @@ def watch(session: GraphSession) -> Iterator[System]:
         spent = time.thread_time() - began
 
 
-def _receive(session: GraphSession, seconds: float) -> None:
-    """Receive messages for so long, or until the observation has to end."""
-    end = time.monotonic() + seconds
-    while (left := end - time.monotonic()) > 0:
-        session.stop.wait(min(left, POLL_SECONDS))
-        ros.receive(session.node)
-        if session.stop.is_set():
-            return
-
-
 def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
     return ask_nodes(session.ros, session.node, asked, ANSWER_SECONDS, session.stop)
 
 
-def _overview(session: GraphSession) -> tuple[list[str], list[End]]:
-    """The nodes and their endpoints: enough to see whether anything changed."""
-    names = queries.node_names(session.node)
-    found = queries.endpoints_by_node(
-        session.node, names, queries.NODE_QUERIES, ros.node_gone_error()
-    )
-    return names, sorted(found)
-
-
 def _wait_until_settled(
-    session: GraphSession, cache: queries.TopicCache, ears: _Ears
+    session: GraphSession, cache: queries.TopicCache, ears: Ears
 ) -> tuple[str, assemble.ObservationClock]:
     """Wait until the graph is settled; returns why it is, empty if the observation was stopped, and
     the time since the last change: what is late on a busy machine has had the time before.
@@ -216,15 +151,15 @@ def _wait_until_settled(
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
-        _receive(session, pause)
+        receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
-        view = _overview(session)
-        changed = times.update(now, view, request)
+        seen = overview(session)
+        changed = times.update(now, seen, request)
         # While it changes the moment of the last change is wanted.
         if changed.all == now:
             last_change = clock
-            session.tell(assemble.so_far(view[0]))
+            session.tell(assemble.so_far(seen[0]))
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         known = _all_are_known(session)
@@ -234,15 +169,15 @@ def _wait_until_settled(
         # Its timeout is of real time.
         timeout = request.timeout - (session.now() - now)
         unchanged = clock.since(last_change)
-        met, starved = request.is_met(view[1]), any(unchanged.starved())
+        met, starved = request.is_met(seen[1]), any(unchanged.starved())
         why = assemble.why_settled(now, changed, met, timeout, quiet, starved=starved)
         if why:
             return why, unchanged
         still = SHORT_IDLE_SECONDS if known else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
-        if idle and queried != view:
-            queried = view
-            ears.update(_view(session, cache)[1])
+        if idle and queried != seen:
+            queried = seen
+            ears.update(view(session, cache)[1])
         spent = time.thread_time() - began
     return "", clock
 
@@ -282,65 +217,11 @@ def _pause_after(took: float, factor: int) -> float:
     return min(max(POLL_SECONDS, factor * took), LONGEST_PAUSE_SECONDS)
 
 
-def _complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Names and endpoints; repeated for a while if nodes have no endpoints or no name yet."""
-    limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
-    while True:
-        names, endpoints = _view(session, cache)
-        owners = {end.node for end in endpoints}
-        complete = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
-        if complete or session.now() >= limit or session.stop.wait(POLL_SECONDS):
-            return names, endpoints
-
-
-def _view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Names and endpoints, with QoS and process for the topics that are worth a query."""
-    node = session.node
-    names = queries.node_names(node)
-    all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
-    found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
-    details = queries.TopicQueries(session.request.topics, cache, session.over)
-    return names, queries.with_topic_details(node, names, found, details)
-
-
-_ACTION_QUERIES: tuple[queries.NodeQuery, ...] = (
-    (ACTION, SERVES, ros.action_servers),
-    (ACTION, CALLS, ros.action_clients),
-)
-
-
-def _subscribe(
-    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
-) -> Callable[[], None] | str:
-    """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
-    class_, reason = ros.raw_message_class(type_)
-    if not class_:
-        return reason
-    read = read_tf if type_ == assemble.TF_TYPES[0] else read_transform
-
-    def received(data: bytes, mark: Mark) -> None:
-        message = read(data)
-        if message:
-            callback(message, mark)
-
-    return ros.subscribe(session.node, class_, topic, latched, received)
-
-
-def _subscribe_to_headers(
-    session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
-) -> Callable[[], None] | None:
-    """Subscribe to the last message only, since there may be large images; None without a header."""
-    if not ros.begins_with_header(type_):
-        return None
-    class_, _ = ros.raw_message_class(type_)
-    return class_ and ros.subscribe(session.node, class_, topic, latched, callback, depth=1)
-
-
 def _snapshot(
     session: GraphSession,
     names: list[str],
     endpoints: list[End],
-    ears: _Ears,
+    ears: Ears,
     settled: tuple[str, float],
     more: Iterable[Caveat] = (),
 ) -> System:
