@@ -22,7 +22,10 @@ from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.fleet_file import (
+    input_files,
+    read_fleet,
+)
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH

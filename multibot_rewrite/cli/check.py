@@ -96,7 +96,10 @@ def plan_of(options: argparse.Namespace) -> System:
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-    from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+    from multibot_rewrite.fleet.file.fleet_file import (
+        input_files,
+        read_fleet,
+    )
     from multibot_rewrite.fleet.fleet import expected
     from multibot_rewrite.fleet.fleet_plan import plan_fleet
 

@@ -17,7 +17,10 @@ from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.fleet_data import DICT
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.fleet_file import (
+    input_files,
+    read_fleet,
+)
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed

@@ -13,7 +13,11 @@ from multibot_rewrite.fleet.checks.declared_twice import declared_twice
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
-from multibot_rewrite.fleet.file.fleet_file import REAL, FleetFile, Sources
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.robot_spec import (
+    REAL,
+    Sources,
+)
 from multibot_rewrite.fleet.file.shape import placed, with_shape
 from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 

@@ -20,7 +20,15 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.checked_yaml import TYPES
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, schema
-from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, Pose, RobotSpec, read_fleet
+from multibot_rewrite.fleet.file.fleet_file import (
+    KINDS,
+    FleetFile,
+    read_fleet,
+)
+from multibot_rewrite.fleet.file.robot_spec import (
+    Pose,
+    RobotSpec,
+)
 from multibot_rewrite.spelling.plan_file import is_fleet
 from tools.pages import fleet_keys
 

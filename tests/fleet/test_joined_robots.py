@@ -19,7 +19,10 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining.from_file import _KEYS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_data import schema
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.fleet_file import (
+    input_files,
+    read_fleet,
+)
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ARM = """\

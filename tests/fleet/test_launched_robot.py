@@ -10,7 +10,10 @@ from rule_examples import DESCRIPTION
 
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.fleet_file import (
+    input_files,
+    read_fleet,
+)
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.plan_file import to_yaml

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.fleet.outputs import spawn
 from multibot_rewrite.fleet.outputs.spawn import Spawn

@@ -15,7 +15,10 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.file.fleet_file import Pose, RobotSpec
+from multibot_rewrite.fleet.file.robot_spec import (
+    Pose,
+    RobotSpec,
+)
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import PLAN, OutputFile
 from multibot_rewrite.producers.launch.records import LaunchGraph

@@ -27,7 +27,8 @@ from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import is_xacro
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 
 # Kinds that other files and nodes know by the name that the layout makes.
 _KNOWN = ("link", "joint", "frame")

@@ -3,122 +3,35 @@
 
 from __future__ import annotations
 
-import math
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import NAMESPACE, Naming, make_naming
+from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import chosen_release
-from multibot_rewrite.companions.rviz.colours import read_colour
-from multibot_rewrite.description.joining.part import Part, files_of
-from multibot_rewrite.description.sources.own_names import filled, name_robot
-from multibot_rewrite.description.sources.read import JOIN as LIST
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
-from multibot_rewrite.fleet.file.checked_yaml import Path
 from multibot_rewrite.fleet.file.fleet_data import (
     FleetData,
-    given_arguments,
     listed,
     nodl_files,
     read_data,
 )
-from multibot_rewrite.fleet.file.listed_parts import described
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice, with_robots
-from multibot_rewrite.fleet.fleet import facts_of
+from multibot_rewrite.fleet.file.robot_spec import (
+    WORLD_LINK,
+    RobotSpec,
+    is_simulated,
+    robot_spec,
+)
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
-from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
-# Description, SRDF and arguments; the robot's name, if the arguments hold a word of it; the model.
-Sources = tuple[str, str, tuple[tuple[str, str], ...], str, str]
-# What ``simulator`` says of a real robot.
-REAL = "none"
-WORLD_LINK = "world"
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"
-
-
-class Pose(NamedTuple):
-    """Where a robot starts in the world: metres and radians."""
-
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
-    roll: float = 0.0
-    pitch: float = 0.0
-    yaw: float = 0.0
-
-
-class RobotSpec(NamedTuple):
-    """One robot of a fleet file; paths are absolute or relative to the working directory.
-
-    ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
-    is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameter
-    files in which a launch replaces something, and what is made of ``parts``, which are joined.
-    ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so. ``use_sim_time``
-    is what all its nodes have, None if the file does not say. ``simulated`` is the model that the
-    simulator gets, empty where that is the description. ``bridge_namespace`` is the one below its
-    own that its bridge files are for, ``bridges_below`` what launch files say of single ones.
-    ``fills`` says that arguments of its xacro which name robots are filled where ``arguments`` has
-    no value for them. ``places`` are those of outputs below
-    the robot's folder, by the names that they have else.
-    """
-
-    name: str
-    description: str
-    srdf: str
-    arguments: Mapping[str, str]
-    namespace: str
-    tag: str
-    model: str
-    pose: Pose | None
-    colour: str | tuple[int, ...]
-    stacks: tuple[str, ...]
-    companions: Mapping[str, tuple[str, ...]]
-    file: str
-    line: int
-    launch: tuple[LaunchOrder, ...] = ()
-    filled: tuple[tuple[str, str], ...] = ()
-    simulator: str = ""
-    use_sim_time: bool | None = None
-    simulated: str = ""
-    bridge_namespace: str = ""
-    bridges_below: tuple[tuple[str, str], ...] = ()
-    fills: bool = True
-    places: tuple[tuple[str, str], ...] = ()
-    parts: tuple[Part, ...] = ()
-
-    @property
-    def files(self) -> Iterator[str]:
-        """Every file of a disk that it is made of."""
-        made = {self.description, *dict(self.filled)} if self.parts else set()
-        own = (self.description, self.srdf, self.simulated)
-        beside = (path for paths in self.companions.values() for path in paths)
-        yield from (it for it in (*own, *beside) if it and (it not in made or it.endswith(LIST)))
-        yield from (it for part in self.parts for it in files_of(part))
-        yield from (it.file for it in self.launch)
-
-    @property
-    def words(self) -> tuple[str, str, str]:
-        """What stands for it in names; the first one is ``{robot}`` in its arguments."""
-        return self.name, self.namespace, self.tag
-
-    def bridge_namespace_of(self, path: str) -> str:
-        """The namespace below its own that one of its bridge files is for."""
-        return dict(self.bridges_below).get(path, self.bridge_namespace)
-
-    @property
-    def sources(self) -> Sources:
-        """All that decides its texts besides its names."""
-        own = self.name if name_robot(self.arguments, self.words) else ""
-        return self.description, self.srdf, tuple(self.arguments.items()), own, self.simulated
 
 
 class FleetFile(NamedTuple):
@@ -171,7 +84,7 @@ def read_fleet(
     policy = _policy(data)
     naming = _naming(read, policy)
     files = tuple(_files(read))
-    robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
+    robots = tuple(robot_spec(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
     _check_world(read, naming)
     return FleetFile(
@@ -200,14 +113,10 @@ def read_fleet(
 def _policy(data: Mapping[str, Any]) -> Policy:
     given = {key: data[key] for key in POLICY if key in data}
     lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
-    if "shared_frames" in lists and any(_is_simulated(data, own) for own in data["robots"]):
+    if "shared_frames" in lists and any(is_simulated(data, own) for own in data["robots"]):
         # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
         lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
     return cast(Policy, given | lists)
-
-
-def _is_simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
-    return bool(own.get("simulator", data.get("simulator", REAL)) != REAL)
 
 
 def _files(read: FleetData) -> Iterator[str]:
@@ -241,110 +150,6 @@ def _check_world(read: FleetData, naming: Naming) -> None:
         shared = ", ".join(sorted(naming.shared_frames)) or "none"
         hint = "add it to shared_frames"
         raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
-
-
-def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
-    data, own = read.data, read.data["robots"][at]
-    file, line = read.places["robots", at]
-    place, name = f"{file}:{line}", own["name"]
-    description, parts = described(read, at)
-    if not description:
-        raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
-    companions = {**data.get("companions", {}), **own.get("companions", {})}
-    stacks = tuple(listed(own.get("stack", data.get("stack", []))))
-    _check_stacks(read, at, stacks, release)
-    return RobotSpec(
-        name,
-        description,
-        own.get("srdf", data.get("srdf", "")),
-        given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
-        _namespace(own, naming, place),
-        _tag(own, naming.affix, place),
-        own.get("model", name),
-        _pose(own, place),
-        _colour(own, place),
-        stacks,
-        {kind: tuple(listed(it)) for kind, it in companions.items()},
-        file,
-        line,
-        tuple(_launch(data, own, place)),
-        simulator=own.get("simulator", data.get("simulator", "")),
-        use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
-        simulated=_simulated(data, own),
-        bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
-        fills=own.get("fill_arguments", data.get("fill_arguments", True)),
-        parts=parts,
-    )
-
-
-def _simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> str:
-    """What the simulator gets instead of the description; a real robot has none."""
-    given = own.get("simulator", data.get("simulator", ""))
-    return "" if given == REAL else str(own.get("simulated", data.get("simulated", "")))
-
-
-def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
-    """The launch files of a robot; InputError for words that are no arguments."""
-    roots = listed(data.get("launch_roots", []))
-    try:
-        for text in listed(own.get("launch", data.get("launch", []))):
-            order = launch_order(text, roots)
-            full = filled(dict(order.arguments), own["name"])
-            # Robots with files of their own start other nodes; else one look is enough for all.
-            own_files = {
-                name: full[name] for name, text in order.arguments if os.path.splitext(text)[1]
-            }
-            yield order._replace(arguments=tuple({**dict(order.arguments), **own_files}.items()))
-    except UsageError as error:
-        raise InputError(f"{place}: {own['name']!r}: {error}") from None
-
-
-def _check_stacks(read: FleetData, at: int, stacks: tuple[str, ...], release: str) -> None:
-    try:
-        nodl = listed(read.data.get("nodl", []))
-        facts_of(stacks, read.data.get("nodes") or None, release, nodl)
-    except UsageError as error:
-        own: Path = ("robots", at, "stack")
-        found = (it for it in (own, ("stack",), ("nodes",), ("nodl",)) if it in read.places)
-        file, line = read.places[next(found)]
-        raise InputError(f"{file}:{line}: {error}") from None
-
-
-def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
-    if "pose" not in own:
-        return None
-    values = {key: float(value) for key, value in own["pose"].items()}
-    for key, value in values.items():
-        if not math.isfinite(value):
-            raise InputError(f"{place}: {own['name']!r}: pose {key} is {value}; write a number")
-    return Pose(**values)
-
-
-def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
-    value = own.get("colour", "")
-    colour = value if isinstance(value, str) else tuple(value)
-    try:
-        read_colour(colour) if colour else None
-    except InputError as error:
-        raise InputError(f"{place}: {own['name']!r}: {error}") from None
-    return colour
-
-
-def _namespace(own: Mapping[str, Any], naming: Naming, place: str) -> str:
-    namespace = str(own.get("namespace", own["name"])).strip("/")
-    if "/" in namespace and naming.topics != NAMESPACE:
-        what = f"{own['name']!r} has the namespace {namespace!r}, but here names get no namespace"
-        hint = "write one word, or take a layout with namespaces"
-        raise InputError(f"{place}: {what}; {hint}")
-    return namespace
-
-
-def _tag(own: Mapping[str, Any], side: str, place: str) -> str:
-    other = "postfix" if side == "prefix" else "prefix"
-    if other in own:
-        what = f"{own['name']!r} has a {other}, but the fleet's affix is {side}"
-        raise InputError(f"{place}: {what}; write {side}: instead")
-    return str(own.get(side, own["name"]))
 
 
 def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:

@@ -16,7 +16,8 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_of, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 

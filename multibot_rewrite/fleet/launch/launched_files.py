@@ -18,7 +18,8 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called

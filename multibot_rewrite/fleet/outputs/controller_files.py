@@ -21,7 +21,7 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import package_folder, package_of
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import text_slot
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.outputs.output_file import path_for
 from multibot_rewrite.fleet.outputs.yarp_files import own_yarp_paths
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot

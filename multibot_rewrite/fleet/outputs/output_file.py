@@ -14,7 +14,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
-from multibot_rewrite.fleet.file.fleet_file import RobotSpec
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 
 # The plan of a built fleet.

@@ -13,8 +13,8 @@ import yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.yaml_text import YamlText, pairs, replaced, spliced
-from multibot_rewrite.fleet.file.fleet_file import REAL as NOT_SIMULATED
-from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.robot_spec import REAL as NOT_SIMULATED
+from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, yaml_of

@@ -14,7 +14,7 @@ from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.release_said import release_said
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of, srdf_of
 from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch

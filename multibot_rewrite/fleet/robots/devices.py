@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.file.fleet_file import Sources
+from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence

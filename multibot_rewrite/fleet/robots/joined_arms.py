@@ -22,7 +22,7 @@ from multibot_rewrite.description.joining.semantic import without_virtual_joints
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.fleet.file.cell_file import Cell
-from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose
 
 _STANDING = Pose()
 

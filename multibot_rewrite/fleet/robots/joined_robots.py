@@ -17,7 +17,8 @@ from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import JOIN, is_xacro
-from multibot_rewrite.fleet.file.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 
 _ARM = """\
 <robot name="arm">

@@ -22,7 +22,7 @@ from multibot_rewrite.companions.params.rcl_parameters import (
     parameters_text,
 )
 from multibot_rewrite.companions.yaml_text import YamlText
-from multibot_rewrite.fleet.file.fleet_file import Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop

@@ -23,7 +23,7 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens, split_path
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import tag_end, text_slot
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.robots.member import with_text
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 

@@ -37,7 +37,11 @@ from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, com
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
-from multibot_rewrite.fleet.file.fleet_file import REAL, RobotSpec, Sources
+from multibot_rewrite.fleet.file.robot_spec import (
+    REAL,
+    RobotSpec,
+    Sources,
+)
 from multibot_rewrite.fleet.robots.member import Member, member
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings

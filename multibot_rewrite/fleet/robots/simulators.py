@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import (
     hardware_classes,
     loads_hardware,

@@ -15,7 +15,7 @@ from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.sources.job import Job
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.checks.written_system import DRIVERS, of_robot
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, own_yaml, path_for
 from multibot_rewrite.fleet.robots.member import line_of, without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot

@@ -20,7 +20,7 @@ from multibot_rewrite.description.checks.hazards import world_systems
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.spans import Spans
-from multibot_rewrite.fleet.file.fleet_file import REAL
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.robots.member import with_text
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 

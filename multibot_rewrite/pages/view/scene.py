@@ -12,7 +12,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.library import Prepared
 from multibot_rewrite.description.reports.changes import list_changes
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.fleet.file.fleet_file import Sources
+from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.heard import HeardTree, LinkFrames, heard_trees, placed
