@@ -128,6 +128,7 @@ HOMES: tuple[Home, ...] = (
         "MG7",
         "launch files",
         (
+            "rules.launch.ending",
             "rules.launch.models",
             "rules.launch.rows",
             "rules.launch.started",

@@ -13,8 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from built_launch import built
 from paths import ROOT
-from test_launch_file import built
 
 from multibot_rewrite.cli.multibot import main
 

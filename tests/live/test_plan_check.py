@@ -55,7 +55,8 @@ def held(plan: Path, graph: System, capture: pytest.CaptureFixture[str]) -> tupl
 @pytest.mark.more
 def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     wanted = from_yaml(plan.read_bytes(), "plan")
-    assert to_yaml(wanted).encode() == plan.read_bytes()
+    # The first line names the schema for editors.
+    assert to_yaml(wanted).encode() == plan.read_bytes().partition(b"\n")[2]
     assert [robot.name for robot in wanted.robots] == ["robot1", "robot2"]
     assert len(wanted.ends) > 200
     assert "base_link/robot1" in wanted.robots[0].frames

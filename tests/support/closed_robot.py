@@ -140,12 +140,21 @@ controller_server:
 """,
     "fleet.yaml": """\
 distro: jazzy
-stack: [nav2_slam, twist_mux]
+stack: [nav2_slam, twist_mux, stamper]
 description: rover.urdf
 companions:
   params: [controllers.yaml, ekf.yaml, nav2.yaml]
   bridge: bridge.yaml
   moveit: moveit.yaml
 robots: [{name: robot1, pose: {x: 0}}, {name: robot2, pose: {x: 2}}]
+nodes: nodes.yaml
+""",
+    "nodes.yaml": """nodes:
+  stamper:
+    package: own
+    subscribes: {cmd_vel_out: {type: geometry_msgs/msg/Twist}}
+    publishes: {base_controller/cmd_vel: {type: geometry_msgs/msg/TwistStamped}}
+stacks:
+  stamper: {nodes: [stamper]}
 """,
 }

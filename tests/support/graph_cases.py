@@ -387,10 +387,14 @@ CASES = (
 
 
 def check_lines(plan: str, graph: str) -> str:
+    return printed("check", plan, "--snapshot", graph, "--verbose")
+
+
+def printed(*words: str) -> str:
     """What the command prints on standard output."""
     data = BytesIO()
     with TextIOWrapper(data, "utf-8") as out, redirect_stdout(out):
-        multibot(["check", plan, "--snapshot", graph, "--verbose"])
+        multibot(list(words))
         out.flush()
         return data.getvalue().decode()
 
@@ -404,7 +408,7 @@ def write_all(cases: Sequence[Case], layouts: Iterable[str]) -> None:
     for layout in layouts:
         folder = ROOT / FOLDERS[layout]
         folder.mkdir(exist_ok=True)
-        multibot(["plan", *FLEET, "--layout", layout, "-o", f"{FOLDERS[layout]}/plan.yaml"])
+        (folder / "plan.yaml").write_text(printed("plan", *FLEET, "--layout", layout))
         write(f"{FOLDERS[layout]}/healthy.json", healthy(layout))
     for case in cases:
         write(f"{case.stem}.json", case.broken(healthy(case.layout)))

@@ -61,7 +61,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
     if it.launched:
         yield ""
-        yield "# Launch files give nodes what is not carried into the fleet: write the values into a"
+        yield "# Launch files give nodes more than this fleet has: write the values into a"
         yield "# file of params; a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
         yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in it.launched)
     yield ""

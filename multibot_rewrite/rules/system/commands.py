@@ -17,7 +17,7 @@ from multibot_rewrite.rules.system.sharing import own_namespace
 from multibot_rewrite.rules.system.slips import alike
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
 
 # A person drives with these.
@@ -119,8 +119,9 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     its Nav2 sends are unread."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
+    chosen = any(map(chooses, nodes_of(ends.publishers)))
     of_nav2 = kinds == {_VELOCITY} and any(team(it) != it for it in nodes_of(ends.publishers))
-    if not of_nav2 and not any(map(chooses, nodes_of(ends.publishers))):
+    if not (chosen or of_nav2):
         return ""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     # Who sends velocities of its own is no drive.
@@ -130,6 +131,8 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         for it in moving
         if seen.robot(it.name) == robot and not it.publishers and kinds & _kinds(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
+        # Of a drive that runs for certain what it reads in vain is the finding.
+        if chosen or not any(end.sure == RUNS for end in it.subscribers)
     )
     return next(drives, "")
 

@@ -49,7 +49,7 @@ def why(text: str, layout: str = "postfix", distro: str = "jazzy") -> tuple[str,
             "1 plugin not known",
         ),
         (
-            '<gazebo reference="a"><sensor name="s" type="dsros_dvl"/></gazebo>',
+            '<gazebo reference="a"><sensor name="s" type="acme_sonar"/></gazebo>',
             "1 plugin not known",
         ),
         (plugin("AtlasPlugin"), "1 plugin not known"),

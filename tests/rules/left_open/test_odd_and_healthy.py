@@ -26,6 +26,11 @@ ekf_map:
 ekf_filter_node:
 """
 ARM = "    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}\n"
+OTHER = """\
+own_controller:
+  ros__parameters: {joints: [shoulder_joint], command_interfaces: [position]}
+imu_broadcaster:
+  ros"""
 PID = "    pid: {type: pid_controller/PidController}\n"
 CHAINED = """\
 pid:
@@ -98,7 +103,10 @@ ODD: dict[str, tuple[dict[str, str], list[Change]]] = {
     ),
     "two controllers of one joint": (
         ARM_FILES,
-        [("controllers.yaml", ARM, f"{ARM}{ARM.replace('arm_', 'own_')}")],
+        [
+            ("controllers.yaml", ARM, f"{ARM}{ARM.replace('arm_', 'own_')}"),
+            ("controllers.yaml", "imu_broadcaster:\n  ros", OTHER),
+        ],
     ),
     "controllers in a chain": (
         ARM_FILES,
