@@ -117,6 +117,7 @@ def test_a_node_is_configured_and_then_activated() -> None:
     assert dict(nav2_programs.TRANSITIONS) == {"configure": 1, "activate": 3}
 
 
+@pytest.mark.more
 def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
     for name, package in NAV2.items():
         (it,) = (nodes[key] for key in (f"/{name}_robot2", f"/robot2/{name}") if key in nodes)
@@ -148,6 +149,7 @@ def test_a_window_of_each_robot_and_one_of_all(each: LaunchGraph, composed: Laun
     assert shared.arguments[1].endswith("/all/one.rviz")
 
 
+@pytest.mark.more
 def test_components_are_in_the_container_of_their_robot(composed: LaunchGraph) -> None:
     nodes = by_name(composed)
     box = nodes["/robot1/nav2_container"]

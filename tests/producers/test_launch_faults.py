@@ -39,6 +39,7 @@ def for_two(old: str, new: str) -> tuple[str, str]:
     return old, f"{new} if name == 'robot2' else {old}"
 
 
+pytestmark = pytest.mark.more
 FAULTS = {
     "the other robot's description": Fault(
         LAUNCH, *for_two("text(f'{name}/rover.urdf')", "text('robot1/rover.urdf')"), "MG703"
@@ -145,13 +146,11 @@ def found_in(
     return code, json.loads(capsys.readouterr().out)["findings"]
 
 
-@pytest.mark.more
 def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert found_in(healthy, capsys) == (0, [])
 
 
-@pytest.mark.more
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_at_its_place(
@@ -171,7 +170,6 @@ def test_a_planted_fault_is_found_at_its_place(
     assert code == (1 if it.level == "error" else 0)
 
 
-@pytest.mark.more
 def test_two_launch_files_are_one_system(
     healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -212,7 +210,6 @@ ROBOT = """<robot name="{}"><link name="a"><inertial><mass value="1"/><inertia i
 iyy="1" iyz="0" izz="1"/></inertial></link><gazebo>{}</gazebo></robot>"""
 
 
-@pytest.mark.more
 @pytest.mark.parametrize("loading", [(), ("r2",), ("r1", "r2")])
 def test_a_system_of_the_world_in_two_models(
     loading: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]

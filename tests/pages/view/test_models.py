@@ -198,6 +198,7 @@ def test_a_mesh_is_its_corners_and_triangles(tmp_path: Path) -> None:
     assert isinstance(same, Mesh) and len(same.vertices) == 2 * len(plain.vertices)
 
 
+@pytest.mark.more
 def test_a_mesh_has_the_colour_of_its_material(tmp_path: Path) -> None:
     (tmp_path / "a.mtl").write_text("newmtl m\nKd 1 0 0\n")
     text = "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
