@@ -29,7 +29,7 @@ QUIET = {
 UNTOLD = {
     *("q_keepout_as_layer", "u_pursuit_turns_and_reverses", "v_camera_type_word"),
     *("u_gz_control_node", "u_mux_output_stamped", "v_map_not_there"),
-    *("u_drive_swapped", "v_mass_in_grams"),
+    "v_mass_in_grams",
 }
 
 

@@ -42,7 +42,7 @@ def processes(graph: System) -> list[list[dict[str, Any]]]:
 
 
 # Offered so by robot_state_publisher (robot_state_publisher.cpp) and map_server (map_server.cpp).
-LATCHED = ("/robot_description", "/map")
+LATCHED = ("/robot_description", "/map", "/tf_static")
 
 
 def _can_be_played(end: End) -> bool:

@@ -52,7 +52,7 @@ running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
 running: /robot1/odometer subscribes /robot1/scan sensor_msgs/msg/LaserScan
 running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
 running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
+running: /robot2/odometer subscribes /robot2/scan sensor_msgs/msg/LaserScan
 """,
     good="""\
 running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
