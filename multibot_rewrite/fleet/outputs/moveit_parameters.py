@@ -42,7 +42,7 @@ PROGRAMS = {
     "servo_node": ("moveit_servo", "servo_node"),
 }
 _MANAGER = f"{SIMPLE}/MoveItSimpleControllerManager"
-_SEMANTIC = "robot_description_semantic"
+SEMANTIC = "robot_description_semantic"
 # Files that are none of move_group's.
 _OF_OTHERS = (OF_SERVO, "initial_positions", EMPTY)
 _OMPL = "ompl"
@@ -123,7 +123,7 @@ def parameter_file(values: Mapping[str, Any]) -> bytes:
 def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
     """The parameters that an SRDF and MoveIt files, by path, are for the nodes of MoveIt."""
     found: dict[str, Any] = {
-        _SEMANTIC: srdf,
+        SEMANTIC: srdf,
         "publish_robot_description_semantic": True,
     }
     pipelines: list[str] = []
@@ -152,7 +152,7 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
     """
     found: dict[str, Any] = {"robot_description": description}
     if srdf:
-        found[_SEMANTIC] = srdf
+        found[SEMANTIC] = srdf
     for path, text in texts.items():
         kind, data = file_kind(read_yaml(text.encode(), path)), load_yaml(text)
         if kind in _OF_OTHERS:
