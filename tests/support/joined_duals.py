@@ -28,7 +28,10 @@ SEVEN = {"dof": "7"}
 FILES = ("script_filename", "output_recipe_filename", "input_recipe_filename")
 XARM = "xarm_description/urdf/xarm_device.urdf.xacro"
 GEN3 = "kortex_description/robots/gen3.xacro"
-GEN3_ARM = {"gripper": "robotiq_2f_85", "gripper_joint_name": "robotiq_85_left_knuckle_joint"} | SEVEN
+GEN3_ARM = {
+    "gripper": "robotiq_2f_85",
+    "gripper_joint_name": "robotiq_85_left_knuckle_joint",
+} | SEVEN
 KR6 = "kuka_agilus_support/urdf/kr6_r700_sixx.urdf.xacro"
 IIWA7 = "lbr_description/urdf/iiwa7/iiwa7.xacro"
 LBR_DUAL, CONFIG = "lbr_dual_arm_description", "system_config.yaml"
@@ -120,7 +123,13 @@ DUALS = {
         "kortex_description/multiple_robots/kortex_dual_robots.xacro",
         {},
         tuple(
-            Arm(GEN3, {**GEN3_ARM, "robot_ip": ip}, prefix, "world", pose=(x, 0.0, 0.0, 0.0, 0.0, 0.0))
+            Arm(
+                GEN3,
+                {**GEN3_ARM, "robot_ip": ip},
+                prefix,
+                "world",
+                pose=(x, 0.0, 0.0, 0.0, 0.0, 0.0),
+            )
             for prefix, ip, x in (
                 ("left_", "192.168.1.10", -0.25),
                 ("right_", "192.168.1.11", 0.25),
@@ -131,7 +140,13 @@ DUALS = {
         "kuka_resources/urdf/dual_arm_template.urdf.xacro",
         {},
         tuple(
-            Arm(KR6, {"roundtrip_time": "4000", **own}, prefix, "world", pose=(0.0, y, 0.0, 0.0, 0.0, 0.0))
+            Arm(
+                KR6,
+                {"roundtrip_time": "4000", **own},
+                prefix,
+                "world",
+                pose=(0.0, y, 0.0, 0.0, 0.0, 0.0),
+            )
             for prefix, y, own in (
                 ("robot1_", 0.0, {}),
                 ("robot2_", 1.0, {"client_port": "59153", "mxa_client_port": "1338"}),
@@ -144,7 +159,10 @@ DUALS = {
         tuple(
             Arm(
                 IIWA7,
-                {"robot_name": name, "system_config_path": f"$(find {LBR_DUAL})/ros2_control/{name}_{CONFIG}"},
+                {
+                    "robot_name": name,
+                    "system_config_path": f"$(find {LBR_DUAL})/ros2_control/{name}_{CONFIG}",
+                },
                 "",
                 "base_link",
                 f"{name}_base_joint",
