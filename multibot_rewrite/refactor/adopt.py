@@ -44,6 +44,7 @@ from multibot_rewrite.refactor.package import (
     read_package,
     read_text,
 )
+from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     Change,
@@ -104,10 +105,15 @@ def adopt(
     found = list(_configured(found, how, tree, unread))
     argument = free_name(found)
     made = _made(found, argument, how)
-    launches = with_launches(folder, package.found.launch, argument, made.after, TRIED, trust)
+    names = set(_names(found))
+    urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
+    filled = fillable(package.found.params, urdfs, names, argument, TRIED)
+    after = made.after
+    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust, filled)
     # A plain description that becomes a xacro is one of them.
     files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
-    elsewhere = named_elsewhere(folder, set(_names(found)), set(map(os.path.realpath, files)))
+    files |= {it.path for it in filled.values() if it.path in launches.after}
+    elsewhere = named_elsewhere(folder, names, set(map(os.path.realpath, files)))
     before = {**made.before, **{path: read_file(path) for path in launches.after}}
     return made._replace(
         before=before,
