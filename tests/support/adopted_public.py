@@ -41,6 +41,7 @@ KINDS = {
     "unsaid": "no element says",
     "launch": "by hand",
     "unproved": "not proved",
+    "launch unread": "with --trust alone",
 }
 
 
@@ -101,10 +102,8 @@ def judged(made: Adopted) -> Judged:
 
 
 def _text(path: str, arguments: dict[str, str]) -> bytes:
-    """A description before; a plain one becomes a xacro."""
-    if os.path.exists(path):
-        return expanded(path, arguments)
-    return Path(path.removesuffix(".xacro")).read_bytes()
+    """A description before; a plain one becomes a xacro, and some have expressions already."""
+    return expanded(path if os.path.exists(path) else path.removesuffix(".xacro"), arguments)
 
 
 def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
