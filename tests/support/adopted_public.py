@@ -38,7 +38,7 @@ KINDS = {
     "code": "code names",
     "data": "it names",
     "composed": "put together",
-    "unsaid": "no element says",
+    "unsaid": "where no element says",
     "launch": "by hand",
     "unproved": "not proved",
     "launch unread": "with --trust alone",
