@@ -243,8 +243,8 @@ def _changes(it: Description) -> Iterator[Change]:
 
 
 def _not_written(it: Description) -> Iterator[Left]:
-    """What a plugin takes where nothing is written, such as the name of its sensor: to stay as it is, or
-    to have the prefix, it needs an element of its own."""
+    """What a plugin takes where nothing is written, such as the name of its sensor: to stay, or to
+    have the prefix, it needs an element of its own."""
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
