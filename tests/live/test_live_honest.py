@@ -202,7 +202,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
 def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) -> None:
     """Who looks later does not see it."""
     with one_robot_killed(plan, 82) as lines:
-        twins = wait_for(lines, "+ /robot1/drive", "MG301 2 nodes have this name")
+        twins = wait_for(lines, "+ /robot1/drive", "MG301 2 nodes have the name")
         fresh = check(plan, 82)
     assert "a node that was killed stays visible for 20 s" in twins
     assert (fresh.returncode, fresh.stdout) == (0, ""), fresh.stderr

@@ -71,7 +71,7 @@ def test_a_leak_on_another_host_is_named(plan: Path) -> None:
             done = run(base, "check", plan, "-v", **SUBNET)
     assert done.returncode == 1, done.stderr
     assert "/robot2/drive: error: MG102" in done.stdout
-    assert "/robot2/drive: error: MG310 uses /cmd_vel" in done.stdout
+    assert "/robot2/drive: error: MG320 uses /cmd_vel" in done.stdout  # a String moves nothing
     assert "/robot1/drive" not in done.stdout
 
 

@@ -357,8 +357,8 @@ def _named(edges: list[Edge]) -> set[str]:
 
 
 def _edges_by_sender(graph: System) -> dict[str, list[Edge]]:
-    """Whose transform each is, of those that publish its topic: AMCL's in the map, of the description what
-    is static, else another's."""
+    """Whose transform each is, of those that publish its topic: AMCL's in the map, the description's if
+    it is static, else another's."""
     found: dict[str, list[Edge]] = defaultdict(list)
     kinds = Counter((it.node, it.name) for it in graph.ends if it.role == PUBLISHES)
     described = {
