@@ -401,7 +401,7 @@ def test_the_cost_of_many_files_grows_with_their_number_and_not_faster(tmp_path:
 # ---------------------------------------------------------------- damaged files
 
 ROBOTS = ("robot1", "robot2")
-FEW_MUTANTS, MANY_MUTANTS = 300, 5_000
+FEW_MUTANTS, MANY_MUTANTS = 300, 2_000
 
 
 def hunt(sources: list[bytes], seeds: range) -> int:
