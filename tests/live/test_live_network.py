@@ -157,7 +157,7 @@ def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("count", [3, 31, 33, 60, 100])
+@pytest.mark.parametrize("count", [33, 60])
 def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
     names = [f"robot{number}" for number in range(1, count + 1)]
     plan = write_plan(tmp_path / "plan.yaml", names)
