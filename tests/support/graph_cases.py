@@ -65,6 +65,7 @@ class Case(NamedTuple):
         return f"{FOLDERS[self.layout]}/{self.code}"
 
 
+@cache
 def read_plan(layout: str) -> System:
     """The plan of a folder."""
     path = f"{FOLDERS[layout]}/plan.yaml"
