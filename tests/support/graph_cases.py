@@ -9,6 +9,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import redirect_stdout
+from functools import cache
 from io import BytesIO, TextIOWrapper
 from typing import NamedTuple
 

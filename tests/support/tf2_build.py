@@ -32,7 +32,7 @@ foreach(target ${targets})
   endif()
 endforeach()
 # Nobody here asks for them, and they are half of the work.
-list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "introspection|typesupport_cpp")
+list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "introspection|support_cpp")
 set(STATIC_ROSIDL_TYPESUPPORT_C rosidl_typesupport_fastrtps_c)
 include_directories(${PYTHON_FOLDERS})
 rosidl_generate_interfaces(
