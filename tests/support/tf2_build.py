@@ -31,9 +31,6 @@ foreach(target ${targets})
     set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${folders}")
   endif()
 endforeach()
-# Nobody here asks for them, and they are half of the work.
-list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "introspection|support_cpp")
-set(STATIC_ROSIDL_TYPESUPPORT_C rosidl_typesupport_fastrtps_c)
 include_directories(${PYTHON_FOLDERS})
 rosidl_generate_interfaces(
   tf2_msgs msg/TFMessage.msg action/LookupTransform.action DEPENDENCIES geometry_msgs action_msgs)
