@@ -62,7 +62,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
-FEW = 4
+FEW = 3
 # So many at most are in the usual run.
 MANY = 20
 
