@@ -56,6 +56,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
             lost = [it for it in _lost(graph.notes) if it not in missing]
             for name in lost:
                 add_empty(name, folder)
+                add_unknown(name)
             missing += lost
             if not lost:
                 break
