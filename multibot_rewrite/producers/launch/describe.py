@@ -20,12 +20,11 @@ import yaml
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.failures import failure, missing_package
 from multibot_rewrite.producers.launch.made_files import source_of
-from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
-from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
@@ -40,17 +39,10 @@ _GAZEBO = {
     "gazebo": "gazebo_ros",
     "gzserver": "gazebo_ros",
 }
-# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
-_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
-_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
-# ament_index_python and Python say it so.
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
-# In the share folder of a package that is stood in for (source_packages.py).
-_NOT_FOUND = re.compile(
-    rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
-)
+_SHARE = re.compile(r"/share/([\w-]+)/")
 
 
 class Visit(NamedTuple):
@@ -74,68 +66,23 @@ class Visit(NamedTuple):
         self.notes.append(LaunchNote(self.place, message, parameters, file, fails))
 
 
-def failure(error: BaseException) -> str:
-    """What went wrong, in one line; for a package that is missing what to do."""
-    name = missing_package(error) or missing_module(error)
-    if name:
-        return not_installed(name)
-    if variable := _variable(error):
-        return f"the environment variable {variable} is not set here; set it as for ros2 launch"
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
-def _variable(error: BaseException) -> str:
-    """The environment variable that os.environ has not; empty for another fault."""
-    # launch has an error of its own around it.
-    error = error.__cause__ or error
-    last = error.__traceback__
-    while last is not None and last.tb_next is not None:
-        last = last.tb_next
-    of_os = last is not None and last.tb_frame.f_globals.get("__name__") == "os"
-    return str(error.args[0]) if of_os and isinstance(error, KeyError) else ""
-
-
-NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
-
-
-def not_installed(name: str) -> str:
-    """What is said of a package that is missing."""
-    return f"package {name!r} is not installed here; {ROOTS}"
-
-
-def missing_package(error: BaseException) -> str:
-    """The package of ROS that was not found; empty for another fault."""
-    found = _NOT_FOUND.search(str(error))
-    return (found[1] or found[2] or "") if found else ""
-
-
-def missing_module(error: BaseException) -> str:
-    """The Python package that was not found; empty for another fault."""
-    found = _NOT_FOUND.search(str(error))
-    return (found[3] or "") if found else ""
-
-
-def is_certain(error: BaseException, here: Visit) -> bool:
-    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
-    or the launch file itself raises what names no file or device of a machine."""
-    if isinstance(error, FileNotFoundError):
-        folder = os.path.dirname(os.path.realpath(here.place.file))
-        return str(error.filename or "").startswith(f"{folder}/")
-    last = error.__traceback__
-    while last is not None and last.tb_next is not None:
-        last = last.tb_next
-    own = last is not None and last.tb_frame.f_code.co_filename.endswith(".launch.py")
-    return own and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
-
-
 def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
-    """The simulator of a package that is missing here: that it starts one is known without it, and with
-    which words."""
-    package = missing_package(error)
+    """The simulator of a package that is missing here, or whose launch file only a build makes: that it
+    starts one is known without it, and with which words."""
+    package = missing_package(error) or _of_package(include, here.context)
     if package not in _GAZEBO.values():
         return None
     words = tuple(_simulator_words(include, here.context))
     return LaunchedNode(package, SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
+
+
+def _of_package(include: Any, context: Any) -> str:
+    """The package in whose share folder the file is that is included; empty where that is not known."""
+    with suppress(Exception):
+        source = include.launch_description_source
+        found = _SHARE.search(text(source.location, context))
+        return found[1] if found else ""
+    return ""
 
 
 def _simulator_words(include: Any, context: Any) -> Iterator[str]:
@@ -177,12 +124,24 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         text(_kept(action, "node_name"), here.context) or given.name,
         given.namespace or _namespace(_kept(action, "node_namespace"), here.context),
         tuple(rules),
-        (*_parameters(own, here), *_given(given.values, files, here)),
+        (
+            *_described(package, given.own),
+            *_parameters(own, here),
+            *_given(given.values, files, here),
+        ),
         "",
         given.own,
         here.later,
         place_of(action, here.place.file, (package, executable)),
     )
+
+
+def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
+    """The description whose file is the first word of a robot_state_publisher: it is read where no
+    parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
+    if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
+        with open(words[0], encoding="utf-8", errors="replace") as file:
+            yield _values({"robot_description": file.read(_LIMIT)})
 
 
 def component(it: Any, container: str, here: Visit) -> LaunchedNode:
@@ -273,6 +232,10 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         # A value may be the output of a program that is not started; other ones fail in a launch, too.
         if _FAILS in str(error):
             here.note(failure(error), parameters=True)
+        elif isinstance(error, FileNotFoundError) and not missing_package(error):
+            # Its folder may be a link to sources, which is gone when this is read.
+            path = os.path.realpath(str(error.filename))
+            here.note(_lost(path), parameters=True, file=path)
         elif not isinstance(given, dict):
             here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
         if isinstance(given, dict):
@@ -339,14 +302,17 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
         said = (
             f"a parameter file of the package {lost!r}, which is not installed here, is not known"
         )
-        what = said if lost else f"the parameter file {path!r} is not there"
-        here.note(what, parameters=True, file="" if lost else path)
+        here.note(said if lost else _lost(path), parameters=True, file="" if lost else path)
         return
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
     # A file that the launch makes is gone when this is read.
     yield ParameterText("" if _is_made(path) else os.path.realpath(path), text_, _kept_file(source))
+
+
+def _lost(path: str) -> str:
+    return f"the parameter file {path!r} is not there"
 
 
 def _is_made(path: str) -> bool:

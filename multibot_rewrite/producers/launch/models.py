@@ -36,6 +36,7 @@ _GIVEN = ParameterText(
 # ackermann_steering, mecanum_drive, tracked_vehicle, odometry_publisher).
 _PARENTS, _CHILDREN = ("frame_id", "odom_frame"), ("child_frame_id", "robot_base_frame")
 _TF = "tf_topic"
+_FRAME = "frame_name"
 
 
 class Published(NamedTuple):
@@ -124,6 +125,17 @@ def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
     """The remap rules of a plugin."""
     for rule in (it.rule for it in node.rules):
         yield f"{rule.node}:{rule.source}".lstrip(":"), rule.target
+
+
+def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
+    """The frame of what the node of a plugin measures, by the node, where the description says it
+    (gazebo_ros_pkgs ros2 gazebo_ros/src/utils.cpp, SensorFrameID)."""
+    found = {}
+    for reading in (it.reading for it in models if it.spawned):
+        frames = {it.number: it.name for it in reading.names if it.path == _FRAME}
+        for node in (it for it in reading.nodes if it.number in frames):
+            found[expand(node.name, node.namespace or "/", "")] = frames[node.number]
+    return found
 
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:

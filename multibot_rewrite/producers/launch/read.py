@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
-from multibot_rewrite.producers.launch.describe import (
+from multibot_rewrite.producers.launch.describe import Visit
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.failures import (
     NOT_THERE,
-    Visit,
     failure,
     missing_module,
     missing_package,
     not_installed,
 )
-from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads

@@ -18,6 +18,11 @@ def add_unknown(name: str) -> None:
     sys.meta_path.append(_Finder(name))
 
 
+def is_unknown(value: object) -> bool:
+    """Is it such a package, or something taken of it?"""
+    return isinstance(value, Unknown | _Module)
+
+
 class Unknown(dict[Any, Any]):
     """What nothing is known of but the module that it is taken from."""
 

@@ -14,14 +14,13 @@ from typing import Any
 from multibot_rewrite.producers.launch.describe import (
     Visit,
     component,
-    failure,
-    is_certain,
     is_wanted,
     node,
     process,
     simulator,
     text,
 )
+from multibot_rewrite.producers.launch.failures import failure, is_certain
 from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.
@@ -83,7 +82,10 @@ def visit(entity: Any, seen: Visit) -> None:
             here.nodes.append(missing)
             return
         ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=is_certain(error, here))
+        here.note(
+            f"{here.later} {failure(error)}{ended}".strip(),
+            fails=is_certain(error, here.place.file),
+        )
     finally:
         if own:
             seen.context._pop_locals()

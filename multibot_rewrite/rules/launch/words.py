@@ -16,9 +16,9 @@ from math import isclose, pi
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.launch.declaration import (
     FIRST,
@@ -146,7 +146,7 @@ matches_nothing = RULE_WITHOUT_NAME._replace(
     beside={"robot1.urdf": "<robot name='r'/>\n"},
 )  # fmt: skip
 def not_there(launched: Launched) -> Iterator[Finding]:
-    """Parameter files, files that a parameter names, and those after ``-file`` and ``-d``."""
+    """Parameter files, files that a parameter names, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
     for note in launched.graph.notes:
         if note.parameters and note.file and not _is_ours(note.file):
@@ -154,17 +154,14 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         if note.parameters and note.file:
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH)
-    for it in launched.nodes:
-        for path in _files(it):
-            key = (it.place.file, it.place.line, path)
-            if not os.path.exists(path) and key not in told:
-                told.add(key)
-                yield at(
-                    not_there,
-                    it.place,
-                    f"{it.full_name} is given {path}, which is not there",
-                    _PATH,
-                )
+    named = [(it.full_name, it.place, path) for it in launched.nodes for path in _files(it)]
+    for node in launched.graph.nodes:
+        named += [(node.name or node.executable, node.place, path) for path in _named_files(node)]
+    for who, place, path in named:
+        key = (place.file, place.line, path)
+        if not os.path.exists(path) and key not in told:
+            told.add(key)
+            yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
 
 
 _PATH = "correct the path, or install the file"
@@ -178,8 +175,13 @@ def _is_ours(path: str) -> bool:
 
 def _files(it: RunningNode) -> Iterator[str]:
     values = (str(it.values[name].value) for name in _NAMED if name in it.values)
-    words = (word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file"))
-    for path in (*values, *words):
+    yield from (path for path in values if os.path.isabs(path) and _is_ours(path))
+
+
+def _named_files(it: LaunchedNode) -> Iterator[str]:
+    """The files that the words of a program name."""
+    words = [word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file")]
+    for path in (*words, *world_files(it)):
         if os.path.isabs(path) and _is_ours(path):
             yield path
 
