@@ -29,15 +29,15 @@ from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
 _LIMIT = 1 << 24
-SIMULATOR = "gzserver"
+SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
 # The commands of Gazebo, and the package that ROS starts it with.
 _GAZEBO = {
     "gz": "ros_gz_sim",
     "ign": "ros_gz_sim",
-    "gazebo": "gazebo_ros",
-    "gzserver": "gazebo_ros",
+    "gazebo": CLASSIC,
+    "gzserver": CLASSIC,
 }
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
@@ -90,7 +90,7 @@ def _simulator_words(include: Any, context: Any) -> Iterator[str]:
     for name, value in include.launch_arguments:
         with suppress(Exception):
             if text(name, context) in _WORLDS:
-                yield from shlex.split(text(value, context))
+                yield from map(_lasting, shlex.split(text(value, context)))
 
 
 def is_wanted(action: Any, context: Any) -> bool:
@@ -130,7 +130,7 @@ def node(action: Any, here: Visit) -> LaunchedNode:
             *_given(given.values, files, here),
         ),
         "",
-        given.own,
+        tuple(map(_lasting, given.own)),
         here.later,
         place_of(action, here.place.file, (package, executable)),
     )
@@ -173,7 +173,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     values = tuple(_given(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
-    yield LaunchedNode(*names, given.rules, values, "", given.own, here.later, here.place)
+    words_ = tuple(map(_lasting, given.own))
+    yield LaunchedNode(*names, given.rules, values, "", words_, here.later, here.place)
 
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
@@ -317,6 +318,13 @@ def _lost(path: str) -> str:
 
 def _is_made(path: str) -> bool:
     return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+
+
+def _lasting(word: str) -> str:
+    """The path of a file that is not the launch's: the folder with links to sources is gone when this
+    is read."""
+    inside = word.startswith(tempfile.gettempdir() + os.sep) and not _is_made(word)
+    return os.path.realpath(word) if inside else word
 
 
 def _kept_file(path: str) -> str:

@@ -19,7 +19,7 @@ from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.producers.launch.describe import SIMULATOR
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.models import Model, Models
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, RunningNode
 from multibot_rewrite.producers.launch.spawners import Spawned
@@ -93,9 +93,9 @@ def _in_simulator(it: Model, release: str) -> InSimulator | None:
 
 
 def worlds(launched: Launched) -> Iterator[World]:
-    """The files of worlds that simulators are started with."""
+    """The files of worlds that gz is started with."""
     for it in launched.graph.nodes:
-        for word in world_files(it):
+        for word in world_files(it) if it.package != CLASSIC else ():
             with suppress(InputError, OSError):
                 yield World(word, read_xml(read_file(word), word), it.place)
 

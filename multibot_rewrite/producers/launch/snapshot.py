@@ -33,7 +33,12 @@ from multibot_rewrite.producers.launch.launched import (
     models_in_simulator,
     world_files,
 )
-from multibot_rewrite.producers.launch.models import Models, frames_of_plugins, sent_in_simulator
+from multibot_rewrite.producers.launch.models import (
+    Models,
+    frames_of_plugins,
+    sent_by_plugins,
+    sent_in_simulator,
+)
 from multibot_rewrite.producers.launch.node_transforms import (
     TF_TYPE,
     Sent,
@@ -52,6 +57,7 @@ from multibot_rewrite.producers.launch.running import (
     bound_of,
     running_nodes,
 )
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.transforms import lookups_of
 from multibot_rewrite.system.parameters import parameter_text
@@ -101,6 +107,8 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     parts, refused = _parts(nodes, inside)
+    of_plugins = sent_by_plugins(models.found)
+    parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
     caveats = (
         *_stood_in(graph),
@@ -256,7 +264,8 @@ def _of_worlds(graph: LaunchGraph) -> Iterator[Caveat]:
     """A world may have robots in it, which nobody spawns."""
     for it in graph.nodes:
         for file in world_files(it):
-            if os.path.isabs(file) and not os.path.isfile(file):
+            told = NOT_INSTALLED in file
+            if os.path.isabs(file) and not os.path.isfile(file) and not told:
                 text = f"the world {file} is not here, so what robots in it send is not known"
                 yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
 
