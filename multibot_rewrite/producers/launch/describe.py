@@ -11,7 +11,6 @@ import os
 import pathlib
 import re
 import shlex
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any
@@ -21,6 +20,13 @@ import yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import failure, missing_package
+from multibot_rewrite.producers.launch.kept_paths import (
+    LIMIT,
+    is_made,
+    kept_file,
+    lasting,
+    read_text,
+)
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
@@ -28,7 +34,6 @@ from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_ru
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
-_LIMIT = 1 << 24
 SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
@@ -42,6 +47,14 @@ _GAZEBO = {
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
+# What ros_gz_sim spawns with: its arguments, and the words of create that they are
+# (ros_gz jazzy ros_gz_sim/launch/gz_spawn_model.launch.py).
+_SPAWNS = ("gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py")
+_SPAWN_WORDS = {
+    **{it: f"-{it}" for it in ("world", "file", "topic", "x", "y", "z", "R", "P", "Y")},
+    "entity_name": "-name",
+    "model_string": "-string",
+}
 _SHARE = re.compile(r"/share/([\w-]+)/")
 
 
@@ -69,20 +82,31 @@ class Visit(NamedTuple):
 def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
     """The simulator of a package that is missing here, or whose launch file only a build makes: that it
     starts one is known without it, and with which words."""
-    package = missing_package(error) or _of_package(include, here.context)
+    path = _path_of(include, here.context)
+    of_path = _SHARE.search(path)
+    package = missing_package(error) or (of_path[1] if of_path else "")
     if package not in _GAZEBO.values():
         return None
-    words = tuple(_simulator_words(include, here.context))
-    return LaunchedNode(package, SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
+    spawns = os.path.basename(path) in _SPAWNS
+    words = (_spawner_words if spawns else _simulator_words)(include, here.context)
+    program = "create" if spawns else SIMULATOR
+    kept = (*lasting(words),)
+    return LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
 
 
-def _of_package(include: Any, context: Any) -> str:
-    """The package in whose share folder the file is that is included; empty where that is not known."""
+def _path_of(include: Any, context: Any) -> str:
+    """The path of the file that is included; empty where that is not known."""
     with suppress(Exception):
-        source = include.launch_description_source
-        found = _SHARE.search(text(source.location, context))
-        return found[1] if found else ""
+        return text(include.launch_description_source.location, context)
     return ""
+
+
+def _spawner_words(include: Any, context: Any) -> Iterator[str]:
+    """The words of the program that gz_spawn_model.launch.py starts."""
+    for name, value in include.launch_arguments:
+        with suppress(Exception):
+            word = _SPAWN_WORDS.get(text(name, context))
+            yield from (word, text(value, context)) if word else ()
 
 
 def _simulator_words(include: Any, context: Any) -> Iterator[str]:
@@ -90,7 +114,7 @@ def _simulator_words(include: Any, context: Any) -> Iterator[str]:
     for name, value in include.launch_arguments:
         with suppress(Exception):
             if text(name, context) in _WORLDS:
-                yield from map(_lasting, shlex.split(text(value, context)))
+                yield from shlex.split(text(value, context))
 
 
 def is_wanted(action: Any, context: Any) -> bool:
@@ -130,7 +154,7 @@ def node(action: Any, here: Visit) -> LaunchedNode:
             *_given(given.values, files, here),
         ),
         "",
-        tuple(map(_lasting, given.own)),
+        (*lasting(given.own),),
         here.later,
         place_of(action, here.place.file, (package, executable)),
     )
@@ -140,8 +164,7 @@ def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
     """The description whose file is the first word of a robot_state_publisher: it is read where no
     parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
     if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
-        with open(words[0], encoding="utf-8", errors="replace") as file:
-            yield _values({"robot_description": file.read(_LIMIT)})
+        yield _values({"robot_description": read_text(words[0])})
 
 
 def component(it: Any, container: str, here: Visit) -> LaunchedNode:
@@ -173,8 +196,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     values = tuple(_given(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
-    words_ = tuple(map(_lasting, given.own))
-    yield LaunchedNode(*names, given.rules, values, "", words_, here.later, here.place)
+    kept = (*lasting(given.own),)
+    yield LaunchedNode(*names, given.rules, values, "", kept, here.later, here.place)
 
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
@@ -258,7 +281,7 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
 def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     """The texts of files that the launch makes and names in values, such as that of a bridge."""
     for path in (it for it in values if isinstance(it, str) and "\n" not in it):
-        if os.path.isfile(path) and not _kept_file(path):
+        if os.path.isfile(path) and not kept_file(path):
             yield from _file(path, here)
 
 
@@ -281,7 +304,7 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
-        return _kept_file(value) or value
+        return kept_file(value) or value
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]
@@ -298,7 +321,7 @@ def _given(
 
 
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
-    if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
+    if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
         said = (
             f"a parameter file of the package {lost!r}, which is not installed here, is not known"
@@ -309,26 +332,8 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
     # A file that the launch makes is gone when this is read.
-    yield ParameterText("" if _is_made(path) else os.path.realpath(path), text_, _kept_file(source))
+    yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))
 
 
 def _lost(path: str) -> str:
     return f"the parameter file {path!r} is not there"
-
-
-def _is_made(path: str) -> bool:
-    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
-
-
-def _lasting(word: str) -> str:
-    """The path of a file that is not the launch's: the folder with links to sources is gone when this
-    is read."""
-    inside = word.startswith(tempfile.gettempdir() + os.sep) and not _is_made(word)
-    return os.path.realpath(word) if inside else word
-
-
-def _kept_file(path: str) -> str:
-    """The real path of a file that is there when the launch is over, else nothing."""
-    if "\n" in path:
-        return ""
-    return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)

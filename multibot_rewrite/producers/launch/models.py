@@ -14,6 +14,7 @@ from itertools import pairwise
 
 from lxml.etree import SubElement, tostring
 
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
@@ -78,18 +79,29 @@ def models_of(
     texts = {it.topic: it for it in published}
     found, lost, taken = [], [], set()
     for it in spawners:
-        words = dict(pairwise(it.arguments))
+        said = (*it.arguments, *_of_parameters(it))
+        words = dict(pairwise(said))
         topic = expand(words.get("-topic", ""), it.namespace, "") if "-topic" in words else ""
         text = texts[topic].text if topic in texts else _given(words)
         name = words.get("-name", words.get("-entity", ""))
         moved = _moved(text, words.get("-robot_namespace", ""))
         model = _read(name, moved, it.place, release, spawned=True)
-        found += [model._replace(text=text, words=it.arguments)] if model else []
+        found += [model._replace(text=text, words=said)] if model else []
         lost += [] if model else [it]
         taken.add(topic)
     rest = (it for it in texts.values() if it.topic not in taken)
     more = (_read("", it.text, it.place, release, spawned=False) for it in rest)
     return Models((*found, *filter(None, more)), tuple(lost))
+
+
+def _of_parameters(it: LaunchedNode) -> Iterator[str]:
+    """The words of a spawner that are parameters (ros_gz jazzy ros_gz_sim/src/create.cpp)."""
+    for given in it.parameters:
+        found = load_yaml(given.text)
+        own = found.get("/**", {}) if isinstance(found, dict) else {}
+        for name, value in (own.get("ros__parameters") or {}).items():
+            if value != "":
+                yield from (f"-{name}", str(value))
 
 
 def _moved(text: str, namespace: str) -> str:

@@ -110,13 +110,8 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     of_plugins = sent_by_plugins(models.found)
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
-    caveats = (
-        *_stood_in(graph),
-        *_refused(refused),
-        *more,
-        *_of_models(models),
-        *_of_worlds(graph),
-    )
+    lost = (*_of_models(models), *_of_worlds(graph))
+    caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
         tuple(_nodes(nodes, parts)),
         tuple(end for part in parts for end in part.endpoints),
