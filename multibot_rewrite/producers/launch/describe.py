@@ -20,6 +20,7 @@ import yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import failure, missing_package
+from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.kept_paths import (
     LIMIT,
     is_made,
@@ -29,7 +30,12 @@ from multibot_rewrite.producers.launch.kept_paths import (
 )
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchNote,
+    ParameterText,
+    UnreadArgument,
+)
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
@@ -44,9 +50,16 @@ _GAZEBO = {
     "gazebo": CLASSIC,
     "gzserver": CLASSIC,
 }
+SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", CLASSIC)
+# The launch files that start Gazebo and nothing else.
+_SIMULATES = (
+    *("gz_sim.launch.py", "gz_server.launch.py", "ign_gazebo.launch.py"),
+    *("gazebo.launch.py", "gzserver.launch.py", "gzclient.launch.py"),
+)
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
+_SIM_WORDS = (*_WORLDS, "gz_version", "ign_version", "debugger", "on_exit_shutdown")
 # What ros_gz_sim spawns with: its arguments, and the words of create that they are
 # (ros_gz jazzy ros_gz_sim/launch/gz_spawn_model.launch.py).
 _SPAWNS = ("gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py")
@@ -60,8 +73,8 @@ _SHARE = re.compile(r"/share/([\w-]+)/")
 
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
-    timer starts with its visit and the locals that it keeps, the place of what is visited, what starts
-    it if not the launch itself, and after how many events."""
+    timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
+    without effect, what starts it if not the launch itself, and after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -69,6 +82,7 @@ class Visit(NamedTuple):
     files: dict[str, ParameterText]
     waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
+    unread: list[UnreadArgument]
     later: str = ""
     events: int = 0
 
@@ -85,13 +99,33 @@ def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode |
     path = _path_of(include, here.context)
     of_path = _SHARE.search(path)
     package = missing_package(error) or (of_path[1] if of_path else "")
-    if package not in _GAZEBO.values():
+    name = os.path.basename(path)
+    spawns = name in _SPAWNS
+    if package not in SIMULATORS or not (spawns or name in _SIMULATES):
         return None
-    spawns = os.path.basename(path) in _SPAWNS
+    known = _SPAWN_WORDS if spawns else _SIM_WORDS
+    for one, near in not_among(given_names(include, here.context), known, whole=spawns):
+        here.unread.append(UnreadArgument(here.place, name, one, near))
     words = (_spawner_words if spawns else _simulator_words)(include, here.context)
     program = "create" if spawns else SIMULATOR
     kept = (*lasting(words),)
     return LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
+
+
+def without_effect(include: Any, here: Visit) -> None:
+    """Keep the arguments that the file of an include does not read."""
+    path = _path_of(include, here.context)
+    for name, near in unread(path, given_names(include, here.context)):
+        here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
+
+
+def given_names(include: Any, context: Any) -> list[str]:
+    """The names of the arguments of an include, where they are known."""
+    found = []
+    for name, _ in include.launch_arguments or ():
+        with suppress(Exception):
+            found.append(text(name, context))
+    return found
 
 
 def _path_of(include: Any, context: Any) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
-from multibot_rewrite.producers.launch.describe import Visit
+from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     NOT_THERE,
@@ -73,7 +73,9 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
                 add_unknown(module)
             missing.append(name)
     files = (*graph.files, *descriptions_in(reads))
-    unsaid = [it for it in missing if it not in _lost(graph.notes)]
+    # What the launch files of these start is known without them.
+    said = (*_lost(graph.notes), *SIMULATORS)
+    unsaid = [it for it in missing if it not in said]
     return graph._replace(notes=(*graph.notes, *_not_there(order, unsaid)), files=files)
 
 
@@ -106,12 +108,13 @@ def read_own(file: str, folder: str) -> LaunchGraph:
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1))
+    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1), [])
     visit_all(description, seen)
     for it in faults(context):
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(seen.notes))
-    return LaunchGraph(tuple(seen.nodes), notes, tuple(seen.files.items()))
+    files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
+    return LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
 
 
 def _included(order: LaunchOrder) -> Any:

@@ -19,13 +19,14 @@ from multibot_rewrite.producers.launch.describe import (
     process,
     simulator,
     text,
+    without_effect,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain
 from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.
 _EXECUTED = (
-    *("LaunchDescription", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("LaunchDescription", "GroupAction", "OpaqueFunction"),
     *("ForEach", "ForLoop"),
     *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
@@ -103,6 +104,13 @@ def _is(entity: Any, *names: str) -> bool:
 
 def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
     found: Iterable[Any] | None = entity.visit(seen.context)
+    return found
+
+
+def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    found = _execute(entity, seen)
+    if is_wanted(entity, seen.context):
+        without_effect(entity, seen)
     return found
 
 
@@ -212,6 +220,7 @@ _HANDLERS: Mapping[str, Handler] = MappingProxyType(
     {
         **dict.fromkeys(_EXECUTED, _execute),
         **dict.fromkeys(_PASSED, _pass),
+        "IncludeLaunchDescription": _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,
         "Node": _node,

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import isclose, pi
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
@@ -36,6 +37,7 @@ _PUBLISHER = (
 )
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
+_DIGITS = "0123456789"
 _TF = "tf2_ros", "static_transform_publisher"
 _FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
 # More than a turn: nobody writes so many radians.
@@ -164,6 +166,37 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
 
 
+_INCLUDE = 'IncludeLaunchDescription(str(HERE / "child.launch.py"), launch_arguments=[("{}", "2")])'
+_CHILD = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("start_x", default_value="0")])
+"""
+
+
+@launch_rule(
+    "MG715",
+    "argument-not-read",
+    what="A launch file includes another one with an argument that this one neither declares nor "
+    "reads. Where it declares one that is called nearly so it is an error, else a warning.",
+    why="launch hands it on and says nothing: the other file goes on with its default.",
+    fix="Write the name that the other file declares, or leave the argument out.",
+    bad=launch_of(_INCLUDE.format("strat_x")),
+    good=launch_of(_INCLUDE.format("start_x")),
+    beside={"child.launch.py": _CHILD},
+)
+def argument_not_read(launched: Launched) -> Iterator[Finding]:
+    """By what the other file has as a text."""
+    for place, file, name, near in launched.graph.unread:
+        hint = f"did you mean {near}?" if near else "leave it out, or write one that it declares"
+        level = ERROR if near else WARNING
+        message = f"{file} does not read the argument {name}"
+        yield at(argument_not_read, place, message, hint, level=level)
+
+
 _PATH = "correct the path, or install the file"
 _NAMED = ("config_file", "yaml_filename")
 
@@ -189,9 +222,10 @@ def _named_files(it: LaunchedNode) -> Iterator[str]:
 @launch_rule(
     "MG714",
     "program-misspelt",
-    what="A launch file starts a program that its package has not, and that is like one that it has.",
-    why="launch ends there: the executable is not found.",
-    fix="Write the name of the program.",
+    what="A launch file starts a program that its package has not, and that is like one that it has; "
+    "or the package is not there, and one with the program is called nearly so.",
+    why="launch ends there: the executable, or the package, is not found.",
+    fix="Write the name of the program, or of its package.",
     bad=launch_of(
         node_of(
             "robot_state_publisher",
@@ -214,10 +248,27 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
         every = known.get(it.package, ())
         if not it.executable or "::" in it.executable or it.executable in every:
             continue
+        if other := _package_meant(it, known):
+            message = f"there is no package {it.package} here with {it.executable}"
+            yield at(misspelt, it.place, message, f"did you mean {other}?")
+            continue
         near = nearest(it.executable, sorted(every), SLIP)
         if near and _differ(it.executable, near):
             message = f"package {it.package} has no program {it.executable}"
             yield at(misspelt, it.place, message, f"did you mean {near}?")
+
+
+def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> str:
+    """The package that has the program, where the name is nearly that of it and of none around."""
+    near = "" if it.package in known else nearest(it.package, sorted(known), SLIP)
+    if (
+        not near
+        or it.executable not in known[near]
+        or near.strip(_DIGITS) == it.package.strip(_DIGITS)
+    ):
+        return ""
+    around = sources_around(it.place.file)
+    return "" if around and it.package in packages_below((around,)) else near
 
 
 def _programs(release: str) -> dict[str, set[str]]:
