@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arguments of an include that the launch file there does not read.
 
-launch hands on any argument (jazzy include_launch_description.py): one that nothing reads has no effect,
-and nobody says so. By the text of the file: what it declares, and the names in quotes.
+launch hands on any argument (jazzy include_launch_description.py): one that nothing reads has no
+effect, and nobody says so. By the text of the file: what it declares, and the names in quotes.
 """
 
 from __future__ import annotations
