@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+from traceback import extract_tb
 from types import FrameType
 
 from multibot_rewrite.producers.launch.package_files import ROOTS
@@ -19,6 +20,7 @@ _OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
 _NOT_FOUND = re.compile(
     rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
 )
+_ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
 
 
@@ -29,6 +31,11 @@ def failure(error: BaseException) -> str:
         return not_installed(name)
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
+    if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
+        return f"it starts the program {error.filename!r} itself, which is not installed here"
+    if isinstance(error, SystemExit):
+        hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
+        return f"it ends itself (sys.exit({error.code!r})); {hint}"
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
@@ -38,7 +45,16 @@ def _variable(error: BaseException) -> str:
     error = error.__cause__ or error
     frame = _frame(error)
     of_os = frame is not None and frame.f_globals.get("__name__") == "os"
-    return str(error.args[0]) if of_os and isinstance(error, KeyError) else ""
+    if of_os and isinstance(error, KeyError):
+        return str(error.args[0])
+    # os.getenv gives None, which is no part of a path.
+    lines = [it.line or "" for it in extract_tb(error.__traceback__)]
+    asked = _ASKED.findall(" ".join(lines)) if isinstance(error, TypeError) else []
+    return next((it for it in asked if it not in os.environ), "")
+
+
+def _is_program(name: str) -> bool:
+    return bool(name) and "/" not in name and "." not in name
 
 
 def not_installed(name: str) -> str:

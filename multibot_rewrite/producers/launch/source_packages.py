@@ -21,6 +21,7 @@ from multibot_rewrite.description.sources.packages import (
     packages_below,
     sources_around,
 )
+from multibot_rewrite.producers.launch.install_rules import link_share
 
 _INDEX = os.path.join("share", "ament_index", "resource_index", "packages")
 _PYTHON = re.compile(r"ament_python_install_package\(\s*(\w+)")
@@ -34,7 +35,7 @@ def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
     ``folder`` gets links to them. What is installed is found first, then what is below the roots.
     """
     for name, path in dict(_packages(file, roots)).items():
-        os.symlink(path, _shared(name, os.path.join(folder, "sources")))
+        link_share(name, path, _shared(name, os.path.join(folder, "sources")))
         if os.path.isfile(os.path.join(path, name, "__init__.py")) or _installs_python(path):
             sys.path.append(path)
     _search(os.path.join(folder, "sources"))
