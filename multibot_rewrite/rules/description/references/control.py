@@ -55,7 +55,7 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="A joint in a <ros2_control> is fixed.",
     why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
-    "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
+    "sense in ros2_control'). Gazebo removes fixed joints before it looks for them.",
     fix="Remove the joint, or give it a type that moves.",
     bad=FIXED + a_system('<joint name="j"/>'),
     good=ARM + a_system('<joint name="j"/>'),
