@@ -17,9 +17,9 @@ from multibot_rewrite.system.tool_nodes import last_word
 def own_namespace(seen: Index, name: str, robot: str) -> str:
     """What to do about a name that the robots share: how each gets its own."""
     return (
-        f"each robot needs its own: a relative name in the node's code or parameters, or the rule"
-        f" {name}:={name.strip('/')} (--ros-args -r, remappings= in the launch file) for a node in"
-        f" the namespace of {robot}"
+        "each robot needs its own: write a relative name in the node's code or parameters;"
+        f" or start it in the namespace of {robot} with the rule {name}:={name.strip('/')}"
+        " (--ros-args -r, remappings= in the launch file)"
     )
 
 
