@@ -138,7 +138,9 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
     ]
     if left:
         message = f"nav2_bringup gives no remap rule for {', '.join(dict.fromkeys(left))}"
-        hint = "all robots share these names where they are used"
+        hint = (
+            "all robots share them; if you use one, start Nav2 with nav2.launch.py of this package"
+        )
         yield NO_RULE.finding(message, hint, file=plan.file.file, line=1, column=1)
 
 

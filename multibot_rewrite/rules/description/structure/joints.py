@@ -99,7 +99,9 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
         useless = [it for it in ("limit", "mimic", "safety_controller") if it in joint.parts]
         if useless:
             tags = ", ".join(f"<{it}>" for it in useless)
-            yield Problem(joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {tags}")
+            message = f"fixed joint {joint.name!r} ignores its {tags}"
+            hint = f"delete {tags}, or correct the type of the joint"
+            yield Problem(joint.parts[useless[0]], message, None, hint)
 
 
 @rule(
