@@ -132,6 +132,9 @@ def words_in(text: str, kind: str) -> Iterator[str]:
 
 
 def _said(term: str) -> str:
+    """A reason of its own, such as the file that has a node's parameters, is said as it is."""
+    if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
+        return term
     it = _one(term)
     values = " or ".join(it.values)
     if (it.how, it.parameter) == (":", OPEN_KIND):
