@@ -198,8 +198,8 @@ def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Cav
     known = [count for name, count in machines.items() if name]
     if asked.range == "SUBNET" and asked.static_peers and min(known, default=inf) <= PEER_LIMIT:
         text = (
-            f"a machine has no more than {PEER_LIMIT} participants, which is all that Fast DDS"
-            " finds on a static peer under SUBNET without multicast: the view may be cut off; use"
+            f"{PEER_LIMIT} participants or fewer are seen of a machine, and the view may be cut off;"
+            " Fast DDS finds no more on a static peer under SUBNET without multicast; use"
             f" ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which finds {LOCAL_LIMIT}"
         )
         yield Caveat("peer-limit", True, text)

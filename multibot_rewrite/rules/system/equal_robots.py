@@ -24,8 +24,8 @@ ENOUGH = 10
     "MG326",
     "less-than-another-robot",
     WARNING,
-    what="On a robot's topic came no message, or three times fewer than on the same topic of another"
-    " robot, while a bag was recorded or the system watched.",
+    what="On a robot's topic came no message, or three times fewer than on the same topic of "
+    "another robot. This was while a bag was recorded or the system watched.",
     why="Its node runs and sends nothing, has no time, or its messages were lost in the network.",
     fix="Look at the node's log: a sensor without a connection, a plugin without its link. Compare CPU"
     " and network of the robots, and the QoS of the recorder: best effort loses messages.",

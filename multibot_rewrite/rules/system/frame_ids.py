@@ -43,8 +43,8 @@ class _Message(NamedTuple):
     what="`header.frame_id` of what a robot measures, or `child_frame_id` of its odometry, is a frame"
     " of another robot.",
     why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
-    fix="Set the frame of the sender (`frame_id`, `base_frame`, or `gz_frame_id` in the description) to"
-    " its own robot's; a launch file may have the other robot's name.",
+    fix="Set the frame of the sender to its own robot's: `frame_id`, `base_frame`, or "
+    "`gz_frame_id` in the description. A launch file may have the other robot's name.",
     bad="""\
 running: transform robot1/base_link -> robot1/lidar_link on /tf
 running: transform robot2/base_link -> robot2/lidar_link on /tf
@@ -90,8 +90,8 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
     " none of its frames it is a warning.",
     why="tf cannot say where the sensor is: RViz shows nothing, costmaps and filters drop every message"
     " (`frame does not exist`).",
-    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has it;"
-    " or send a transform for it.",
+    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has "
+    "it. Or send a transform for it.",
     bad="""\
 running: transform robot1/base_link -> robot1/lidar_link on /tf
 running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan

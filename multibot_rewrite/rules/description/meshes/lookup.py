@@ -131,7 +131,8 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
     for first, *others in lost.values():
         near = _nearest(first)
-        hint = f"did you mean {near!r}?" if near else f"looked in {first.folders[0]}"
+        looked = f"correct the path, or add the file; looked in {first.folders[0]}"
+        hint = f"did you mean {near!r}?" if near else looked
         more = f", nor do {len(others)} more in its folder" if others else ""
         yield problem(first.used, f"{first.used.name!r} does not exist{more}", hint)
 
