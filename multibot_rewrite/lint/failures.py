@@ -6,12 +6,13 @@ from __future__ import annotations
 import re
 import signal
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.description.sources.packages import is_for_ros_1
+from multibot_rewrite.rules.facts.certain import WHOLE
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
@@ -25,6 +26,7 @@ _CODES = (
     (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
     (lazy_compile("xacro failed"), "MB103"),
 )
+_MADE_ELSEWHERE = lazy_compile("is not defined|unknown macro name")
 
 
 def failure(path: str, message: str, settings: Settings) -> Finding:
@@ -33,8 +35,10 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
 
     code = next((code for said, code in _CODES if said.search(message)), "MB101")
     level = level_of(settings, code, RULES[code].level)
-    if "ROS 1" in message and is_for_ros_1(path):  # as it should be there
-        level = NOTE
+    if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
+        level = NOTE if is_for_ros_1(path) else WARNING
+    if code == "MB103" and _MADE_ELSEWHERE.search(message) and not path.endswith(WHOLE):
+        level = WARNING  # a part of a robot: what includes it may make the name
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)

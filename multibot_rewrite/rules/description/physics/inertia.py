@@ -10,7 +10,6 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Inertial, Link, Robot
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.problem import Problem
@@ -28,6 +27,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     sizes_of,
 )
 from multibot_rewrite.rules.facts.sensors import number_at
+from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.subject import Subject
 
 # Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
@@ -72,7 +72,7 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="The inertia of a link is physically impossible: about some axis it is negative, or one "
     "principal moment is larger than the sum of the two others. It is a warning where simulators "
-    "merge the link with others.",
+    "merge the link with others, and where Gazebo Classic may read it.",
     why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum. And so"
     " does MuJoCo ('inertia must have positive eigenvalues', 'inertia must satisfy A + B >= "
     "C').",
@@ -84,22 +84,24 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 )
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
+    classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link, inertial, moments, merged in impossible(subject.robot):
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
         place = part_of(inertial, "inertia")
-        yield Problem(place, message, level=WARNING if merged else "")
+        yield Problem(place, message, level=WARNING if merged or classics else "")
     if subject.document.root.tag == "sdf":
         yield from _of_models(subject)
 
 
 def _of_models(subject: Subject) -> Iterator[Problem]:
     """The links of an SDF, which are not merged: sdformat refuses a mass of 0 as well."""
+    classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link in subject.elements.every("link"):
         inertial = link.find("inertial")
         if inertial is None or inertial.get("auto", "").lower() in ("true", "1"):
             continue
         mass, inertia = number_at(inertial, "mass"), inertial.find("inertia")
-        level = NOTE if _is_unread(subject, link) else ERROR
+        level = (NOTE if _is_static(link) else WARNING) if classics else ERROR
         if mass is not None and mass <= 0:
             message = f"mass of link {link.get('name')!r} is {mass:g}"
             yield Problem(inertial, f"{message}, and has to be above 0", None, level=level)
@@ -114,11 +116,11 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
             yield Problem(inertia, words, None, level=level)
 
 
-def _is_unread(subject: Subject, link: _Element) -> bool:
-    """Is the mass of a link nothing to Gazebo Classic: that of a static model (Link.cc)?"""
+def _is_static(link: _Element) -> bool:
+    """Is it of a static model, whose masses are nothing to Gazebo Classic (Link.cc)?"""
     model = link.getparent()
     static = "" if model is None else (model.findtext("static") or "").strip()
-    return subject.settings.distro == OF_OLD and static in ("1", "true")
+    return static in ("1", "true")
 
 
 # With what sdformat takes where one is left out.

@@ -20,6 +20,7 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
 )
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.facts.memo import driven_joints
 from multibot_rewrite.rules.subject import Subject
 
@@ -66,7 +67,8 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     for it in _components(subject.document.root):
         joint = subject.robot.joint.get(it.get("name", ""))
         if joint is not None and joint.type == "fixed":
-            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
+            message = f"joint {joint.name!r} is fixed"
+            yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
 
 @rule(

@@ -18,6 +18,7 @@ from multibot_rewrite.description.checks.references import (
 )
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.rules.facts.certain import as_sure_as_whole, since_jazzy
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -73,4 +74,6 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
-    return iter(references(subject).loose.get(code, ()))
+    for it in as_sure_as_whole(subject, references(subject).loose.get(code, ())):
+        of_system = next(it.element.iterancestors("ros2_control"), None) is not None
+        yield it._replace(level=it.level or since_jazzy(subject)) if of_system else it
