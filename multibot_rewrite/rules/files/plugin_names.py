@@ -82,7 +82,8 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     if alike:
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
     if name in known.older:
-        return "which ROS 2 has under another name", f"write {known.older[name]}", ERROR
+        level = WARNING if name in known.ended else ERROR
+        return "which ROS 2 has under another name", f"write {known.older[name]}", level
     same = next((it for it in known.classes if canonical(it) == canonical(name)), "")
     if same:
         others = ", ".join(releases_with(known.classes[same]))
