@@ -37,6 +37,8 @@ LARGER, FAR_LARGER, SMALLER, SMALL_SHAPE = 4.0, 50.0, 0.01, 0.01
 # Of 1,523 links of public robots with simple shapes, 147 are LARGER, most of them frames of sensors
 # with the inertia of an example; one that moves and has a mass counts.
 FRAME = 0.05
+# In kg/m3: more than osmium. Shapes of lighter links may be marks.
+DENSEST, MASSIVE = 25_000.0, 5.0
 
 
 @rule(
@@ -135,7 +137,8 @@ def _moment(inertia: _Element, name: str) -> float | None:
     "MB608",
     "inertia-scale",
     WARNING,
-    what="An inertia does not fit the link's mass and size.",
+    what="An inertia does not fit the link's mass and size, or the mass is more than any metal of that "
+    "size has.",
     why="The simulator uses it as it is: such a link hardly turns, or spins at a touch.",
     fix="Use kg for the mass and kg m2 for the inertia; 1 kg mm2 is 1e-6 kg m2.",
     bad=one_link(an_inertial(inertia=diagonal("1000", "1000", "1000"))),
@@ -146,7 +149,14 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
     """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
     for link, inertial in inertials(subject.robot):
         mass, moments = inertial.mass, inertial.moments
-        if mass is None or moments is None or not LIGHT <= mass < HEAVY:
+        if mass is None or moments is None or mass < LIGHT:
+            continue
+        size = _size(link.element) if mass >= MASSIVE else 0.0
+        if size > SMALL_SHAPE and mass > DENSEST * size**3 * 4 / 3 * pi:
+            message = f"mass of link {link.name!r} is {mass:g} kg within {size:.3g} m: more than any metal"
+            yield Problem(part_of(inertial, "mass"), message, None, "is it in kilograms?")
+            continue
+        if mass >= HEAVY:
             continue
         largest = max(moments[0], moments[3], moments[5])
         if largest < NOTHING:
@@ -158,7 +168,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         if radius > LONG or radius < SHORT:
             yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
             continue
-        size = _size(link.element)
+        size = size or _size(link.element)
         if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
             message += f", its shapes reach {size:.3g} m from the origin"
             counts = mass >= FRAME and moves(subject.robot, link.name)
