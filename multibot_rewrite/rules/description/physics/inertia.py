@@ -153,7 +153,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
             continue
         size = _size(link.element) if mass >= MASSIVE else 0.0
         if size > SMALL_SHAPE and mass > DENSEST * size**3 * 4 / 3 * pi:
-            message = f"mass of link {link.name!r} is {mass:g} kg within {size:.3g} m: more than any metal"
+            message = f"mass of link {link.name!r}: no metal weighs {mass:g} kg within {size:.3g} m"
             yield Problem(part_of(inertial, "mass"), message, None, "is it in kilograms?")
             continue
         if mass >= HEAVY:
