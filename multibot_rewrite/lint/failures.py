@@ -37,6 +37,8 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     level = level_of(settings, code, RULES[code].level)
     if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
         level = NOTE if is_for_ros_1(path) else WARNING
+    if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
+        level = NOTE
     if code == "MB103" and _MADE_ELSEWHERE.search(message) and not path.endswith(WHOLE):
         level = WARNING  # a part of a robot: what includes it may make the name
     it = _PLACE.fullmatch(message)

@@ -98,7 +98,8 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     "MB226",
     "commanded-mimic",
     WARNING,
-    what="A joint that mimics another one has a command interface in <ros2_control>.",
+    what="A joint that mimics another one has a command interface in <ros2_control>. It is a note in "
+    "Humble.",
     why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
     'cannot have command interfaces\'), unless the joint has mimic="false".',
     fix='Delete the command interface; set mimic="false" if the hardware drives both.',
@@ -119,7 +120,8 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
-            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
+            hint = 'delete the interface, or set mimic="false"'
+            yield Problem(it, message, "name", hint, level=NOTE if since_jazzy(subject) else "")
 
 
 @rule(
