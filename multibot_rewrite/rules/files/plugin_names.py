@@ -128,7 +128,7 @@ def _critics(it: Demand) -> Iterator[Remark]:
         short = scope == _DWB and f"{word}{_CRITIC}" in names
         if plain and word not in names and not short:
             shown = [n.removesuffix(_CRITIC) for n in names] if scope == _DWB else [*names]
-            near = nearest(word, shown)
+            near = slip_of(word, shown)
             message = f"{it.section.title}: no critic of {scope} is called {word!r}"
             if near:
                 yield remark_at(it.given.node, message, f"did you mean {near}?", ERROR)

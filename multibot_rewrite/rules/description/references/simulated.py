@@ -116,7 +116,9 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             home = os.path.dirname(os.path.dirname(path))
             is_here = subject.origins and os.path.isabs(path) and is_folder(home)
             if is_here and not is_there(path) and not in_sources(path):
-                yield Problem(it, f"there is no file {path}", "", "correct the path")
+                # A whole folder may be made by the build.
+                level = "" if is_folder(os.path.dirname(path)) else WARNING
+                yield Problem(it, f"there is no file {path}", "", "correct the path", level=level)
 
 
 def _is_told(subject: Subject, plugin: _Element) -> bool:
