@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.audit import uses_xacro
@@ -66,10 +68,19 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
     scope, _, name = part.text.rpartition("::")
     if scope and scope == inventory.document.root.get("name"):
         return any(name in inventory.declared.get(kind, ()) for kind in part.kinds)
+    if inventory.document.root.tag == "sdf" and _is_of_included(claim.element):
+        return True
     if claim.site.section != "element ros2_control":
         return False
     system = next(claim.element.iterancestors("ros2_control"), None)
     return system is not None and text_at(system, "hardware/plugin").startswith(WEBOTS)
+
+
+def _is_of_included(element: _Element) -> bool:
+    """Is it in an <include>, or in a model that another one is merged into?"""
+    if next(element.iterancestors("include"), None) is not None:
+        return True
+    return any(it.find("include[@merge]") is not None for it in element.iterancestors("model"))
 
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
