@@ -20,7 +20,7 @@ from multibot_rewrite.description.checks.references import (
 )
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.rules.facts.certain import as_sure_as_whole, since_jazzy
+from multibot_rewrite.rules.facts.certain import lacking, since_jazzy
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -85,6 +85,6 @@ def _is_of_included(element: _Element) -> bool:
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
-    for it in as_sure_as_whole(subject, references(subject).loose.get(code, ())):
+    for it in lacking(subject, references(subject).loose.get(code, ())):
         of_system = next(it.element.iterancestors("ros2_control"), None) is not None
         yield it._replace(level=it.level or since_jazzy(subject)) if of_system else it

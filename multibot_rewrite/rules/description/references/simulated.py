@@ -26,7 +26,7 @@ from multibot_rewrite.rules.description.references.shared import (
     hardware_system,
     name_of,
 )
-from multibot_rewrite.rules.facts.certain import is_whole
+from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.facts.simulators import (
     GAZEBO,
     SIMULATORS,
@@ -158,8 +158,7 @@ def nothing_to_control(subject: Subject) -> Iterator[Problem]:
         for simulator in () if subject.document.root.tag == "sdf" else found:
             message = f"{library_of(plugin)} is not active: the description has no <ros2_control>"
             hint = f"add one with the class {simulator.hardware[0]} and the joints"
-            level = "" if is_whole(subject) else WARNING
-            yield Problem(plugin, message, "filename", hint, level=level)
+            yield Problem(plugin, message, "filename", hint, level=level_of_absence(subject))
 
 
 @rule(
