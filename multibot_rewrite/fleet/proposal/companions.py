@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.proposal.given_by_launch import files_given, readings
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -76,7 +77,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
     files = {kind: tuple(_of_kind(kind, robot, getattr(found, kind), left)) for kind in kinds}
-    sections = dict(_sections(_nearest(robot, found.params, found.launch), release, left))
+    given = files_given(readings(found.launch, robot.path, found.every))
+    nearest = _nearest(robot, found.params, found.launch, given)
+    sections = dict(_sections(nearest, release, left))
     idle = _controllers_of_others(robot, sections)
     left |= idle | _bridges_of_others(robot, found)
     files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
@@ -177,17 +180,23 @@ def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
     return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 
-def _nearest(robot: Looked, paths: Sequence[str], launch: Sequence[str] = ()) -> list[str]:
-    """What the description itself loads first, then the files of its own package, those that a launch
-    file names, and by how like its own their paths are."""
+def _nearest(
+    robot: Looked,
+    paths: Sequence[str],
+    launch: Sequence[str] = (),
+    given: Container[str] = (),
+) -> list[str]:
+    """What the description itself loads first, what launch files give to nodes (``given``), what is in
+    its own package, what a launch file names, and by how like its own the paths are."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
     loaded = set(_loaded(robot))
 
-    def distance(path: str) -> tuple[bool, bool, bool, int, str]:
+    def distance(path: str) -> tuple[bool, bool, bool, bool, int, str]:
         base = os.path.basename(path)
         named = any(base in text_of(it) for it in launch)
         like = len(words & set(_WORD.findall(path.lower())))
-        return os.path.abspath(path) not in loaded, package_of(path) != home, not named, -like, path
+        first = os.path.abspath(path) not in loaded, path not in given
+        return *first, package_of(path) != home, not named, -like, path
 
     return sorted(paths, key=distance)
 

@@ -17,7 +17,12 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of, srdf_of
-from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch
+from multibot_rewrite.fleet.proposal.given_by_launch import (
+    VALUES,
+    Launched,
+    given_by_launch,
+    readings,
+)
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     NO_SIMULATOR,
@@ -60,7 +65,7 @@ class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots, and why; ``launched`` is what launch files give
-    its nodes, by file and line."""
+    its nodes."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -68,7 +73,7 @@ class Proposal(NamedTuple):
     notes: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
     refused: Mapping[str, str] = {}
-    launched: tuple[tuple[str, int, str], ...] = ()
+    launched: Launched = Launched()
 
 
 def layout_of(members: Sequence[Member]) -> Choice:
@@ -315,7 +320,9 @@ def propose(
     }
     poses = poses_of(members, wanted.apart)
     stacks = dict.fromkeys(stack for it in members for stack in it.companions.stacks)
-    launched = tuple(given_by_launch(found.launch, stacks, release.value))
+    # Launch files of several robots give each its own values.
+    read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
+    launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
     return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
 
 
