@@ -183,6 +183,8 @@ def _of_xml(_: str, data: bytes) -> str:
 
 
 def _of_xacro(stem: str, data: bytes) -> str:
+    if b"<sdf" in data:
+        return _of_sdf(stem, data)
     if not _ROBOT.search(data):
         return ""
     return "srdf" if ".srdf" in stem or b"<group " in data else "descriptions"

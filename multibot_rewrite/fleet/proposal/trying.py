@@ -55,6 +55,16 @@ def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
     return next((it for it in tried if not it.notes), tried[0])
 
 
+def as_named(seen: Seen, wanted: Wanted) -> Proposal:
+    """The fleet of the descriptions that were named; without the other file of the same robot where it
+    does not build with it."""
+    made = that_builds(seen.robots, seen.found, wanted)
+    if not made.notes or list(seen.alike) in ([], list(seen.robots)):
+        return made
+    other = that_builds(seen.alike, seen.found, wanted)
+    return made if other.notes else other
+
+
 def _refuse_to_choose(likely: Sequence[Looked]) -> None:
     paths = [it.path for it in likely]
     more = f" and {len(paths) - MOST_SHOWN} more" if paths[MOST_SHOWN:] else ""
