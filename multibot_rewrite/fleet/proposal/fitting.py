@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several parameter files for one node goes with a robot: by how many of its names they have."""
+"""Which of several parameter files for one node goes with a robot: by how many of its names it has."""
 
 from __future__ import annotations
 
