@@ -288,6 +288,13 @@ class Environment(NamedTuple):
     caveats: tuple[Caveat, ...] = ()
 
 
+class Domain(NamedTuple):
+    """The ROS_DOMAIN_ID of the nodes of a robot, or of all robots (empty name)."""
+
+    robot: str
+    number: int
+
+
 class System(NamedTuple):
     """What runs, or would run, on some robots; what no source tells is empty.
 
@@ -297,7 +304,8 @@ class System(NamedTuple):
     ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
     may come and go, besides the usual tools.
     ``release`` is the one whose facts it rests on. ``gaps`` are findings about what is open in the
-    robots as they are planned: a name that is read and not sent, for example.
+    robots as they are planned: a name that is read and not sent, for example. ``domains`` are those
+    of a plan whose robots are not in one.
     """
 
     nodes: tuple[Node, ...] = ()
@@ -318,6 +326,7 @@ class System(NamedTuple):
     gaps: tuple[Finding, ...] = ()
     lookups: tuple[Lookup, ...] = ()
     addresses: tuple[Address, ...] = ()
+    domains: tuple[Domain, ...] = ()
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:
