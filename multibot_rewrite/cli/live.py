@@ -79,6 +79,29 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
         return observe(asked, environ(options.domain), tell)
 
 
+def at(options: argparse.Namespace, domain: int) -> argparse.Namespace:
+    """The options, for another domain."""
+    return argparse.Namespace(**{**vars(options), "domain": domain})
+
+
+def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, System]:
+    """The graph of each of these domains, looked at side by side, or those of the saved snapshots;
+    raises as ``graph``."""
+    if options.snapshot:
+        from multibot_rewrite.producers.snapshot_file import read_by_domain
+
+        saved = read_by_domain(options.snapshot)
+        if saved.keys() != {*domains}:
+            wanted, given = (", ".join(map(str, it)) for it in (domains, saved))
+            raise UsageError(f"snapshots of domains {given}: give one of each of {wanted}")
+        return saved
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(len(domains)) as pool:
+        looks = pool.map(lambda it: graph(at(options, it)), domains)
+        return dict(zip(domains, looks, strict=True))
+
+
 def with_states(
     options: argparse.Namespace, seen: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> System:

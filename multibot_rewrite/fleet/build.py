@@ -15,6 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.sources.read import is_xacro
+from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.file.fleet_file import input_files
@@ -120,6 +121,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         starts = fleet_starts(plan, each, configs, files, brought)
         files = sorted((*files, launch_file(starts)))
+        told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
         return Outputs(tuple(files), said, started(starts), planned)

@@ -29,7 +29,8 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-FOLDER = "domain_bridge"
+# What such a node is from, and the folder of the files.
+DOMAIN_BRIDGE = "domain_bridge"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 # Types of what is sent once and kept for who comes later, and the last part of such topics' names.
 _LATCHED_TYPES = frozenset({"nav_msgs/msg/OccupancyGrid"})
@@ -63,7 +64,8 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
     for robot in dict.fromkeys(it.robot for it in found):
         name, own = bridge_name(robot), [it for it in found if it.robot == robot]
         here, there = f"/{name}_{numbers[robot]}", f"/{name}_{numbers['']}"
-        nodes += [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
+        made = [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
+        nodes += [it._replace(stack=DOMAIN_BRIDGE) for it in made]
         for it in own:
             from_, to = (here, there) if it.out else (there, here)
             ends.append(planned_end(from_, TOPIC, SUBSCRIBES, it.name, it.type, it.name))
@@ -144,7 +146,7 @@ def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
 
 def bridge_path(robot: str) -> str:
     """Where the file of a robot's bridge goes."""
-    return f"{FOLDER}/{bridge_name(robot)}.yaml"
+    return f"{DOMAIN_BRIDGE}/{bridge_name(robot)}.yaml"
 
 
 def _file(name: str, own: int, shared: int, ends: Iterable[End]) -> str:

@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Set
 
+from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import Environment, System
 
 # That of nodes of all robots, where a plan does not say another.
 USUAL_DOMAIN = 0
@@ -50,3 +51,33 @@ def _named(plan: System, numbers: Mapping[str, int], at: int) -> Set[str]:
     """The topics of which the plan says more that are those of a robot of this domain, or of all."""
     robot = whose_by_plan(plan).robot
     return {it.name for it in plan.topics if numbers[robot(it.name)] == at}
+
+
+def side_by_side(seen: Mapping[int, System]) -> System:
+    """What was seen of all domains as one view, to be shown, and to hold robots against each other;
+    what is said of a view names its domain."""
+    views = tuple(seen.values())
+    first = views[0]
+    return first._replace(
+        nodes=tuple(it for one in views for it in one.nodes),
+        ends=tuple(it for one in views for it in one.ends),
+        edges=tuple(it for one in views for it in one.edges),
+        heard=tuple(it for one in views for it in one.heard),
+        parameters=tuple(it for one in views for it in one.parameters),
+        controllers=tuple(it for one in views for it in one.controllers),
+        environment=_around(seen),
+    )
+
+
+def _around(seen: Mapping[int, System]) -> Environment:
+    looks = [it.environment for it in seen.values()]
+    return looks[0]._replace(
+        participants=sum(it.participants for it in looks),
+        settled=max((it.settled for it in looks), key=WORST_LAST.index),
+        seconds=max(it.seconds for it in looks),
+        caveats=tuple(
+            it._replace(message=f"domain {number}: {it.message}")
+            for number, one in seen.items()
+            for it in one.environment.caveats
+        ),
+    )

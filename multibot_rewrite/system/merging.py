@@ -27,7 +27,8 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-_FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
+# Why looks ended, from good to bad.
+WORST_LAST = (EXPECTED, QUIET, TIMEOUT, CHANGING)
 _MANY = 4
 
 
@@ -155,7 +156,7 @@ def _environment(
         discovery_server=_words(one.discovery_server for one in around),
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
-        settled=max((one.settled for one in around), key=_FROM_GOOD_TO_BAD.index),
+        settled=max((one.settled for one in around), key=WORST_LAST.index),
         seconds=max(one.seconds for one in around),
         caveats=(*_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS domain for each robot, and what crosses between them: ``domains``, ``crossing`` and ``free_fleet``
-of a fleet file."""
+"""A ROS domain for each robot, and what crosses between them: ``domains``, ``crossing`` and
+``free_fleet`` of a fleet file."""
 
 from __future__ import annotations
 
@@ -32,11 +32,13 @@ class FreeFleet(NamedTuple):
 
 class Apart(NamedTuple):
     """The domain of each robot by its namespace, and of nodes of all robots; topics of each robot that
-    go to the latter; what free_fleet gets, if it is asked for. All is empty for one domain."""
+    go to the latter; what free_fleet gets, if it is asked for; where the file says it. All is empty for
+    one domain."""
 
     domains: tuple[Domain, ...] = ()
     crossing: tuple[str, ...] = ()
     free_fleet: FreeFleet | None = None
+    place: tuple[str, int] = ("", 1)
 
 
 TOGETHER = Apart()
@@ -58,6 +60,7 @@ def apart_of(read: FleetData, robots: Sequence[RobotSpec]) -> Apart:
         tuple(Domain(*it) for it in numbers.items()),
         tuple(listed(data.get(CROSSING, []))),
         _free_fleet(data.get(FREE_FLEET)),
+        read.places[DOMAINS,],
     )
 
 

@@ -88,7 +88,7 @@ class RobotStarts(NamedTuple):
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
     the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
-    type; ``world`` is the simulator's by default, ``domains`` has the one of each robot by its name, and
+    type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
     of all (empty name), where they are not in one."""
 
     head: str

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What free_fleet needs of a plan: the Zenoh bridge of each robot, and the robots of its fleet adapter.
 
-Source: open-rmf/free_fleet 002505f. The adapter reads ``ROBOT/tf`` and ``ROBOT/battery_state`` and calls
+Source: open-rmf/free_fleet 002505f. The adapter reads ``ROBOT/tf`` and ``ROBOT/battery_state``, calls
 ``ROBOT/navigate_to_pose`` (nav2_robot_adapter.py), looks up map -> ``robot_frame`` with what is on that
 tf topic alone, and wants ``navigation_stack`` and ``initial_map`` of each robot (fleet_adapter.py). Its
 bridges are of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
