@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.pair.nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.records import System
 
@@ -47,11 +48,21 @@ def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) ->
         for other, view in seen.items()
         if it.code in _MISSING and other != number and wanted & {own.name for own in view.nodes}
     ]
-    said = it._replace(message=f"{it.message}, in domain {number}")
+    said = _of_bridge(it._replace(message=f"{it.message}, in domain {number}"), plan)
     if not elsewhere:
         return said
     hint = f"it runs in domain {elsewhere[0]}: start it with ROS_DOMAIN_ID={number}"
     return said._replace(hint=hint, file="", line=0)
+
+
+def _of_bridge(it: Finding, plan: System) -> Finding:
+    """Without a bridge that is missing on one side nothing crosses."""
+    own = {one.name for one in plan.nodes if one.stack == DOMAIN_BRIDGE}
+    if it.code != missing_node.code or it.node not in own:
+        return it
+    level = ERROR if it.level == WARNING else it.level
+    hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
+    return it._replace(level=level, hint=hint)
 
 
 def _is_planned_elsewhere(it: Finding, number: int, plan: System) -> bool:
