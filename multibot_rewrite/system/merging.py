@@ -51,7 +51,7 @@ def merged(looks: Sequence[Look]) -> System:
     nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
     endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
-    heard = {it[:2]: it for look in looks for it in look.snapshot.heard}
+    heard = {(it.topic, it.frame, it.joints): it for look in looks for it in look.snapshot.heard}
     around = _environment(looks, nodes, endpoints)
     parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
     controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
@@ -140,7 +140,9 @@ def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
         static = any(frame.static for frame in same)
         several = any(frame.several for frame in same)
         transform = next((frame.transform for frame in same if frame.transform), ())
-        yield Edge(child, parent, topic, static, tuple(sorted(publishers)), several, transform)
+        rate = max(frame.rate for frame in same)
+        senders = tuple(sorted(publishers))
+        yield Edge(child, parent, topic, static, senders, several, transform, rate)
 
 
 def _environment(

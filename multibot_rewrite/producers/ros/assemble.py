@@ -53,6 +53,7 @@ class ReceivedTransform(NamedTuple):
 
 
 NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
+NO_RATES: Mapping[ReceivedTransform, float] = {}
 
 
 class LastChange(NamedTuple):
@@ -216,10 +217,12 @@ def frames(
     endpoints: Iterable[End],
     of_several: Collection[ReceivedTransform] = (),
     last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
+    rates: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
-    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last.
+    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
+    ``rates`` how often it came.
     """
     publishers = defaultdict(set)
     for end in endpoints:
@@ -231,8 +234,10 @@ def frames(
         latched[edge] = is_latched or latched.get(edge, False)
     several = {(it.topic, it.parent, it.child) for it in of_several}
     numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
+    often = {(it.topic, it.parent, it.child): own for it, own in rates.items()}
     for edge, static in sorted(latched.items()):
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
         transform = numbers.get(edge, ())
-        yield Edge(child, parent, topic, static, senders, edge in several, transform)
+        rate = often.get(edge, 0.0)
+        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate)

@@ -28,6 +28,7 @@ from multibot_rewrite.producers.ros.look import (
 )
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
+from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
@@ -38,6 +39,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     QUIET,
     Caveat,
+    Edge,
     End,
     Environment,
     System,
@@ -253,10 +255,14 @@ def _snapshot(
     return System(
         tuple(nodes),
         placed,
-        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several(), ears.tf.last)),
+        tuple(_frames(ears.tf, placed)),
         around,
         ears.headers.heard(),
     )
+
+
+def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
+    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates())
 
 
 if __name__ == "__main__":
