@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
         return _watch(options, _with_files(options, plan) if options.state else plan)
     if options.bag:
         return _recorded(options, plan)
-    graph = live.graph(options)
+    graph = live.graph(options, judge=lambda it: check(plan, it))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
     return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))

@@ -130,8 +130,7 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
         signal.signal(signal.SIGUSR1, lambda *_: _change(node, spec["changed"]))
     for name, type_, *words in spec.get("publishers", ()):
         publisher = node.create_publisher(_type(type_), name, _qos(words))
-        if type_ == CLOCK:
-            _run_clock(node, publisher)
+        _run_clock(node, publisher, type_)
     for name, type_, *words in spec.get("subscriptions", ()):
         node.create_subscription(_type(type_), name, lambda _: None, _qos(words))
     for name, type_ in spec.get("services", ()):
@@ -149,8 +148,10 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     return node
 
 
-def _run_clock(node: Any, publisher: Any) -> None:
-    """A simulation that has run for a while."""
+def _run_clock(node: Any, publisher: Any, type_: str) -> None:
+    """A simulation that has run for a while, if it is a clock."""
+    if type_ != CLOCK:
+        return
     message = _type(CLOCK)()
 
     def tick() -> None:

@@ -106,9 +106,20 @@ def so_far(names: Sequence[str]) -> str:
     return f"{plural(len(names), 'node')}{where} so far"
 
 
-def cut_short() -> Iterator[Caveat]:
-    """Where the time was over in the midst of the slow queries."""
-    text = "the timeout was over before the QoS of all topics was read; give a longer --timeout"
+def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat]:
+    """Where the time was over in the midst of the slow queries: what was not asked."""
+    known = {it.name for it in endpoints if it.qos is not None}
+    topics = {it.name: [it.name] for it in endpoints if it.kind == TOPIC}
+    left = [it for it in topics_to_query(names, endpoints, topics, ()) if it not in known]
+    which = f" ({shorten(left, SEVERAL)})" if left else ""
+    text = f"the timeout was over before the QoS of all topics was read{which}"
+    yield Caveat("cut-short", True, f"{text}; give a longer --timeout")
+
+
+def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
+    """Where the time was over before messages could come."""
+    which = f" on {shorten(silent, SEVERAL)}" if silent else ""
+    text = f"the timeout was over before messages could come{which}; give a longer --timeout"
     yield Caveat("cut-short", True, text)
 
 

@@ -34,6 +34,10 @@ class Ears:
         if self._request.headers:
             self.headers.update(endpoints)
 
+    def silent(self) -> list[str]:
+        """The topics on which nothing has come."""
+        return sorted({*self.tf.silent(), *self.headers.silent()})
+
     def keep_waiting(self) -> bool:
         """Whether something may still come."""
         return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Set
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.base.record import NamedTuple
@@ -185,10 +185,12 @@ class HeaderSamples:
 
     def keep_waiting(self, seconds: float) -> bool:
         """Whether to wait for silent topics, until ``seconds`` after the last subscription."""
-        silent = self._open.keys() - self._heard.keys()
-        if self._clock and self._clock.between:
-            silent = silent - {CLOCK}
-        return bool(silent) and time.monotonic() - self._began < seconds
+        return bool(self.silent()) and time.monotonic() - self._began < seconds
+
+    def silent(self) -> Set[str]:
+        """The topics on which nothing has come."""
+        runs = {CLOCK} if self._clock and self._clock.between else set()
+        return self._open.keys() - self._heard.keys() - runs
 
     def heard(self) -> tuple[Heard, ...]:
         """What was heard by topic; several of a topic that several nodes publish."""

@@ -99,9 +99,12 @@ class TfSubscriptions:
     def keep_waiting(self, first: float, last: float) -> bool:
         """Whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""
         passed = time.monotonic() - self._began
+        return bool(self._open) and passed < (last if self.silent() else first)
+
+    def silent(self) -> list[str]:
+        """The topics on which nothing has come."""
         received = {(it.topic, it.latched) for it in self._received}
-        silent = any((name, latched) not in received for name, _, latched in self._open)
-        return bool(self._open) and passed < (last if silent else first)
+        return [name for name, _, latched in self._open if (name, latched) not in received]
 
     def caveats(self) -> Iterator[Caveat]:
         """The topics that it could not subscribe to."""
