@@ -301,14 +301,14 @@ class Domain(NamedTuple):
 
 
 class System(NamedTuple):
-    """What runs, or would run, on some robots; what no source tells is empty.
+    """What runs, or would run, on some robots; what no source says is empty.
 
     ``heard`` are frames that messages name, one message a topic, ``lookups`` what nodes ask of tf,
     ``addresses`` what only one of them can have.
     ``parameters`` and ``controllers`` are what nodes answered, or what files set. A plan has a
     ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
     may come and go, besides the usual tools.
-    ``release`` is the one whose facts it rests on. ``gaps`` are findings about what is open in the
+    ``release`` is the one for which it was made. ``gaps`` are findings about what is open in the
     robots as they are planned: a name that is read and not sent, for example. ``domains`` are those
     of a plan whose robots are not in one.
     """

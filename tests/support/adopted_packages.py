@@ -40,7 +40,27 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("RoboAlQuds2027+temp_ros2_issue_spawn_two_robot", "ede9146", "", {}),
     ("Kinovarobotics+ros2_kortex", "2f2ba44", "", {}),
 ]
-_TEXTS = "xacro urdf srdf sdf world xml yaml yml rviz py cpp cc c hpp hh h lua launch txt".split()
+_TEXTS = [
+    "xacro",
+    "urdf",
+    "srdf",
+    "sdf",
+    "world",
+    "xml",
+    "yaml",
+    "yml",
+    "rviz",
+    "py",
+    "cpp",
+    "cc",
+    "c",
+    "hpp",
+    "hh",
+    "h",
+    "lua",
+    "launch",
+    "txt",
+]
 _PARTS = ("link", "joint", "ros2_control")
 
 
