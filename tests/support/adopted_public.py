@@ -1,7 +1,7 @@
 """The packages of fixtures/adopted_packages.tsv under ``multibot adopt``, judged by xacro itself.
 
-``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: each configuration
-is expanded by xacro before and after, without a prefix and with one. MIRRORS has clones,
+``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: each
+configuration is expanded by xacro before and after, without a prefix and with one. MIRRORS has clones,
 ``OWNER+NAME/repo``. docs/measurements.md has the table.
 """
 
