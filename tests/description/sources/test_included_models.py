@@ -175,7 +175,7 @@ def test_libsdformat_makes_the_same_of_it(rover: Path) -> None:
 
 
 def test_what_sdformat_merges_is_merged(rover: Path) -> None:
-    """sdformat parser.cc, readXml: links, models, joints, frames, grippers and plugins, nothing else."""
+    """sdformat parser.cc, readXml: links, models, joints, frames, grippers, plugins."""
     parts = '<gripper name="g"/><plugin name="p" filename="f"/><model name="n"/><static>1</static>'
     base = rover.parent.parent / "base" / "model.sdf"
     base.write_text(BASE.format(parts))
