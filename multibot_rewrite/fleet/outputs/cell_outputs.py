@@ -64,7 +64,7 @@ DISAGREE = declare(
     "arms-of-a-cell-disagree",
     WARNING,
     what="The MoveIt files of two arms of a cell give one parameter two values; the first is taken.",
-    why="move_group runs once for all arms and has one value: the other arm moves by a limit or a "
+    why="move_group runs once for all arms and has one value. The other arm moves by a limit or a "
     "setting that was not meant for it.",
     fix="Give both arms the same value, or set it in your launch file after these parameters.",
     bad=_FLEET.replace("OTHER", "slow/limits.yaml"),
