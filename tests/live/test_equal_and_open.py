@@ -40,7 +40,8 @@ def test_the_twins_are_quiet() -> None:
 # What is otherwise in the second of two robots: the old words, the new ones, the code.
 OTHERWISE = {
     "a node is off": (
-        "/robot2/battery publishes /robot2/battery_state sensor_msgs/msg/BatteryState reliable volatile",
+        "/robot2/battery publishes /robot2/battery_state"
+        " sensor_msgs/msg/BatteryState reliable volatile",
         "",
         "MG327",
     ),
