@@ -139,12 +139,15 @@ def view_caveats(
     asked: DiscoverySettings,
     settled: str,
     expected: Iterable[str] = (),
+    last: Collection[str] = (),
 ) -> Iterator[Caveat]:
-    """What to know about a view before something in it is reported as missing."""
+    """What to know about a view before something in it is reported as missing; ``last`` are the names
+    that came or went last."""
     names = Counter(node.name for node in nodes)
     if settled == TIMEOUT:
-        text = "the graph was still changing when the timeout was over; give a longer --timeout"
-        yield Caveat("not-settled", True, text)
+        text = "the graph was still changing when the timeout was over"
+        which = f" (last came or went {shorten(sorted(last), SEVERAL)})" if last else ""
+        yield Caveat("not-settled", True, f"{text}{which}; give a longer --timeout")
     if settled == CHANGING:
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:

@@ -151,11 +151,17 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            level = ERROR if it.check in _STOPS and not it.releases else level
+            level = ERROR if _stops(it) else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
     for section in sections(file):
         node = load_nodes(file.context.distro).get(section.node.name) if section.node else None
         yield from _to_itself(section, node) if node else ()
+
+
+def _stops(it: Demand) -> bool:
+    """Does a node not come up, whatever another file says?"""
+    known = it.check != "period" or it.words[0] in it.section.whole
+    return it.check in _STOPS and not it.releases and known
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Remark]:

@@ -157,9 +157,10 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB712",
     "find-left-over",
-    ERROR,
+    WARNING,
     what="The path of a mesh holds $(find ...), which only xacro understands.",
-    why="In a plain URDF nothing replaces it: no program finds the file.",
+    why="In a plain URDF nothing replaces it: no program finds the file. xacro does, if a launch file "
+    "passes the file to it all the same.",
     fix="Name the file .xacro and expand it, or use package://NAME/....",
     bad=MESH % "file://$(find arm)/meshes/base.stl",
     good=MESH % "package://arm/meshes/base.stl",

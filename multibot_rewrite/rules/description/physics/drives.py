@@ -97,6 +97,8 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
         for left, right in drive.pairs:
+            if "fixed" in (left.joint.type, right.joint.type):
+                continue  # MB624
             for words in rolling_faults(drive.robot, left, right):
                 yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):
@@ -129,9 +131,12 @@ def _fault_of(joint: Joint) -> str:
     if joint.type in ("fixed", "prismatic"):
         return f"is {joint.type}: it cannot turn"
     limit = joint.parts.get("limit")
-    if joint.type != "revolute" or limit is None:
+    if joint.type != "revolute":
         return ""
-    lower, upper = number(limit.get("lower", "0")), number(limit.get("upper", "0"))
+    if limit is not None:
+        lower, upper = number(limit.get("lower", "0")), number(limit.get("upper", "0"))
+    else:  # of an SDF
+        lower, upper = (number_at(joint.element, f"axis/limit/{it}") for it in ("lower", "upper"))
     if lower is None or upper is None or upper - lower >= ENDLESS:
         return ""
     return f"turns from {lower:g} to {upper:g} radians only"

@@ -20,6 +20,7 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
 )
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.facts.memo import driven_joints
 from multibot_rewrite.rules.subject import Subject
 
@@ -66,7 +67,8 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     for it in _components(subject.document.root):
         joint = subject.robot.joint.get(it.get("name", ""))
         if joint is not None and joint.type == "fixed":
-            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
+            message = f"joint {joint.name!r} is fixed"
+            yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
 
 @rule(
@@ -96,7 +98,8 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     "MB226",
     "commanded-mimic",
     WARNING,
-    what="A joint that mimics another one has a command interface in <ros2_control>.",
+    what="A joint that mimics another one has a command interface in <ros2_control>. It is a note in "
+    "Humble.",
     why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
     'cannot have command interfaces\'), unless the joint has mimic="false".',
     fix='Delete the command interface; set mimic="false" if the hardware drives both.',
@@ -117,7 +120,8 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
-            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
+            hint = 'delete the interface, or set mimic="false"'
+            yield Problem(it, message, "name", hint, level=NOTE if since_jazzy(subject) else "")
 
 
 @rule(
