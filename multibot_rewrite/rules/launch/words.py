@@ -178,7 +178,7 @@ def generate_launch_description():
 
 @launch_rule(
     "MG715",
-    "argument-not-read",
+    "include-argument-not-read",
     what="A launch file includes another one with an argument that this one neither declares nor "
     "reads. Where it declares one that is called nearly so it is an error, else a warning.",
     why="launch hands it on and says nothing: the other file goes on with its default.",
