@@ -211,7 +211,7 @@ from launch_ros.actions import Node
 def generate_launch_description():
     return LaunchDescription([{}])
 """
-NODE = "Node(package='joint_state_publisher', executable='joint_state_publisher', \
+NODE = "Node(package='robot_state_publisher', executable='robot_state_publisher', \
 namespace='robot1', parameters=[{'use_sim_time': True, 'robot_description': \
 '<robot name=\"r\"><link name=\"a\"/></robot>'}])"
 CLOCK = "Node(package='ros_gz_bridge', executable='parameter_bridge', \

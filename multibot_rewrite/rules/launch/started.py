@@ -183,7 +183,7 @@ def no_description(launched: Launched) -> Iterator[Finding]:
             message = (
                 f"{node.full_name} waits for a description on {topic}, where nothing sends one"
             )
-            hint = "start a robot_state_publisher there, or give it robot_description"
+            hint = "start a robot_state_publisher there: no parameter tells it"
             yield at(no_description, node.place, message, hint, names=(topic,))
 
 
