@@ -253,7 +253,7 @@ def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
     "MG726",
     "not-activated",
     what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
-    "file starts one, or a manager lists a node that the launch file does not start.",
+    "file starts one. Or a manager lists a node that the launch file does not start.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
     fix="Write the same names in `node_names` and at the nodes.",
     bad=launch_of(

@@ -46,9 +46,9 @@ _TURN = 2 * pi
 @launch_rule(
     "MG711",
     "static-transform-implausible",
-    what="The words of a static_transform_publisher make no transform, or not the one that is meant: a "
-    "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words "
-    "in the place of numbers.",
+    what="The words of a static_transform_publisher make no transform, or a wrong one. A frame is "
+    "its own parent, an angle is in degrees, a quaternion is no rotation, or a word stands in "
+    "place of a number.",
     why="tf2 refuses the transform, or the robot and its sensors stand turned.",
     fix="Write angles in radians, a quaternion of length one, and two different frames; use the flags "
     "(`--x`, `--yaw`, `--frame-id`) so that no order matters.",
