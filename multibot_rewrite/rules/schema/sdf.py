@@ -289,7 +289,7 @@ def _unknown(
     if near:
         yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = _homes(tag) or _beside(child, known)
+        homes = [it for it in _homes(tag) if it != home] or _beside(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
 
