@@ -79,7 +79,13 @@ CASES = {
     "hardware of no controller": ("MB115", "c.yaml", MANAGER % "plugin: own/Hardware", {}, []),
     "a list in a text": ("MB877", "c.yaml", SOURCES, {}, ["warning"]),
     "RViz of ROS 1 there": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": CATKIN}, ["note"]),
-    "RViz of ROS 1 in ROS 2": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": AMENT}, ["warning"]),
+    "RViz of ROS 1 in ROS 2": (
+        "MB101",
+        "a.rviz",
+        ROS_1_DISPLAY,
+        {"package.xml": AMENT},
+        ["warning"],
+    ),
 }
 
 
