@@ -20,6 +20,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.structure.shared import BOUNDED, LIMIT, one_joint
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 _COMMAND, _STATE = "command_interface", "state_interface"
@@ -41,7 +42,8 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
-                yield Problem(it, f"{it.get('name')} is {text!r}, which is no number", "", hint)
+                message = f"{it.get('name')} is {text!r}, which is no number"
+                yield Problem(it, message, "", hint, level=since_jazzy(subject))
 
 
 def _params(system: _Element) -> Iterator[_Element]:
