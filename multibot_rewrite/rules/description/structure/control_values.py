@@ -37,13 +37,16 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
         for name, words in _WHOLE.items():
             text = system.get(name, "0")
             if not text.isdigit() and "$" not in text:
-                yield Problem(system, f"{name} is {text!r}, not {words}", name)
+                message = f"{name} is {text!r}, not {words}"
+                yield Problem(system, message, name, level=since_jazzy(subject))
         for it in _params(system):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
                 message = f"{it.get('name')} is {text!r}, which is no number"
-                yield Problem(it, message, "", hint, level=since_jazzy(subject))
+                # Humble keeps min and max and reads neither (component_parser.cpp:261).
+                level = since_jazzy(subject) if it.get("name") != "initial_value" else ""
+                yield Problem(it, message, "", hint, level=level)
 
 
 def _params(system: _Element) -> Iterator[_Element]:
