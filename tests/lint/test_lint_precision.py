@@ -53,6 +53,7 @@ HALVES = {
     "kept": "18 kept, once",
     "worked-3": "15 worked on, at first sight",
     "kept-3": "15 kept, once",
+    "fresh-4": "16 more after the mends, once",
 }
 
 
