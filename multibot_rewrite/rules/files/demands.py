@@ -132,8 +132,8 @@ def value_of(section: Section, name: str) -> Value | None:
     WARNING,
     what="A parameter has no effect, or fails, with the value of another parameter of its node. "
     "Examples are an initial pose without set_initial_pose and the config of an input that is not "
-    "there. Others are frames of an EKF that have to differ, a transform from a frame to itself, and "
-    "a world_frame that is neither map_frame nor odom_frame.",
+    "there. Others are two equal frames of an EKF that must differ, and a world_frame that is "
+    "neither map_frame nor odom_frame. A transform from a frame to itself is another.",
     why="The node says little or nothing: amcl waits for a pose, an EKF fuses nothing or sends no "
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "

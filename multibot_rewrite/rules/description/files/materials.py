@@ -25,7 +25,7 @@ Look = tuple[tuple[float, ...] | str, str]
     "MB131",
     "undefined-material",
     WARNING,
-    what="A visual refers to a material that neither the robot nor an earlier visual defines, or a "
+    what="A visual uses a material that neither the robot nor an earlier visual defines. Or a "
     "material of the robot has neither a color nor a texture.",
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",

@@ -132,7 +132,8 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
     for first, *others in lost.values():
         near = _nearest(first)
-        hint = f"did you mean {near!r}?" if near else f"looked in {first.folders[0]}"
+        looked = f"correct the path, or add the file; looked in {first.folders[0]}"
+        hint = f"did you mean {near!r}?" if near else looked
         more = f", nor do {len(others)} more in its folder" if others else ""
         message = f"{first.used.name!r} does not exist{more}"
         # A whole folder may be made or loaded by the build; who reads a relative path knows from where.

@@ -47,7 +47,7 @@ DENSEST, MASSIVE = 25_000.0, 5.0
     WARNING,
     what="The inertia of a link that moves on its own is 0.",
     why="MuJoCo rejects the file ('mass and inertia of moving bodies must be larger than "
-    "mjMINVAL'); sdformat accepts it, and the physics engine divides a torque by 0.",
+    "mjMINVAL'). sdformat accepts it, and the physics engine divides a torque by 0.",
     fix="Use the inertia of a box or a cylinder with that mass and size.",
     bad=moving_link(an_inertial(inertia=diagonal("0", "0", "0"))),
     good=moving_link(an_inertial()),
@@ -72,7 +72,7 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     "MB606",
     "impossible-inertia",
     ERROR,
-    what="The inertia of a link is physically impossible: about some axis it is negative, or one "
+    what="The inertia of a link is physically impossible. It is negative about some axis, or one "
     "principal moment is larger than the sum of the two others. It is a warning where simulators "
     "merge the link with others, and where Gazebo Classic may read it.",
     why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum. And so"

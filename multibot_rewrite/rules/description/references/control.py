@@ -56,7 +56,7 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="A joint in a <ros2_control> is fixed.",
     why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
-    "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
+    "sense in ros2_control'). Gazebo removes fixed joints before it looks for them.",
     fix="Remove the joint, or give it a type that moves.",
     bad=FIXED + a_system('<joint name="j"/>'),
     good=ARM + a_system('<joint name="j"/>'),
@@ -174,9 +174,12 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
-        message = f"nothing drives {len(left)} joints that move: {names}"
+        message = f"nothing drives the joint{'s' * (len(left) > 1)} {names}"
         yield Problem(
-            left[0].element, message, "name", "passive joints need a published state as well"
+            left[0].element,
+            message,
+            "name",
+            "add to <ros2_control> what moves; publish the state of a passive joint",
         )
 
 

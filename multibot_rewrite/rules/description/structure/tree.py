@@ -188,8 +188,8 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     "joint-to-itself",
     ERROR,
     what="A joint's parent and child are the same link.",
-    why="For urdfdom the link has a parent and is not a root: if it should be the root, urdfdom "
-    "rejects the file ('No root link found'); any other link is left out of tf and Gazebo.",
+    why="For urdfdom the link has a parent and is not a root. If it should be the root, urdfdom "
+    "rejects the file ('No root link found'). Any other link is missing in tf and Gazebo.",
     fix="Correct the parent link.",
     bad=a_link("a") + fixed_joint("j", "a", "a"),
     good=one_joint("fixed"),
