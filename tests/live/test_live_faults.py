@@ -1,6 +1,6 @@
 """A planned fleet on a real graph, as it should be and with one fault each: found and named.
 
-Side by side, each on a domain of its own; in the deep run seven starts, three looks at each.
+Side by side, each on a domain of its own; in the deep run two starts, three looks at each.
 """
 
 from __future__ import annotations
@@ -37,9 +37,8 @@ GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
 TF = "tf2_msgs/msg/TFMessage"
-ROUNDS, LOOKS = 7, 3
-# The first ones are enough for a usual run; the deep one has all.
-AT_ONCE, USUAL = 6, 3
+ROUNDS, LOOKS = 2, 3
+AT_ONCE = 6
 # Robot -> node -> what it has, as live_fleet takes it.
 Fleet = dict[str, dict[str, dict[str, Any]]]
 
@@ -197,6 +196,10 @@ SCENARIOS = (
 )  # fmt: skip
 
 
+# Enough for a usual run; the deep one has all.
+USUAL = [it for it in SCENARIOS if it.name in ("healthy L3", "leak")]
+
+
 class Outcome(NamedTuple):
     code: int
     found: frozenset[tuple[str, str]]
@@ -244,10 +247,10 @@ def checked(
 
 @pytest.fixture(scope="module")
 def once(needed: Mapping[str, str]) -> dict[str, list[Outcome]]:
-    return checked(SCENARIOS[:USUAL], needed)
+    return checked(USUAL, needed)
 
 
-@pytest.mark.parametrize("scenario", SCENARIOS[:USUAL], ids=lambda scenario: scenario.name)
+@pytest.mark.parametrize("scenario", USUAL, ids=lambda scenario: scenario.name)
 def test_a_fault_is_found_and_named_and_nothing_else(
     scenario: Scenario, once: dict[str, list[Outcome]]
 ) -> None:
