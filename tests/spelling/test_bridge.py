@@ -129,7 +129,7 @@ def test_a_topic_that_is_made_of_two_elements() -> None:
     )
     bridged, _ = fleet("L1", f'<robot name="q"><link name="b"/><gazebo>{plugin}</gazebo></robot>')
     found = {it.gz_type: it.gz for it in bridged if it.robot == "robot1"}
-    assert found == {"gz.msgs.Twist": "robot1/quad/twist", "gz.msgs.Boolean": "robot1/quad/enable"}
+    assert found == {"gz.msgs.Twist": "quad_robot1/twist", "gz.msgs.Boolean": "quad_robot1/enable"}
 
 
 def names(layout: str) -> dict[str, str]:
