@@ -30,6 +30,8 @@ MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy"}
 # How a question which description is meant ends: a user names the one that is meant.
 _NAMED = re.compile(r"name one: multibot init (\S+)")
+# Where compiled modules are kept from run to run.
+COMPILED = os.path.join(tempfile.gettempdir(), "multibot_strangers_compiled")
 # Seconds after which a command is ended.
 PATIENCE = 1800
 # Letters of a reason in the table.
@@ -101,7 +103,9 @@ def _built(it: Stranger, made: Ran, fleet: Path, release: str, checkout: Path) -
 
 def run(command: Sequence[str], release: str) -> Ran:
     """Run a command without a terminal."""
-    environ = {**os.environ, "ROS_DISTRO": release}
+    # An installed package has its modules compiled.
+    compiled = {"PYTHONPYCACHEPREFIX": COMPILED, "PYTHONDONTWRITEBYTECODE": ""}
+    environ = {**os.environ, **compiled, "ROS_DISTRO": release}
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
         child = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environ

@@ -149,7 +149,7 @@ def _plugin(
     space: str | None,
 ) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for element, default, ros_type, gz_type, way in topics:
-        given = text_at(plugin, element)
+        given = _given(plugin, element, default)
         name = (
             _below(space, given, default) if space != "" else given or default.format(model=model)
         )
@@ -163,6 +163,15 @@ def _plugin(
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+
+
+def _given(plugin: etree._Element, element: str, default: str) -> str:
+    """The topic that a plugin is given; below what another element says where it is made of both."""
+    above, slash, own = element.rpartition("/")
+    if not slash:
+        return text_at(plugin, element)
+    front = text_at(plugin, above)
+    return f"{front}/{text_at(plugin, own) or default}" if front else ""
 
 
 def _below(space: str | None, given: str, default: str) -> str:

@@ -155,10 +155,14 @@ def frames_of(
     """A robot's own frames: those of its description, and those its nodes send besides.
 
     A ``<frame>`` of an SDF is not on tf: sdformat_urdf (jazzy, sdformat_urdf.cpp) makes a URDF of links
-    and joints.
+    and joints. Nor is a link that no joint has beside others, as that of a model in the model.
     """
-    own = () if inventory.document.root.tag == "sdf" else inventory.declared["frame"]
-    declared = (*links_of(inventory, naming, robot), *own)
-    ends = (frame for edge in sent for frame in (edge.parent, edge.child))
+    links = links_of(inventory, naming, robot)
+    ends = [frame for edge in sent for frame in (edge.parent, edge.child)]
+    if inventory.document.root.tag == "sdf":
+        joined = [it for it in links if it in ends]
+        declared = joined or links[:1]
+    else:
+        declared = [*links, *inventory.declared["frame"]]
     frames = dict.fromkeys((*declared, *ends))
     return tuple(frame for frame in frames if frame not in naming.shared_frames)

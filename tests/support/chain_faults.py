@@ -75,6 +75,11 @@ def chain_rows() -> tuple[Fault, ...]:
             "MG308", ("/robot2/twist_mux", "/robot2/cmd_vel_out:=/robot2/diff_drive/cmd_vel"),
         ),
         Fault(
+            "the drive has a topic of its own", nav,
+            renamed("/robot2/cmd_vel", "/robot2/diff_drive/cmd_vel", "/robot2/diff_drive"),
+            "MG308", ("/robot2/collision_monitor", "/robot2/diff_drive/cmd_vel"),
+        ),
+        Fault(
             "a start pose to initial_pose", nav,
             added("/starter", (PUBLISHES, "/robot2/initial_pose", START)),
             "MG308", ("/starter", "/robot2/initialpose"),

@@ -157,10 +157,11 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
         except InputError as error:
             left[path] = str(error)
             continue
-        read.append(fitting(robot, path, nodes, known, found.bridge))
+        one = fitting(robot, path, nodes, known, found.bridge)
+        read.append(one._replace(given=path in given))
     loaded = {*_loaded(robot)}
     meant = {it.path for it in read if it.path in found.meant or os.path.abspath(it.path) in loaded}
-    order = sorted(read, key=lambda it: (it.path not in meant, len(it.strange)))
+    order = sorted(read, key=lambda it: (it.path not in meant, it.rank))
     settled = {node for it in order if it.path in meant for node in it.nodes}
     check_winner([it for it in order if not it.nodes & settled])
     yield from order
@@ -172,7 +173,7 @@ def _sections(
     """Parameter files with the nodes that they are for; one that has a node of an earlier one is left
     out."""
     before: dict[str, str] = {}
-    for path, names, _ in read:
+    for path, names, *_ in read:
         again = sorted(names & before.keys())
         if again:
             left[path] = f"{os.path.basename(before[again[0]])} has parameters of {again[0]}, too"

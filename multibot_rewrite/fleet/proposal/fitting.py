@@ -22,11 +22,18 @@ _MORE = 2
 
 
 class Fitting(NamedTuple):
-    """A parameter file: the nodes that it is for, and its names that the robot has not."""
+    """A parameter file: the nodes that it is for, its names that the robot has not, and whether a
+    launch file gives it to a node."""
 
     path: str
     nodes: frozenset[str]
     strange: frozenset[str]
+    given: bool = False
+
+    @property
+    def rank(self) -> tuple[bool, bool, int]:
+        """The first of these go best with the robot; raises nothing."""
+        return bool(self.strange), not self.given, len(self.strange)
 
 
 def fitting(
@@ -82,7 +89,7 @@ def check_winner(its: Sequence[Fitting]) -> None:
 
 
 def _is_rival(it: Fitting, best: Fitting) -> bool:
-    return len(it.strange) <= _MORE * len(best.strange)
+    return it.given == best.given and len(it.strange) <= _MORE * len(best.strange)
 
 
 def _shown(names: Iterable[str]) -> str:

@@ -131,10 +131,15 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         for it in moving
         if seen.robot(it.name) == robot and not it.publishers and kinds & _kinds(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
-        # Of a drive that runs for certain what it reads in vain is the finding.
-        if chosen or not any(end.sure == RUNS for end in it.subscribers)
+        # What a drive that runs for certain reads in vain is the finding, but for a topic of its own.
+        if chosen or not any(end.sure == RUNS and not _is_own(end) for end in it.subscribers)
     )
     return next(drives, "")
+
+
+def _is_own(end: End) -> bool:
+    """Is the topic below its node: nobody is asked for it, since people send there, too?"""
+    return end.name.startswith(f"{end.node}/")
 
 
 def _kinds(ends: Ends) -> set[str]:
