@@ -208,4 +208,4 @@ def test_all_real_files(tmp_path: Path) -> None:
     found = [it for share, policy in every for it in cases(dict(share), [policy])]
     told, count = wrong(found, tmp_path)
     assert told == []
-    assert count > 250
+    assert count > 200
