@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
+from functools import partial
 from importlib.util import find_spec
+from inspect import isfunction
 from pathlib import Path
 
 import pytest
 import tf2_build
+import yaml
 from hypothesis import HealthCheck, Phase, settings
 from paths import CORPUS
 from real_robots import WHEELS, corpus_files, wheel_files
 
-REAL = "real launch"
+REAL, TESTS = "real launch", Path(__file__).parent
 # Files of tests that need more than an Ubuntu has: readers of what is written.
 READERS = {
     "cli/test_findings.py": ("junitparser",),
@@ -34,13 +38,15 @@ def pytest_report_header() -> str:
 
 settings.register_profile(
     "repeatable",
-    max_examples=40,
+    max_examples=25,
     derandomize=True,
     deadline=None,
     phases=(Phase.explicit, Phase.generate, Phase.shrink),
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("repeatable")
+# What tests read of YAML is read by libyaml: ten times sooner.
+yaml.safe_load = partial(yaml.load, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 # Thousands of tests and the syntax trees of the package live to the end: without this every second
 # of four goes into looking through them for what could be thrown away.
 gc.set_threshold(100_000, 50, 100)
@@ -56,32 +62,74 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
-FEW = 4
+FEW = 3
 # So many at most are in the usual run.
 MANY = 20
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
+# What -m asks of the fast run, and of the usual one, and the marks that leave a test out.
+LEFT_OUT = {
+    "not live and not slow": {"live", "slow", "more", "deep"},
+    "not deep": {"deep"},
+}
+MARKED = re.compile(r"^pytestmark = \[?\s*((?:pytest\.mark\.\w+,?\s*)+)", re.MULTILINE)
 
-    Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. In
+
+def _left_out(config: pytest.Config) -> set[str]:
+    """The marks of tests that need not even be made: two of three are in no fast run."""
+    named = any("::" in it for it in config.args)
+    return set() if named else LEFT_OUT.get(config.option.markexpr, set())
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """A file whose mark leaves all of it out is not imported."""
+    without = _left_out(config)
+    for path in TESTS.rglob("test_*.py") if without else ():
+        found = MARKED.search(path.read_text())
+        if found and without & set(re.findall(r"\w+", found[1])):
+            collect_ignore.append(str(path.relative_to(TESTS)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pycollect_makeitem(collector: pytest.Collector, obj: object) -> list[pytest.Item] | None:
+    """Nothing of a function that is left out."""
+    marks = getattr(obj, "pytestmark", ()) if isfunction(obj) else ()
+    return [] if _left_out(collector.config) & {it.name for it in marks} else None
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> Iterator[None]:
+    """Of the many rows of a test a few are in the fast run, spread evenly: the others are ``more``. In
     the usual run are up to MANY, of those with ``sample(m)`` the first of every m.
     """
-    names = [item.nodeid.partition("[")[0] for item in items]
-    rows, seen = Counter(names), Counter[str]()
-    for item, name in zip(items, names, strict=True):
-        marks, at = {it.name: it for it in item.iter_markers()}, seen[name]
-        seen[name] += 1
-        sample = marks.get("sample")
-        left_out = at % -(-rows[name] // (1 if sample else FEW))
-        more = left_out and marks.keys().isdisjoint(("slow", "live", "deep"))
-        usual = sample.args[0] if sample else -(-rows[name] // MANY)
-        deep = left_out and at % usual
-        slow = more or deep or {"more", "deep"} & marks.keys()
-        for mark, has in (("more", more), ("deep", deep), ("slow", slow)):
-            if has:
-                item.add_marker(mark)
+    yield
+    without, rows = _left_out(metafunc.config), metafunc._calls
+    marks = {it.name: it for it in metafunc.definition.iter_markers()}
+    for at, row in enumerate(rows):
+        row.marks.extend(_marks_of_row(at, len(rows), marks, {it.name for it in row.marks}))
+    rows[:] = [it for it in rows if without.isdisjoint(m.name for m in it.marks)] or rows[:1]
+
+
+def _marks_of_row(
+    at: int, count: int, marks: Mapping[str, pytest.Mark], own: Collection[str]
+) -> Iterator[pytest.Mark]:
+    sample, named = marks.get("sample"), {*marks, *own}
+    if not at % -(-count // (1 if sample else FEW)):
+        return
+    if named.isdisjoint(("slow", "live", "deep")):
+        yield pytest.mark.more.mark
+        yield pytest.mark.slow.mark
+    if at % (sample.args[0] if sample else -(-count // MANY)):
+        yield pytest.mark.deep.mark
+        yield pytest.mark.slow.mark
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
+    for item in items:
+        if {"more", "deep"} & {it.name for it in item.iter_markers()}:
+            item.add_marker("slow")
     # Before others sort and mark thousands of tests that nobody asked for.
     config.pluginmanager.getplugin("mark").pytest_collection_modifyitems(items, config)
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import importlib.util
 import shutil
-import subprocess
-import sys
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import fleet
@@ -17,6 +17,8 @@ import rcl_names
 import verdict
 from paths import ROOT
 from planted import FAULTS, Spoiled
+
+from multibot_rewrite.cli import multibot
 
 pytestmark = [
     pytest.mark.live,
@@ -37,22 +39,23 @@ EXAMPLES = {
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The folders that ``multibot build`` writes for each example."""
+def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder that ``multibot build`` writes for an example."""
     folder = tmp_path_factory.mktemp("drive")
-    for name in EXAMPLES:
+
+    @cache
+    def of(name: str) -> Path:
         file = ROOT / "examples" / name / "fleet.yaml"
-        command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "build", str(file)]
-        done = subprocess.run(
-            [*command, "-o", str(folder / name)], capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
-    return {name: folder / name for name in EXAMPLES}
+        assert multibot.main(["build", str(file), "-o", str(folder / name), "-q"]) == 0
+        return folder / name
+
+    return of
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_a_built_fleet_starts_and_drives(name: str, built: dict[str, Path]) -> None:
-    found = fleet.read(built[name], "lyrical")
+def test_a_built_fleet_starts_and_drives(name: str, built: Callable[[str], Path]) -> None:
+    found = fleet.read(built(name), "lyrical")
     assert verdict.judged(found) == ()
     assert {robot: verdict.said(it) for robot, it in verdict.done(found).items()} == EXAMPLES[name]
     assert found.unknown == ()
@@ -60,9 +63,11 @@ def test_a_built_fleet_starts_and_drives(name: str, built: dict[str, Path]) -> N
 
 @pytest.mark.sample(6)
 @pytest.mark.parametrize("it", FAULTS, ids=[f"{at} {it.why}" for at, it in enumerate(FAULTS)])
-def test_a_spoiled_fleet_does_not(it: Spoiled, built: dict[str, Path], tmp_path: Path) -> None:
+def test_a_spoiled_fleet_does_not(
+    it: Spoiled, built: Callable[[str], Path], tmp_path: Path
+) -> None:
     folder = tmp_path / "fleet"
-    shutil.copytree(built[it.example], folder)
+    shutil.copytree(built(it.example), folder)
     text = (folder / it.file).read_text()
     assert it.old in text
     (folder / it.file).write_text(text.replace(it.old, it.new))

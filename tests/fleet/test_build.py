@@ -269,6 +269,7 @@ def child(arguments: Sequence[str], cwd: Path, **env: str) -> subprocess.Complet
     )
 
 
+@pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("text", [SMALL, mixed()], ids=["small", "mixed"])
 def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_path: Path) -> None:
@@ -602,7 +603,7 @@ def until_killed(out: Path, number: int, runs: int, seed: int) -> int:
     "number", [signal.SIGTERM, pytest.param(signal.SIGKILL, marks=pytest.mark.deep)]
 )
 def test_a_killed_build_leaves_old_or_new(number: int, out: Path) -> None:
-    until_killed(out, number, 4, seed=number)
+    until_killed(out, number, 2, seed=number)
 
 
 @pytest.mark.deep
@@ -614,7 +615,7 @@ def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])

@@ -62,7 +62,7 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
 
 
 @pytest.mark.more
-@pytest.mark.sample(5)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("topic", ["scan", "/scan"])
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
 @pytest.mark.parametrize(

@@ -19,8 +19,6 @@ from junitparser import Failure, JUnitXml
 from lxml import etree
 from markdown_it import MarkdownIt
 from no_workers import lint_in_this_process
-from pydantic import BaseModel
-from sarif_pydantic import Sarif
 
 from multibot_rewrite.base.findings import formats
 from multibot_rewrite.base.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
@@ -359,6 +357,8 @@ def unknown(model: object) -> set[str]:
     """Keys that the models of SARIF do not know."""
     if isinstance(model, list):
         return {key for item in model for key in unknown(item)}
+    from pydantic import BaseModel
+
     if not isinstance(model, BaseModel):
         return set()
     inside = (getattr(model, name) for name in type(model).model_fields)
@@ -368,6 +368,8 @@ def unknown(model: object) -> set[str]:
 @pytest.mark.more
 @pytest.mark.sample(1)
 def test_sarif_holds_by_its_models(linted: Linted) -> None:
+    from sarif_pydantic import Sarif
+
     log = Sarif.model_validate_json(rendered("sarif", *with_fixes(linted)))
     # They lack this one, which the schema has.
     assert unknown(log) - {"columnKind"} == set()

@@ -230,17 +230,18 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("graph", "more", "code"),
+    ("fault", "more", "code"),
     [
-        (faulty("MG402"), [], 1),
-        (faulty("MG312", "warning"), [], 0),
-        (faulty("MG312", "warning"), ["--fail-on", "warning"], 1),
-        (faulty("MG402"), ["--ignore", "MG402"], 0),
-        (faulty("MG402"), ["--select", "MG3"], 0),
+        (("MG402", "error"), [], 1),
+        (("MG312", "warning"), [], 0),
+        (("MG312", "warning"), ["--fail-on", "warning"], 1),
+        (("MG402", "error"), ["--ignore", "MG402"], 0),
+        (("MG402", "error"), ["--select", "MG3"], 0),
     ],
 )
-def test_the_exit_code(graph: System, more: list[str], code: int, tmp_path: Path) -> None:
-    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph), *more]) == code
+def test_the_exit_code(fault: tuple[str, str], more: list[str], code: int, tmp_path: Path) -> None:
+    graph = saved(tmp_path, faulty(*fault))
+    assert multibot.main(["check", "--snapshot", graph, *more]) == code
 
 
 def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:

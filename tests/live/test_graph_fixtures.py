@@ -80,7 +80,7 @@ def test_a_broken_graph_gives_exactly_its_lines(case: Case, capsys: CaptureFixtu
     assert code == (1 if ": error: " in out else 0)
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_making_the_files_anew_changes_none_of_them(tmp_path: Path) -> None:
     """Whoever adds a case gets no other file into the change."""
     guides.copy_repository(tmp_path)

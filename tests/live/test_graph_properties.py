@@ -122,7 +122,7 @@ def own(topic: str, robot: str, naming: Naming) -> str:
     return there.spell(topic, robot) if there else f"/{robot}{topic}"
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(fleets())
 def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
     """But where the plan itself has a reader or client whose name no node sends or serves."""
@@ -136,7 +136,7 @@ def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
     assert not {(it.code, it.names[0]) for it in found} & sent_by_plan
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(fleets(), st.data())
 def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataObject) -> None:
     planned = [(w.node, w.kind, w.role, w.name) for w in fleet.plan.ends]
@@ -153,7 +153,7 @@ def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataO
     assert any(end[3] in finding.message for finding in found)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(fleets(), st.data())
 def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -> None:
     robot = data.draw(st.sampled_from(fleet.plan.robots))
@@ -168,7 +168,7 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
     ]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(fleets(), st.data())
 def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject) -> None:
     if not fleet.graph.edges:
@@ -179,7 +179,7 @@ def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject)
     assert "MG401" in {finding.code for finding in found}
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(fleets())
 def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
     for text in (to_yaml(fleet.plan), plan_to_json(fleet.plan)):
@@ -257,7 +257,7 @@ def anything(draw: st.DrawFn) -> Fleet:
     return Fleet(plan, graph)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(anything())
 def test_each_finding_is_reported_once_for_any_graph(fleet: Fleet) -> None:
     found = check(fleet.plan, fleet.graph)

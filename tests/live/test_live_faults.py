@@ -36,9 +36,7 @@ GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
 TF = "tf2_msgs/msg/TFMessage"
-LOOKS = 3
-# The first ones are enough for a usual run; the deep one has all.
-AT_ONCE, USUAL = 6, 3
+LOOKS, AT_ONCE = 3, 6
 # Robot -> node -> what it has, as live_fleet takes it.
 Fleet = dict[str, dict[str, dict[str, Any]]]
 
@@ -196,6 +194,10 @@ SCENARIOS = (
 )  # fmt: skip
 
 
+# Enough for a usual run; the deep one has all.
+USUAL = [it for it in SCENARIOS if it.name in ("healthy L3", "leak")]
+
+
 class Outcome(NamedTuple):
     code: int
     found: frozenset[tuple[str, str]]
@@ -243,10 +245,10 @@ def checked(
 
 @pytest.fixture(scope="module")
 def once(needed: Mapping[str, str]) -> dict[str, list[Outcome]]:
-    return checked(SCENARIOS[:USUAL], needed)
+    return checked(USUAL, needed)
 
 
-@pytest.mark.parametrize("scenario", SCENARIOS[:USUAL], ids=lambda scenario: scenario.name)
+@pytest.mark.parametrize("scenario", USUAL, ids=lambda scenario: scenario.name)
 def test_a_fault_is_found_and_named_and_nothing_else(
     scenario: Scenario, once: dict[str, list[Outcome]]
 ) -> None:

@@ -6,8 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -28,7 +27,6 @@ COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")
 STATE = (*PAIR, "--stack", "robot_state", "--layout")
-Done = Mapping[str, subprocess.CompletedProcess[str]]
 
 
 def domain(offset: int) -> int:
@@ -46,19 +44,6 @@ def words_for(layout: str, folder: Path) -> tuple[str, ...]:
     """A rehearsal of a layout, with what it writes."""
     written = ("--save-snapshot", str(folder / layout), "--report", str(folder / f"{layout}.html"))
     return (*PAIR, "--stack", "nav2", "--layout", layout, "--distro", "lyrical", *written)
-
-
-@pytest.fixture(scope="module")
-def rehearsed(tf2: dict[str, str]) -> Done:
-    """What is rehearsed side by side: most of it is waiting."""
-    leaking = (*STATE, "tf-per-robot", "--without-rules", "all", "-v")
-    runs = {"leaking": (leaking, {}), "own tf": ((*STATE, "L3"), tf2)}
-    with ThreadPoolExecutor() as pool:
-        made = {
-            name: pool.submit(rehearse, at, *words, **env)
-            for at, (name, (words, env)) in enumerate(runs.items())
-        }
-    return {name: it.result() for name, it in made.items()}
 
 
 @pytest.mark.deep
@@ -93,8 +78,9 @@ def actions(graph: System) -> set[str]:
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 
-def test_without_rules_it_leaks_and_is_reported(rehearsed: Done) -> None:
-    done = rehearsed["leaking"]
+@pytest.mark.deep
+def test_without_rules_it_leaks_and_is_reported() -> None:
+    done = rehearse(1, *STATE, "tf-per-robot", "--without-rules", "all", "-v")
     assert done.returncode == 1, done.stderr
     assert "graph: error: MG402 robot1 and robot2 send frames without" in done.stdout
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
@@ -127,10 +113,10 @@ def test_many_robots_share_processes() -> None:
     assert "12 robots, 0 findings: as planned" in done.stderr
 
 
-def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str], rehearsed: Done) -> None:
+def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:
     if not tf2 and not find_spec("tf2_msgs"):
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
-    done = rehearsed["own tf"]
+    done = rehearse(2, *STATE, "L3", **tf2)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert "replaced by others" not in done.stderr
 

@@ -37,7 +37,7 @@ COMPOSED = ("jazzy", "nav2_composed", "")
 LEAKING = {TAG_ALONE: "diff_drive_controller", UNKNOWN: "controller_manager"}
 LEAKING[NOWHERE] = "diff_drive_controller"
 ALL = (AT_SPAWNER, TAG_ALONE, UNKNOWN, FORWARDED, FORWARDED_TO_UNKNOWN, NOWHERE, COMPOSED)
-USUAL = (AT_SPAWNER, TAG_ALONE, NOWHERE)
+USUAL = (AT_SPAWNER, NOWHERE)
 Case = tuple[str, str, str]
 
 

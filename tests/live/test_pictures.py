@@ -643,7 +643,7 @@ def test_names_from_the_graph_do_not_break_out() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(st.lists(st.text(max_size=20), min_size=6, max_size=6))
 def test_any_text_may_be_a_name(words: list[str]) -> None:
     node, topic, child, parent, robot, type_ = words

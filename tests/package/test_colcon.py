@@ -205,6 +205,7 @@ def test_both_manifests_ask_for_the_same_packages() -> None:
     assert ros == {names.get(it, f"python3-{it}") for it in pip}
 
 
+@pytest.mark.deep
 def test_pip_goes_by_pyproject_alone(tmp_path: Path) -> None:
     source, target = copied(tmp_path), tmp_path / "target"
     for name in ("README.md", "LICENSE"):

@@ -68,7 +68,13 @@ def test_every_command_with_a_prompt_is_a_transcript() -> None:
 
 @pytest.mark.slow
 @pytest.mark.live
-@pytest.mark.parametrize("heading", TRANSCRIPTS)
+@pytest.mark.parametrize(
+    "heading",
+    [
+        pytest.param(it, marks=[pytest.mark.deep] if page_commands.is_live(commands) else [])
+        for it, commands in TRANSCRIPTS.items()
+    ],
+)
 def test_a_transcript_of_the_readme_is_the_whole_output(
     heading: str, tmp_path: Path, tf2: dict[str, str]
 ) -> None:

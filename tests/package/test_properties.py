@@ -83,7 +83,7 @@ def dangling_meets(root: etree._Element, table: Names) -> bool:
 
 
 @given(random_robots(), options, robot_names)
-@settings(max_examples=60)
+@settings(max_examples=25)
 def test_the_laws_of_a_rewrite(robot: Robot, words: Options, name: str) -> None:
     """The same robot under new names, and back; what is told of is changed, and names alone."""
     result = attempt(robot, words, name)
@@ -110,7 +110,7 @@ def assert_names_alone(found: list[tuple[Slot, str]], name: str) -> None:
 
 
 @given(random_robots(), options, st.lists(robot_names, min_size=2, max_size=2, unique=True))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_two_robots_share_no_renamed_name(robot: Robot, words: Options, two: list[str]) -> None:
     try:
         results = list(rewrite_all(robot.text, two, again=True, **words))  # type: ignore[arg-type]
@@ -129,7 +129,7 @@ def renamed(source: bytes, result: Rewrite, kind: str) -> set[str]:
 
 
 @given(random_robots(), options, st.lists(robot_names, min_size=1, max_size=4, unique=True))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_many_at_once_are_each_alone(robot: Robot, words: Options, fleet: list[str]) -> None:
     try:
         together = list(rewrite_all(robot.text, fleet, again=True, **words))  # type: ignore[arg-type]
@@ -174,7 +174,7 @@ def verdict(robot: Robot, fleet: Sequence[str], words: Options) -> object:
     st.lists(odd_names, min_size=2, max_size=3, unique=True),
     st.booleans(),
 )
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_robots_place_in_the_call_does_not_matter(
     robot: Robot, words: Options, fleet: list[str], again: bool
 ) -> None:
@@ -184,7 +184,7 @@ def test_a_robots_place_in_the_call_does_not_matter(
 
 
 @given(random_robots())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
     nothing = make_naming()._replace(separators={})
     # Their frames are below the name of the model where the file leaves them out.
@@ -194,13 +194,13 @@ def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
 
 
 @given(random_robots(extras=False))
-@settings(max_examples=50)
+@settings(max_examples=25)
 def test_bare_frames_leave_a_plain_description_alone(robot: Robot) -> None:
     assert rewrite(robot.text, ROBOT, layout="L1", again=True).data == robot.text
 
 
 @given(random_robots(), options)
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_second_rewrite_needs_again(robot: Robot, words: Options) -> None:
     result = attempt(robot, words)
     assume(result is not None and any(True for _ in etree.fromstring(robot.text).iter("link")))
@@ -216,7 +216,7 @@ def graph_changed(result: Rewrite) -> bool:
 
 
 @given(st.text(max_size=12) | st.text("ab_1- /", max_size=6) | st.just("a" * 246))
-@settings(max_examples=60)
+@settings(max_examples=25)
 def test_any_text_is_a_robot_name_or_leads_to_one(text: str) -> None:
     valid = re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", text) is not None and len(text) <= 245
     if valid and "__" not in text:
@@ -230,7 +230,7 @@ def test_any_text_is_a_robot_name_or_leads_to_one(text: str) -> None:
 
 
 @given(st.text(max_size=8), st.sampled_from(("layout", "affix", "topics")))
-@settings(max_examples=50)
+@settings(max_examples=25)
 def test_an_unknown_word_is_a_usage_error(word: str, option: str) -> None:
     known = {*LAYOUTS, "postfix", "prefix", "namespace", ""}
     assume(word not in known)
@@ -251,7 +251,7 @@ def test_most_random_robots_are_rewritten() -> None:
     taken: list[bool] = []
 
     @given(random_robots(), options)
-    @settings(max_examples=50)
+    @settings(max_examples=25)
     def count(robot: Robot, words: Options) -> None:
         taken.append(attempt(robot, words) is not None)
 

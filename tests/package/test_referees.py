@@ -29,7 +29,7 @@ HAS_PIN = importlib.util.find_spec("pinocchio") is not None
 HAS_MUJOCO = importlib.util.find_spec("mujoco") is not None
 CHECK_URDF = shutil.which("check_urdf")
 OPTIONS: tuple[dict[str, str], ...] = ({}, {"layout": "L2", "affix": "prefix"})
-FEW, MANY = 12, 50
+FEW, MANY = 6, 50
 # Below this share of loadable files a referee says nothing about the rewrite.
 LEAST_LOADED = 0.6
 

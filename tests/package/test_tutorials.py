@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import NamedTuple
@@ -43,14 +42,12 @@ def follow(name: str, folder: Path, domain: int, more: Mapping[str, str]) -> Fol
 def followed(
     tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]
 ) -> Mapping[str, Followed]:
-    """All of them, side by side: most of a rehearsal is waiting."""
+    """All of them."""
     folder = tmp_path_factory.mktemp("tutorials")
-
-    def one(at: int, name: str) -> Followed:
-        return follow(name, folder / name, live_commands.domain(95 + at), tf2)
-
-    with ThreadPoolExecutor(len(PAGES)) as pool:
-        return dict(zip(PAGES, pool.map(one, range(len(PAGES)), PAGES), strict=True))
+    return {
+        name: follow(name, folder / name, live_commands.domain(95 + at), tf2)
+        for at, name in enumerate(PAGES)
+    }
 
 
 @pytest.mark.slow

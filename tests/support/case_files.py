@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,6 +35,7 @@ class Case(NamedTuple):
     output: bytes
 
 
+@cache
 def load_cases(home: Path = HOME) -> list[Case]:
     """Every case below ``home``; raises CaseError for an empty folder or a name used twice."""
     cases: dict[str, Case] = {}

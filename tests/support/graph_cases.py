@@ -9,6 +9,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import redirect_stdout
+from functools import cache
 from io import BytesIO, TextIOWrapper
 from typing import NamedTuple
 
@@ -65,6 +66,7 @@ class Case(NamedTuple):
         return f"{FOLDERS[self.layout]}/{self.code}"
 
 
+@cache
 def read_plan(layout: str) -> System:
     """The plan of a folder."""
     path = f"{FOLDERS[layout]}/plan.yaml"

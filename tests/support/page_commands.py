@@ -6,12 +6,17 @@ stands for a part of a line, ``[exit code 1]`` is of what does not end with 0.
 
 from __future__ import annotations
 
+import io
 import os
 import re
+import shlex
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -30,6 +35,7 @@ SAVED = re.compile(r"[Ss]ave it as `([\w.-]+)`:\n\n```\w+\n(.*?)^```$", re.S | r
 _STEP = re.compile(rf"{SAVED.pattern}|(^```console\n.*?^```$)", re.S | re.M)
 _LEFT_OUT = "..."
 _CODE = re.compile(r"\[exit code (\d+)\]")
+_IN_SHELL = re.compile(r"[|&;<>$*?`\n]")
 # Needs rclpy, and a domain of its own.
 LIVE = "multibot rehearse"
 
@@ -86,7 +92,11 @@ class Reader(NamedTuple):
     environ: Mapping[str, str]
 
     def run(self, command: str) -> subprocess.CompletedProcess[str]:
-        """What the command does here."""
+        """What the command does here: in this process where one of its own adds nothing."""
+        program, *words = shlex.split(command)
+        alone = threading.current_thread() is threading.main_thread()
+        if alone and program in MODULES and not (_IN_SHELL.search(command) or LIVE in command):
+            return self._run_here(program, words)
         return subprocess.run(
             ["bash", "-c", command],
             cwd=self.folder,
@@ -97,6 +107,25 @@ class Reader(NamedTuple):
             check=False,
             timeout=200,
         )
+
+    def _run_here(self, program: str, words: Sequence[str]) -> subprocess.CompletedProcess[str]:
+        printed = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
+        with (
+            pytest.MonkeyPatch.context() as patch,
+            redirect_stdout(printed),
+            redirect_stderr(printed),
+        ):
+            patch.chdir(self.folder)
+            for name in os.environ.keys() - self.environ.keys():
+                patch.delenv(name)
+            for name, value in self.environ.items():
+                patch.setenv(name, value)
+            try:
+                code = import_module(MODULES[program]).main(words)
+            except SystemExit as error:
+                code = error.code
+        text = printed.buffer.getvalue().decode()  # type: ignore[attr-defined]
+        return subprocess.CompletedProcess([program, *words], code, text)
 
 
 def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
@@ -137,8 +166,8 @@ def tried(
 ) -> Tried:
     """What the commands of each part of a page do, each part in a folder and domain of its own.
 
-    Parts are tried side by side: most of a rehearsal is waiting. Those that need rclpy are left out
-    where there is none.
+    Rehearsals are tried side by side: most of one is waiting. Those that need rclpy are left out where
+    there is none.
     """
     names = [it for it in pages if has_ros() or not is_live(pages[it])]
     readers = []
@@ -150,8 +179,14 @@ def tried(
     def one(name: str, there: Reader) -> list[tuple[Shown, subprocess.CompletedProcess[str]]]:
         return [(it, there.run(it.command)) for it in pages[name]]
 
+    live = [it for it in zip(names, readers, strict=True) if is_live(pages[it[0]])]
+    here = [it for it in zip(names, readers, strict=True) if it not in live]
     with ThreadPoolExecutor(6) as pool:
-        return dict(zip(names, pool.map(one, names, readers), strict=True))
+        found = list(pool.map(lambda it: one(*it), live))
+    return {
+        name: it
+        for (name, _), it in zip([*here, *live], [*(one(*it) for it in here), *found], strict=True)
+    }
 
 
 def assert_as_shown(name: str, found: Tried) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 from collections.abc import Iterator, Mapping
+from functools import cache
 from itertools import islice
 from pathlib import Path
 
@@ -20,12 +21,14 @@ WHEELS = (
 OPTIONAL_WHEELS = ("example-robot-data",)
 
 
+@cache
 def corpus_files() -> dict[str, Path]:
     """Every URDF of the corpus, by its path there; empty where there is none."""
     home = CORPUS / "urdf"
     return {str(path.relative_to(home)): path for path in sorted(home.rglob("*.urdf"))}
 
 
+@cache
 def wheel_files() -> dict[str, Path]:
     """Every URDF of the installed description wheels."""
     found: dict[str, Path] = {}

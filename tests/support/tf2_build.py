@@ -31,6 +31,8 @@ foreach(target ${targets})
     set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${folders}")
   endif()
 endforeach()
+# rclpy goes by C alone.
+list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "(introspection|support)_cpp")
 include_directories(${PYTHON_FOLDERS})
 rosidl_generate_interfaces(
   tf2_msgs msg/TFMessage.msg action/LookupTransform.action DEPENDENCIES geometry_msgs action_msgs)

@@ -10,7 +10,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary import advice, load_vocabulary
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def builtin_tree(vocabulary: tuple[str, ...], release: str) -> Tree:
     """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
     once."""

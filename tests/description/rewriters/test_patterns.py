@@ -135,7 +135,7 @@ def verdict(pattern: str, name: str) -> str:
         return "error"
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.skipif(GXX is None, reason="g++ is missing: apt install g++")
 def test_it_agrees_with_std_regex(tmp_path: Path) -> None:
     (tmp_path / "referee.cc").write_text(REFEREE)

@@ -206,6 +206,7 @@ def test_a_mesh_has_the_colour_of_its_material(tmp_path: Path) -> None:
     assert isinstance(made, Mesh) and made.colours == bytes((255, 0, 0)) * 3
 
 
+@pytest.mark.more
 def test_what_is_no_mesh_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert str(load_mesh(str(tmp_path / "none.stl"))).startswith("none.stl: ")
     points = PLY.replace("face 1", "face 0").replace("3 0 1 2\n", "")

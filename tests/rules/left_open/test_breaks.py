@@ -318,7 +318,7 @@ EVERY = [*((FILES, *it) for it in BREAKS), *((ARM_FILES, *it) for it in ARM_BREA
 
 
 @pytest.mark.more
-@pytest.mark.sample(5)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize(("files", "file", "old", "new", "code", "line", "other"), EVERY)
 def test_a_break_is_found_with_its_lines(
     files: dict[str, str],

@@ -154,7 +154,7 @@ __all__ = [
 HERE = os.path.dirname(__file__)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = True) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
     as they hold in a ``release``; with an empty one all of it, which no document can be read with.
