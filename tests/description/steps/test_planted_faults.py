@@ -84,10 +84,8 @@ def test_a_wrong_plan_of_a_case_is_refused(case: Case) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize(
-    "part", [0, *(pytest.param(it, marks=pytest.mark.deep) for it in range(1, 60))]
-)
-def test_a_wrong_text_or_plan_of_any_case_is_refused(part: int) -> None:
+@pytest.mark.parametrize("part", range(0, 60, 10))
+def test_a_wrong_text_or_plan_of_many_cases_is_refused(part: int) -> None:
     for case in CASES[part::60]:
         right = template(case)
         assert (case.name, proved_texts(right, case.name, 5)) == (case.name, [])

@@ -427,7 +427,7 @@ def test_libsdformat_sees_the_same_in_many(
     sdf_tool: Tool, models: dict[str, Path], options: Options, tmp_path: Path
 ) -> None:
     """It is a process five times a model."""
-    judge(sdf_tool, trials(models, options)[OPTIONS.index(options) :: 8], tmp_path)
+    judge(sdf_tool, trials(models, options)[OPTIONS.index(options) :: 16], tmp_path)
 
 
 @cache
