@@ -149,7 +149,8 @@ _FRICTION = ("mu1", "mu", "mu2")
     "MB636",
     "wheel-without-grip",
     WARNING,
-    what="A driven wheel has a friction of 0 or less: each of mu1 and mu2 in its <gazebo> block.",
+    what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block, without the "
+    "<fdir1> of wheels with rollers.",
     why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
     fix="Write 1.0 or so for both.",
     bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
@@ -165,9 +166,8 @@ def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     }
     for block in blocks:
         name = block.get("reference", "")
-        given = [number_at(block, it) or 0 for it in _FRICTION if block.find(it) is not None]
-        # A wheel with rollers has grip one way alone.
-        for tag in _FRICTION if name in wheels and max(given, default=1) <= 0 else ():
+        # A wheel with rollers has grip one way alone, along <fdir1> or across it.
+        for tag in _FRICTION if name in wheels and block.find("fdir1") is None else ():
             value, element = number_at(block, tag), block.find(tag)
             if value is not None and value <= 0 and element is not None:
                 message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"
