@@ -54,6 +54,7 @@ HALVES = {
     "worked-3": "15 worked on, at first sight",
     "kept-3": "15 kept, once",
     "fresh-4": "16 more after the mends, once",
+    "fresh-5": "8 more after those, once",
 }
 
 

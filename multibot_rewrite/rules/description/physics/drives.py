@@ -149,7 +149,8 @@ _FRICTION = ("mu1", "mu", "mu2")
     "MB636",
     "wheel-without-grip",
     WARNING,
-    what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block.",
+    what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block, without the "
+    "<fdir1> of wheels with rollers.",
     why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
     fix="Write 1.0 or so for both.",
     bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
@@ -165,7 +166,8 @@ def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     }
     for block in blocks:
         name = block.get("reference", "")
-        for tag in _FRICTION if name in wheels else ():
+        # A wheel with rollers has grip one way alone, along <fdir1> or across it.
+        for tag in _FRICTION if name in wheels and block.find("fdir1") is None else ():
             value, element = number_at(block, tag), block.find(tag)
             if value is not None and value <= 0 and element is not None:
                 message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"

@@ -38,14 +38,15 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
             text = system.get(name, "0")
             if not text.isdigit() and "$" not in text:
                 message = f"{name} is {text!r}, not {words}"
-                yield Problem(system, message, name, level=since_jazzy(subject))
+                yield Problem(system, message, name, level=NOTE if since_jazzy(subject) else "")
         for it in _params(system):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
                 message = f"{it.get('name')} is {text!r}, which is no number"
                 # Humble keeps min and max and reads neither (component_parser.cpp:261).
-                level = since_jazzy(subject) if it.get("name") != "initial_value" else ""
+                unread = it.get("name") != "initial_value" and since_jazzy(subject)
+                level = NOTE if unread else ""
                 yield Problem(it, message, "", hint, level=level)
 
 
