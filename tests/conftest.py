@@ -64,7 +64,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
 FEW = 3
 # So many at most are in the usual run.
-MANY = 20
+MANY = 12
 
 
 # What -m asks of the fast run, and of the usual one, and the marks that leave a test out.
@@ -145,18 +145,25 @@ LIVE_FILES = (
     *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),
     *("test_tutorials", "test_walk"),
 )
+# Files whose tests look at the syntax trees of all sources, which are made once.
+SOURCES_FILES = (
+    *("test_architecture", "test_bounded", "test_conventions", "test_dependencies", "test_layers"),
+    *("test_plain_words", "test_record.", "test_releases_are_passed"),
+)
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """With ``-n 3`` the tests of a file stay together, and all files with nodes: two of them at once
-    would meet in a domain."""
+    """With ``-n 3`` the tests of a file stay together, all files with nodes: two of them at once would
+    meet in a domain, and those that need the same that costs much."""
     from xdist.scheduler import LoadFileScheduling
 
     class Scheduling(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            return "live" if any(word in file for word in LIVE_FILES) else file
+            groups = {"live": LIVE_FILES, "sources": SOURCES_FILES}
+            found = (it for it, words in groups.items() if any(word in file for word in words))
+            return next(found, file)
 
     return Scheduling(config, log)
 

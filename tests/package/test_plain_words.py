@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from parsed import sources
 from paths import ROOT
 
 from multibot_rewrite.base import other_words
@@ -58,8 +59,7 @@ def found_in(text: str) -> Iterator[str]:
 
 def messages() -> Iterator[tuple[str, str]]:
     """Every text of more than one word in the code that is no docstring: with file and line."""
-    for path in sorted((ROOT / "multibot_rewrite").rglob("*.py")):
-        tree = ast.parse(path.read_text())
+    for path, tree in sources().items():
         firsts = (getattr(it, "body", None) for it in ast.walk(tree))
         docs = {
             id(it[0].value)
@@ -74,7 +74,7 @@ def messages() -> Iterator[tuple[str, str]]:
                 and " " in text
                 and id(it) not in docs
             ):
-                yield f"{path.relative_to(ROOT)}:{it.lineno}", text
+                yield f"{path}:{it.lineno}", text
 
 
 def test_a_term_is_found_unless_it_is_plain_english() -> None:
