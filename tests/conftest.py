@@ -28,12 +28,13 @@ READERS = {
     "lint/test_lint_formats.py": ("junitparser", "markdown_it", "sarif_pydantic"),
     "lint/test_lint_hooks.py": ("junitparser",),
 }
-collect_ignore = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
+UNREAD = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
+collect_ignore = [*UNREAD]
 
 
 def pytest_report_header() -> str:
     """The files that are left out."""
-    return f"left out, no readers: {', '.join(collect_ignore)}" if collect_ignore else ""
+    return f"left out, no readers: {', '.join(UNREAD)}" if UNREAD else ""
 
 
 settings.register_profile(
@@ -76,7 +77,7 @@ MARKED = re.compile(r"^pytestmark = \[?\s*((?:pytest\.mark\.\w+,?\s*)+)", re.MUL
 
 
 def _left_out(config: pytest.Config) -> set[str]:
-    """The marks of tests that need not even be made: two of three are in no fast run."""
+    """The marks of tests that are not even made: two of three are in no fast run."""
     named = any("::" in it for it in config.args)
     return set() if named else LEFT_OUT.get(config.option.markexpr, set())
 
