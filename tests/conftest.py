@@ -149,7 +149,7 @@ LIVE_FILES = (
 # Files whose tests look at the syntax trees of all sources, which are made once.
 SOURCES_FILES = (
     *("test_architecture", "test_bounded", "test_conventions", "test_dependencies", "test_layers"),
-    *("test_plain_words", "test_record.", "test_releases_are_passed"),
+    *("test_plain_words", "test_record.", "test_releases_are_passed", "test_sentences"),
 )
 
 

@@ -201,7 +201,8 @@ TEAMS = {
         *("*controller_server*", "*behavior_server*", "*recoveries_server*", "*velocity_smoother*"),
         *("*collision_monitor*", "*docking_server*", "*following_server*", "*bt_navigator*"),
         *("*route_server*", "*planner_server*", "*waypoint_follower*", "*lifecycle_manager*"),
-        "*costmap*",
+        # Not costmap_filter_info_server: what it sends is for costmaps.
+        *("*costmap", "*costmap_[!f]*"),
     ),
     "MoveIt": ("*move_group*", "*servo*", "*moveit_*"),
 }

@@ -25,6 +25,10 @@ NAMESPACES = {
     "drake": "http://drake.mit.edu",
     **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint", "slider", "body")},
 }
+# What is wrong with a part.
+DASHES = "-- in a comment"
+LATE = "an XML declaration that is not at the very start"
+DEFAULT = "a default namespace, xmlns="
 # Before the prefix of anybody else that nothing declares.
 UNBOUND = "unbound:"
 # No robot has as many; lxml looks through all of them at each name.
@@ -118,12 +122,12 @@ def _mended(part: re.Match[bytes], first: int) -> tuple[bytes, str]:
     if text.startswith(b"<!--"):
         inner = text[4:-3]
         wrong = text.endswith(b"-->") and (b"--" in inner or inner.endswith(b"-"))
-        return b"<!--%s-->" % inner.replace(b"-", b"=") if wrong else text, "-- in a comment"
+        return b"<!--%s-->" % inner.replace(b"-", b"=") if wrong else text, DASHES
     if text.startswith(b"<?xml") and part.end() <= first and not _is_first(part):
-        return b" " * len(text), "an XML declaration that is not at the very start"
+        return b" " * len(text), LATE
     if not _is_tag(text) or b"xmlns" not in text:
         return text, ""
-    return _unspaced(text), "a default namespace, xmlns="
+    return _unspaced(text), DEFAULT
 
 
 def _is_first(part: re.Match[bytes]) -> bool:

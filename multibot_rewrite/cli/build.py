@@ -88,8 +88,8 @@ def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     paths |= {it.interface for it in plan.fleet.facts if it.interface}
     for it in plan.file.robots:
-        if it.parts:
-            paths = paths - {path for path, _ in it.filled} | {*it.files}
+        paths -= {path for path, _ in it.filled} - {*it.files}
+        paths |= {*it.files} if it.parts else set()
     return {path: read_file(path) for path in paths}
 
 

@@ -32,10 +32,14 @@ from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final, in_wo
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, doubts
+from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
+from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.index import NO_COUNTS
 from multibot_rewrite.system.records import System, answering
+
+ONE_VIEW: Mapping[int, System] = {}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -46,14 +50,41 @@ def run(options: argparse.Namespace) -> int:
         return unplanned.run(options)
     _check_use(options)
     plan = plan_of(options)
+    parts = by_domain(plan)
+    if parts and not options.bag:
+        if not options.watch:
+            return _apart(options, plan, parts)
+        plan = _part(options, parts)
     if options.watch:
         return _watch(options, _with_files(options, plan) if options.state else plan)
     if options.bag:
         return _recorded(options, plan)
-    graph = live.graph(options)
+    graph = live.graph(options, judge=lambda it: check(plan, it))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
     return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
+
+
+def _part(options: argparse.Namespace, parts: Mapping[int, System]) -> System:
+    """The part of the plan that is in the domain that the options name."""
+    known = ", ".join(map(str, parts))
+    if options.domain is None:
+        raise UsageError(f"--watch looks at one domain: give one with --domain ({known})")
+    if options.domain not in parts:
+        raise UsageError(f"--domain {options.domain}: the plan has no node there; it has {known}")
+    return parts[options.domain]
+
+
+def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
+    """The same of a plan whose robots are in several domains: all are looked at, side by side."""
+    if options.domain is not None:
+        parts = {options.domain: _part(options, parts)}
+    seen = live.graphs(options, parts)
+    if options.state or any(map(answering, seen.values())):
+        plan = _with_files(options, plan)
+    asked = _parameters(plan)
+    seen = {it: live.with_states(live.at(options, it), seen[it], asked) for it in seen}
+    return conclude(options, plan, side_by_side(seen), views=seen)
 
 
 def _with_files(options: argparse.Namespace, plan: System) -> System:
@@ -127,12 +158,15 @@ def conclude(
     graph: System,
     before: Sequence[Finding] = (),
     messages: Mapping[str, int] = NO_COUNTS,
+    views: Mapping[int, System] = ONE_VIEW,
 ) -> int:
     """Compare, report the findings, draw what is asked for; the exit code.
 
-    ``before`` are findings from before there was a graph, ``messages`` are counted for each topic.
+    ``before`` are findings from before there was a graph, ``messages`` are counted for each topic,
+    ``views`` has what was seen in each domain where there are several.
     """
-    found = chosen(options, check(plan, graph, messages))
+    compared = check_domains(plan, views) if views else check(plan, graph, messages)
+    found = chosen(options, compared)
     of_graph, gaps = [*before, *found], _gaps(options, plan)
     findings = [*of_graph, *gaps]
     about = About([plan_name(options)], robot_words(plan), plan.release)

@@ -35,7 +35,12 @@ from multibot_rewrite.fleet.proposal.propose import (
     with_arguments,
 )
 from multibot_rewrite.fleet.proposal.searching import Found
-from multibot_rewrite.fleet.proposal.trying import first_that_builds, in_layout, that_builds
+from multibot_rewrite.fleet.proposal.trying import (
+    as_named,
+    first_that_builds,
+    in_layout,
+    that_builds,
+)
 
 SIMULATORS = ("gazebo", "none")
 LEFT_OUT = "it was left out"
@@ -58,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         wanted = wanted._replace(each=wanted.each or 2)
         if seen.named:
-            made = _quietly(wanted, lambda it: that_builds(seen.robots, seen.found, it))
+            made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
     return _deliver(options, made)

@@ -10,16 +10,19 @@ from __future__ import annotations
 import argparse
 import gc
 import os
-from collections.abc import Collection, Generator, Mapping
+import sys
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping
 from math import inf
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import note, shown
+from multibot_rewrite.cli.output import is_screen, note, shown
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
+from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, NO_MORE, questions
@@ -50,11 +53,17 @@ def check_source(options: argparse.Namespace) -> None:
         raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
 
 
-def graph(options: argparse.Namespace, request: Request | None = None) -> System:
+# What is wrong with a view.
+Judge = Callable[[System], Iterable[Finding]]
+
+
+def graph(
+    options: argparse.Namespace, request: Request | None = None, judge: Judge | None = None
+) -> System:
     """The graph that the options name; raises Unusable, UsageError, InputError.
 
     A live one is looked at until it is quiet, unless ``request`` says otherwise: a second node of a
-    name or a leak may come after the planned nodes.
+    name or a leak may come after the planned nodes. Meanwhile a terminal shows what ``judge`` finds.
     """
     if options.snapshot:
         from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -75,8 +84,46 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> System
             return look(asked, _router(options))
         from multibot_rewrite.producers.ros.child import observe
 
-        tell = lambda text: show(f"{looking}: {text}")  # noqa: E731
+        def tell(said: str | System) -> None:
+            show(f"{looking}: {said if isinstance(said, str) else so_far(said, judge)}")
+
+        asked = asked._replace(shows=judge is not None and is_screen(sys.stderr))
         return observe(asked, environ(options.domain), tell)
+
+
+def so_far(seen: System, judge: Judge | None) -> str:
+    """What is wrong with a view that may not be whole: nothing of what is missing in it."""
+    found = [it for it in judge(seen) if it.level in (ERROR, WARNING)] if judge else []
+    sure = [it for it in found if it.code not in ABSENCE]
+    nodes = f"{plural(len(seen.nodes), 'node')} so far"
+    if not sure:
+        return f"{nodes}, nothing wrong"
+    first = min(sure, key=lambda it: it.level != ERROR)
+    more = f", and {plural(len(sure) - 1, 'more finding')}" if len(sure) > 1 else ""
+    return f"{nodes}; {first.code} {first.message}{more}"
+
+
+def at(options: argparse.Namespace, domain: int) -> argparse.Namespace:
+    """The options, for another domain."""
+    return argparse.Namespace(**{**vars(options), "domain": domain})
+
+
+def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, System]:
+    """The graph of each of these domains, looked at side by side, or those of the saved snapshots;
+    raises as ``graph``."""
+    if options.snapshot:
+        from multibot_rewrite.producers.snapshot_file import read_by_domain
+
+        saved = read_by_domain(options.snapshot)
+        if saved.keys() != {*domains}:
+            wanted, given = (", ".join(map(str, it)) for it in (domains, saved))
+            raise UsageError(f"snapshots of domains {given}: give one of each of {wanted}")
+        return saved
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(len(domains)) as pool:
+        looks = pool.map(lambda it: graph(at(options, it)), domains)
+        return dict(zip(domains, looks, strict=True))
 
 
 def with_states(

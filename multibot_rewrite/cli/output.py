@@ -10,7 +10,7 @@ import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TextIO, TypeVar
+from typing import TextIO, TypeGuard, TypeVar
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.printable import for_terminal, one_line
@@ -111,11 +111,16 @@ def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
     return track(items, doing, total, console=Console(stderr=True), transient=True)
 
 
+def is_screen(stream: TextIO | None) -> TypeGuard[TextIO]:
+    """Can a line on it be replaced by another?"""
+    return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
 def status() -> Callable[[str], None]:
     """What shows a line about the work, in the place of the one before; an empty one takes it away. It
     shows nothing where standard error is no terminal."""
     screen = sys.stderr
-    if screen is None or not screen.isatty() or os.environ.get("TERM") == "dumb":
+    if not is_screen(screen):
         return lambda _: None
     import shutil  # only a terminal has a width
 

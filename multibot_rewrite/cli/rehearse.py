@@ -5,20 +5,32 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli import fleet, live, pictures
-from multibot_rewrite.cli.check import conclude
+from multibot_rewrite.cli.check import ONE_VIEW, conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, expected
-from multibot_rewrite.live.rehearsal import bridge_stub, stub_nodes, with_substitutes
-from multibot_rewrite.live.staged import stage, staged
+from multibot_rewrite.live.rehearsal import (
+    StubNode,
+    bridge_stub,
+    domain_bridge_stubs,
+    stub_nodes,
+    with_substitutes,
+)
+from multibot_rewrite.live.staged import staged, stages
 from multibot_rewrite.spelling.transforms import Edges, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
+from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import System
+
+# Where a plan is of one domain, its number is none of a system.
+ONE = -1
 
 
 def run(options: argparse.Namespace) -> int:
@@ -28,18 +40,41 @@ def run(options: argparse.Namespace) -> int:
     # Nodes that stand in for others have none of their parameters.
     plan, table = expected(made)._replace(parameters=()), fleet.findings(options, made)
     edges, added = _edges(made)
-    nodes = [*stub_nodes(made.table, edges, _left_out(options)), *bridge_stub(plan.topics)]
-    environ = stage(options.domain)
-    note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
-    with shown("they start, and are looked for"):
-        seen, replaced = staged(nodes, environ, options.timeout or live.LOOK_SECONDS)
+    nodes = [*stub_nodes(made.table, edges, _left_out(options))]
+    seen, replaced = _played(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
-    graph, plan = _without_places(seen), with_substitutes(plan, replaced)
+    plan = with_substitutes(plan, replaced)
+    graph = side_by_side(seen) if plan.domains else seen[ONE]
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
     _note_substitutes(options, replaced)
-    return conclude(options, plan, graph, table)
+    return conclude(options, plan, graph, table, views=seen if plan.domains else ONE_VIEW)
+
+
+def _played(
+    options: argparse.Namespace, plan: System, nodes: Sequence[tuple[str, StubNode]]
+) -> tuple[dict[int, System], dict[str, str]]:
+    """What is seen of the stubs in each domain of the plan, and which types are replaced; the domains
+    that they are played in are free ones of this machine."""
+    parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
+    environs = stages(options.domain, len(parts))
+    casts = {
+        it: [
+            *(own for own in nodes if numbers.get(own[0], ONE) == it),
+            *bridge_stub(part.topics),
+            *domain_bridge_stubs(part),
+        ]
+        for it, part in parts.items()
+    }
+    where = ", ".join(it["ROS_DOMAIN_ID"] for it in environs)
+    count = plural(sum(map(len, casts.values())), "node")
+    note(options, f"{count} in domain{'s' * (len(environs) > 1)} {where}")
+    play = partial(staged, seconds=options.timeout or live.LOOK_SECONDS)
+    with shown("they start, and are looked for"), ThreadPoolExecutor(len(parts)) as pool:
+        played = dict(zip(parts, pool.map(play, casts.values(), environs), strict=True))
+    replaced = {old: new for _, own in played.values() for old, new in own.items()}
+    return {it: _without_places(seen) for it, (seen, _) in played.items()}, replaced
 
 
 def _left_out(options: argparse.Namespace) -> Sequence[str]:

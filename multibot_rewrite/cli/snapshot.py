@@ -7,6 +7,7 @@ import argparse
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import learn, live
@@ -98,9 +99,9 @@ def report(snapshot: System) -> Iterator[str | Grid]:
         yield ""
         tf = [(topic, str(times), ", ".join(who)) for (topic, who), times in sorted(heard.items())]
         yield Grid(("tf topic", "frames", "publishers"), tf)
-    if snapshot.heard:
+    if framed := [it[:2] for it in snapshot.heard if not (it.joints or it.topic == CLOCK)]:
         yield ""
-        yield Grid(("message on", "frame_id"), [it[:2] for it in snapshot.heard])
+        yield Grid(("message on", "frame_id"), framed)
     said = answering(snapshot)
     if said:
         yield ""

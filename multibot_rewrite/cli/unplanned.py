@@ -52,7 +52,8 @@ def _diagnosis(options: argparse.Namespace) -> Diagnosis:
     if options.bag:
         recording = read_bag(options.bag)
         return diagnose(as_snapshot(recording), counted(recording))
-    return diagnose(live.with_states(options, live.graph(options)))
+    seen = live.graph(options, judge=lambda it: diagnose(it).findings)
+    return diagnose(live.with_states(options, seen))
 
 
 def _check_use(options: argparse.Namespace) -> None:

@@ -114,7 +114,8 @@ def _with_beside(
     files = _controllers(given, made, tree)
     moveit = joined_moveit(_moveit(given, made, tree, trust))
     names = tuple(it.part.name for it in made.parts)
-    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *moveit.notes)
+    told = (f"{file}: {what}" for file, what in moveit.notes)
+    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told)
     notes = (*notes, *_met(made, tree))
     return Joined(made.data, semantics.data, files.data, names, notes, made.findings, moveit.files)
 

@@ -15,6 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.sources.read import is_xacro
+from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.file.fleet_file import input_files
@@ -27,6 +28,7 @@ from multibot_rewrite.fleet.outputs.cell_outputs import cell_outputs
 from multibot_rewrite.fleet.outputs.commands_file import commands_file
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.controller_files import with_own_controllers
+from multibot_rewrite.fleet.outputs.free_fleet import configurations as free_fleet
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames, moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
@@ -54,6 +56,7 @@ from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.spelling.domain_bridge import bridge_files
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.foxglove import to_layout
 from multibot_rewrite.spelling.plan_file import to_yaml
@@ -118,6 +121,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         starts = fleet_starts(plan, each, configs, files, brought)
         files = sorted((*files, launch_file(starts)))
+        told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
         return Outputs(tuple(files), said, started(starts), planned)
@@ -193,6 +197,9 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
     if plan.file.zenoh:
         made = configurations(planned, plan.file.zenoh)
         yield from (OutputFile(f"{ZENOH}/{name}", data) for name, data in made)
+    if plan.file.apart.free_fleet:
+        yield from (OutputFile(*it) for it in free_fleet(planned, plan.file.apart.free_fleet))
+    yield from (OutputFile(*it) for it in bridge_files(planned))
     yield OutputFile(TABLE, _remappings(fleet.table).encode())
 
 

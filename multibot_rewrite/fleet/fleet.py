@@ -16,6 +16,7 @@ from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
     launched_robot,
@@ -32,6 +33,7 @@ from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import bridged_as, bridged_topics
+from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
@@ -56,7 +58,7 @@ class Fleet(NamedTuple):
     ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
-    robots whose simulator gets another file."""
+    robots whose simulator gets another file, ``apart`` the domains of robots that are not in one."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -72,6 +74,7 @@ class Fleet(NamedTuple):
     maybe_real: frozenset[str] = frozenset()
     clocks: tuple[tuple[str, bool], ...] = ()
     described: Mapping[str, Inventory] = ALIKE
+    apart: Apart = TOGETHER
 
 
 def make_fleet(
@@ -267,14 +270,16 @@ def planned(fleet: Fleet) -> System:
     plan = expect(
         fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
     )
-    return plan._replace(
+    whole = plan._replace(
         nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
         release=fleet.table.release,
         gaps=fleet.gaps,
         topics=fleet.bridged,
         parameters=tuple(_parameters(fleet)),
+        domains=fleet.apart.domains,
     )
+    return with_bridges(whole, fleet.apart.crossing) if whole.domains else whole
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:

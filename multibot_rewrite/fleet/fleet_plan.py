@@ -40,6 +40,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
 )
 from multibot_rewrite.fleet.robots.simulators import is_chosen, may_be_real, note
 from multibot_rewrite.fleet.robots.world_systems import without_world_systems
+from multibot_rewrite.spelling.table_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):
@@ -86,7 +87,7 @@ def plan_fleet(
         fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
-        fleet = with_relays(fleet._replace(clocks=clocks), file)
+        fleet = with_relays(fleet._replace(clocks=clocks, apart=file.apart), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 
@@ -134,10 +135,20 @@ def _fleet(
     fleet = merge(fleets)
     members = [it.member for it in robots]
     written = {it.spec.namespace: it.written for it in robots}
-    table = with_meetings(fleet.table, members, naming, written)
+    domains = {it.robot: it.number for it in file.apart.domains}
+    table = with_meetings(fleet.table, members, naming, written, domains)
     chosen = [it.member for it in robots if is_chosen(it)]
     real = [it.member for it in robots if it.spec.simulator == REAL]
     wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)
     told = (*declared_twice(robots, naming, table), *wrong)
-    problems = tuple(dict.fromkeys((*table.problems, *told, *notes)))
+    every = (
+        it for it in table.problems if it.code != UNREACHABLE_NAME.code or not _never_meet(file)
+    )
+    problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))
+
+
+def _never_meet(file: FleetFile) -> bool:
+    """Has each robot a domain of its own?"""
+    numbers = [it.number for it in file.apart.domains if it.robot]
+    return bool(numbers) and len({*numbers}) == len(numbers)

@@ -55,6 +55,21 @@ OPEN = {
     NODL: "its NoDL file does not have it",
 }
 AND, OR, ALSO = " and ", " or ", "|"
+# A kind, or what is asked of a parameter -> how people read it.
+_SAID = {
+    "given": "{} is passed",
+    HEARD: "{} has a subscriber",
+    "missing": "{} is not passed",
+    PROGRAM: "it is started as {}",
+    RELEASE: "on {}",
+    "run": "the robot is {}",
+    UNSENT: "no other node sends {}",
+    VERSION: "{} or newer",
+    "=": "is",
+    "!=": "is not",
+    "set": "is set",
+    "unset": "is not set",
+}
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"
@@ -117,10 +132,16 @@ def words_in(text: str, kind: str) -> Iterator[str]:
 
 
 def _said(term: str) -> str:
-    kind, _, words = term.partition(": ")
-    if kind == OPEN_KIND:
-        return OPEN[words]
-    return f"{words} or newer" if kind == VERSION else term
+    """A reason of its own, such as the file that has a node's parameters, is said as it is."""
+    if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
+        return term
+    it = _one(term)
+    values = " or ".join(it.values)
+    if (it.how, it.parameter) == (":", OPEN_KIND):
+        return OPEN[values]
+    if it.how == ":":
+        return _SAID[it.parameter].format(values)
+    return f"{it.parameter.replace(ALSO, ' or ')} {_SAID.get(it.how, it.how)} {values}".rstrip()
 
 
 def _one(text: str) -> Condition:

@@ -13,14 +13,20 @@ from multibot_rewrite.knowledge.declared import RELEASES
 
 _FILE = os.path.join(os.path.dirname(__file__), "plugin_classes.schema")
 _NOW = "->"
+# Where an older name of ROS 2 is from: Nav2's own migration guides.
+_ENDED = "docs.nav2.org"
 NODE = "node"
 
 
 class Base(NamedTuple):
-    """The classes of a base with the words of their releases, and older names with those of now."""
+    """The classes of a base with the words of their releases, and older names with those of now.
+
+    ``ended`` are those of the older names that a release of ROS 2 before Humble had.
+    """
 
     classes: Mapping[str, str]
     older: Mapping[str, str]
+    ended: frozenset[str]
 
 
 @cache
@@ -33,7 +39,8 @@ def plugin_bases() -> Mapping[str, Base]:
 def _base(section: str) -> Base:
     rows = [line.split() for line in section.splitlines()[1:] if line]
     older = {old: new for old, sign, new, *_ in rows if sign == _NOW}
-    return Base({name: _releases(word) for name, word, *_ in rows if word != _NOW}, older)
+    ended = frozenset(it[0] for it in rows if it[1] == _NOW and _ENDED in it[3])
+    return Base({name: _releases(word) for name, word, *_ in rows if word != _NOW}, older, ended)
 
 
 def _releases(word: str) -> str:

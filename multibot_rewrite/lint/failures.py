@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import unrepeatable
-from multibot_rewrite.description.sources.packages import is_for_ros_1
+from multibot_rewrite.description.sources.packages import is_for_ros_1, package_of
+from multibot_rewrite.description.sources.read import XACRO, read_file
+from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
@@ -25,6 +29,12 @@ _CODES = (
     (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
     (lazy_compile("xacro failed"), "MB103"),
 )
+# What another file may make: a macro or property of the file that includes this one, or what an
+# argument names.
+_LEVELS = (NOTE, WARNING, ERROR)
+_LACKING = lazy_compile(
+    r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
+)
 
 
 def failure(path: str, message: str, settings: Settings) -> Finding:
@@ -33,14 +43,43 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
 
     code = next((code for said, code in _CODES if said.search(message)), "MB101")
     level = level_of(settings, code, RULES[code].level)
-    if "ROS 1" in message and is_for_ros_1(path):  # as it should be there
+    if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
+        level = NOTE if is_for_ros_1(path) else WARNING
+    if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
         level = NOTE
+    if code == "MB103":
+        level = min(level, _level_of_failed(path, message), key=_LEVELS.index)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)
     what, _, hint = it["text"].rpartition("; ")
     file = it["file"].removesuffix(" (expanded)") or path
     return Finding(code, level, what or hint, hint if what else "", file, line, column)
+
+
+def _level_of_failed(path: str, message: str) -> str:
+    """How bad it is that xacro stops: a file may be a part of a robot, or not meant for xacro."""
+    found = _LACKING.search(message)
+    if found is None:
+        return ERROR if path.endswith(XACRO) else WARNING
+    name = found[1] or found[2]
+    return NOTE if name and _is_made_beside(path, name) else WARNING
+
+
+def _is_made_beside(path: str, name: str) -> bool:
+    """Does another file of the package make a macro, property or argument of that name?"""
+    own = package_of(path)
+    folder = own[1] if own else os.path.dirname(os.path.abspath(path))
+    made = re.compile(rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % name.encode())
+    others = (it for it in descriptions_below(folder) if it != os.path.abspath(path))
+    return any(made.search(_text(it)) for it in others)
+
+
+def _text(path: str) -> bytes:
+    try:
+        return read_file(path)
+    except InputError:
+        return b""
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:

@@ -11,6 +11,9 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+import yaml
+
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
@@ -28,6 +31,7 @@ from multibot_rewrite.producers.launch.launched import (
     file_of,
     models_in_simulator,
 )
+from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.rules.files.bridges import (
     GzTopic,
     GzTopics,
@@ -114,13 +118,22 @@ def _values(launched: Launched) -> Iterator[Finding]:
     nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.facts}
     for it in launched.graph.nodes:
         running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
-        for text in (one.text for one in it.parameters if not one.file and running):
-            if running and text.startswith(_FOR_ALL) and not _TEXT.search(text):
-                own = text.replace(_FOR_ALL, f"{running.full_name}:", 1)
-                # Descriptions of the package of the launch file are beside it.
-                beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
-                for one in lint_data(beside, own.encode(), settings):
-                    yield one._replace(file=it.place.file, line=it.place.line, column=1)
+        given = _given(it) if running else {}
+        if running and given:
+            own = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
+            # Descriptions of the package of the launch file are beside it.
+            beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
+            for one in lint_data(beside, own.encode(), settings):
+                yield one._replace(file=it.place.file, line=it.place.line, column=1)
+
+
+def _given(it: LaunchedNode) -> dict[str, object]:
+    """The parameters that a launch file gives a node itself; a description is none to look into."""
+    found: dict[str, object] = {}
+    for text in (one.text for one in it.parameters if not one.file):
+        if text.startswith(_FOR_ALL) and not _TEXT.search(text):
+            found |= load_yaml(text)[_FOR_ALL.rstrip(":")]["ros__parameters"]
+    return found
 
 
 def _bridges(launched: Launched) -> Iterator[Finding]:

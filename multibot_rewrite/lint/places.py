@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import Finding, locate
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import tag_end
+from multibot_rewrite.rules.facts.source_values import is_argument
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
@@ -40,11 +41,14 @@ class Place(NamedTuple):
 
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
-    it = _place(subject, numbers[problem.element], problem.attribute)
+    number, level = numbers[problem.element], problem.level or rule.level
+    it = _place(subject, number, problem.attribute)
     line, column = locate(it.source, it.offset)
+    if level == ERROR and _is_argument(subject, number, problem.attribute):
+        level = WARNING  # another one may be passed
     return Finding(
         rule.code,
-        level_of(subject.settings, rule.code, problem.level or rule.level),
+        level_of(subject.settings, rule.code, level),
         " ".join(problem.message.split()),
         problem.hint or rule.advice,
         it.file,
@@ -75,6 +79,11 @@ def _place(subject: Subject, number: int, attribute: str | None) -> Place:
     source = subject.sources[origin.file]
     offset = origin.start + _within(source, origin.start, attribute)
     return Place(origin.file, source, offset, origin.calls)
+
+
+def _is_argument(subject: Subject, number: int, attribute: str | None) -> bool:
+    origin = subject.origins.of(number) if subject.origins and attribute is not None else None
+    return origin is not None and is_argument(subject.sources, origin, attribute or "")
 
 
 def _within(source: bytes, start: int, attribute: str | None) -> int:

@@ -14,6 +14,7 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
+from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
@@ -113,6 +114,17 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
     ]
     if rows:
         yield "", StubNode("ros_gz_bridge", (), (), tuple(rows), ())
+
+
+def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
+    """The nodes of domain_bridge in a plan of one domain."""
+    ends: dict[str, list[StubEndpoint]] = {}
+    for it in plan.ends:
+        stub = StubEndpoint(it.kind, it.role, it.name, it.type, False)
+        ends.setdefault(it.node, []).append(stub)
+    for node in plan.nodes:
+        if node.stack == DOMAIN_BRIDGE:
+            yield node.robot, StubNode(node.name[1:], (), (), tuple(ends.get(node.name, ())), ())
 
 
 def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:

@@ -44,6 +44,18 @@ def stage(domain: int | None) -> dict[str, str]:
     return {**environ, "ROS_DOMAIN_ID": str(own), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
+def stages(domain: int | None, count: int) -> list[dict[str, str]]:
+    """So many environments as ``stage`` makes, each in a domain of its own: the next free ones."""
+    first = stage(domain)
+    numbers = [int(first["ROS_DOMAIN_ID"])]
+    while len(numbers) < count:
+        own = 1 + numbers[-1] % _DOMAINS
+        while participants_here(own):
+            own = 1 + own % _DOMAINS
+        numbers.append(own)
+    return [{**first, "ROS_DOMAIN_ID": str(it)} for it in numbers]
+
+
 def staged(
     nodes: Iterable[tuple[str, StubNode]], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:

@@ -34,6 +34,15 @@ def read_snapshots(paths: Sequence[str]) -> System:
     return merged([Look(path, read_snapshot(path)) for path in paths])
 
 
+def read_by_domain(paths: Sequence[str]) -> dict[int, System]:
+    """The same of files of several domains, each on its own; raises as ``read_snapshots``."""
+    looks: dict[int, list[Look]] = {}
+    for path in paths:
+        seen = read_snapshot(path)
+        looks.setdefault(seen.environment.domain, []).append(Look(path, seen))
+    return {it: merged(looks[it]) for it in sorted(looks)}
+
+
 def _text(data: bytes, path: str) -> str:
     try:
         return data.decode("utf-8-sig")

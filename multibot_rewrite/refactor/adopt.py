@@ -9,13 +9,13 @@ it goes where the name is made. Proved by expansion: with an empty prefix nothin
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from types import MappingProxyType
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, affix
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
@@ -30,8 +30,10 @@ from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.description.steps.document import read_document, tag_end
+from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames
+from multibot_rewrite.refactor.configurations import configurations
+from multibot_rewrite.refactor.declaring import declared, free_name
 from multibot_rewrite.refactor.launches import with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
 from multibot_rewrite.refactor.package import (
@@ -45,7 +47,6 @@ from multibot_rewrite.refactor.package import (
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     Change,
-    SourceEdit,
     change_of,
     edited,
     expected,
@@ -53,10 +54,8 @@ from multibot_rewrite.refactor.source_edits import (
 )
 
 _PARTS = ("link", "joint")
-NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
 TRIED = "robot1_"
-_SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
-_TAKEN = ("arg", "property", "macro")
+_ALONE = "no place for the prefix changes names alone"
 
 
 class Adopted(NamedTuple):
@@ -64,7 +63,8 @@ class Adopted(NamedTuple):
     by path, empty for a new one; ``proved`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
     those that have such an argument, with its name: they stay. ``launches`` are the launch files that
-    are proved to hand it on."""
+    are proved to hand it on, ``configurations`` those that were proved besides the one by default, as
+    ``robot.urdf.xacro gripper:=true``."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -74,6 +74,7 @@ class Adopted(NamedTuple):
     unread: Mapping[str, str]
     already: Mapping[str, str] = MappingProxyType({})
     launches: tuple[str, ...] = ()
+    configurations: tuple[str, ...] = ()
 
 
 @checked
@@ -95,37 +96,73 @@ def adopt(
     already = {it.path: name for it in package.descriptions if (name := _has(it, tree, how))}
     others = [it for it in package.descriptions if it.path not in already]
     found = list(_as_xacros(others, tree, how, unread))
-    if not found and already:
-        return Adopted("", {}, {}, (), (), unread, already)
-    if not found:
+    if not found and not already:
         why = next(iter(unread.values()), f"{folder}: there is no description of a robot in it")
         raise InputError(why)
-    argument = _free_name(found)
-    texts = _texts(found)
-    edits: set[SourceEdit] = set()
-    left: list[Left] = []
-    wanted: dict[str, list[Change]] = {}
-    for it in found:
-        made = placed(it, list(_changes(it)), argument)
-        edits |= {one._replace(file=os.path.realpath(one.file)) for one in made.edits}
-        edits |= set(_declared(it, texts, argument))
-        wanted[it.path] = made.changes
-        left += [*made.left, *_not_written(it)]
-    after = edited(texts, edits)
-    for it in found:
-        _prove(it, wanted[it.path], after, argument, how)
-    after = as_named(after, found)
-    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust)
-    left += launches.left
+    if not found:
+        return Adopted("", {}, {}, (), (), unread, already)
+    found = list(_configured(found, how, tree, unread))
+    argument = free_name(found)
+    made = _made(found, argument, how)
+    launches = with_launches(folder, package.found.launch, argument, made.after, TRIED, trust)
     # A plain description that becomes a xacro is one of them.
-    looked_at = {*texts, *(it.removesuffix(".xacro") for it in texts)}
-    left += named_elsewhere(folder, set(_names(found)), looked_at)
+    files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
+    elsewhere = named_elsewhere(folder, set(_names(found)), set(map(os.path.realpath, files)))
+    before = {**made.before, **{path: read_file(path) for path in launches.after}}
+    return made._replace(
+        before=before,
+        after={**made.after, **launches.after},
+        left=tuple(dict.fromkeys((*made.left, *launches.left, *elsewhere))),
+        unread=unread,
+        already=already,
+        launches=launches.proved,
+    )
+
+
+def _configured(
+    found: Sequence[Description], how: Expanding, tree: Tree, unread: dict[str, str]
+) -> Iterator[Description]:
+    """Each description with its other configurations; SRDFs after the URDFs whose names they have."""
+    urdfs: list[Inventory] = []
+    for it in sorted(found, key=_is_srdf):
+        own = [it, *configurations(it, how, tree, urdfs, unread)]
+        urdfs += () if _is_srdf(it) else (one.inventory for one in own)
+        yield from own
+
+
+def _made(found: Sequence[Description], argument: str, how: Expanding) -> Adopted:
+    """The descriptions with the argument, and what was proved of them."""
+    texts = {os.path.realpath(path): data for it in found for path, data in _sources(it).items()}
+    made = placed(found, [list(_changes(it)) for it in found], argument)
+    edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument)}
+    after = edited(texts, edits)
+    every = zip(found, made.changes, strict=True)
+    faults = [(it, _fault(it, changes, after, argument, how)) for it, changes in every]
+    wrong = [(it, why) for it, why in faults if why]
+    paths = dict.fromkeys(it.path for it in found)
+    proved = tuple(path for path in paths if path not in {it.path for it, _ in wrong})
+    if not proved:
+        it, why = wrong[0]
+        raise InputError(f"{it.words}: {_ALONE}; {why}")
+    left = (
+        *made.left,
+        *chain.from_iterable(map(_not_written, found)),
+        *(Left(it.words, f"its names are not proved: {why}") for it, why in wrong),
+    )
+    after = as_named(after, found)
     before = {path: data for path, data in as_named(texts, found).items() if path in after}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
-    before |= {path: read_file(path) for path in launches.after}
-    after |= launches.after
-    proved, told = tuple(it.path for it in found), tuple(dict.fromkeys(left))
-    return Adopted(argument, before, after, proved, told, unread, already, launches.proved)
+    others = tuple(it.words for it, why in faults if it.arguments and not why)
+    return Adopted(argument, before, after, proved, left, {}, configurations=others)
+
+
+def _is_srdf(it: Description) -> bool:
+    return it.inventory.format != "robot"
+
+
+def _sources(it: Description) -> Mapping[str, bytes]:
+    """The files that make a description."""
+    return it.read.sources if it.read else {}
 
 
 def _is_meant(it: Description) -> bool:
@@ -176,28 +213,6 @@ def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
     return Description(path, inventory_of(data, path, tree), read)
 
 
-def _free_name(found: Iterable[Description]) -> str:
-    """A name that no argument, property or parameter of a macro has."""
-    taken: set[str] = set()
-    for it in found:
-        sources = it.read.sources if it.read else {}
-        # YAML that an expression loads is among them.
-        for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
-            for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
-                words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
-                taken |= {element.get("name", ""), *words}
-    free = next((name for name in NAMES if name not in taken), None)
-    if free is None:
-        raise UsageError(f"{', '.join(NAMES)} are all names of its arguments or properties")
-    return free
-
-
-def _texts(found: Iterable[Description]) -> dict[str, bytes]:
-    """The files that make the descriptions, by real path."""
-    read = chain.from_iterable(it.read.sources.items() for it in found if it.read)
-    return {os.path.realpath(path): data for path, data in read}
-
-
 def _changes(it: Description) -> Iterator[Change]:
     """Where the prefix goes in the values of a description. A link or joint that it does not have is
     one of another description that includes the same file."""
@@ -214,22 +229,6 @@ def _changes(it: Description) -> Iterator[Change]:
             yield change_of(document, claim, at, at, TRIED)
 
 
-def _declared(it: Description, texts: Mapping[str, bytes], argument: str) -> Iterator[SourceEdit]:
-    """The argument and its property, first in the root element of the description's own file."""
-    path = os.path.realpath(it.path)
-    source = texts[path]
-    start = read_document(source, it.path).starts[0]
-    end = tag_end(source, start)
-    if b"xmlns:xacro" not in source[start:end]:
-        at = start + len(b"<robot")
-        yield SourceEdit(path, at, at, _SPACE)
-    text = (
-        f'\n  <xacro:arg name="{argument}" default=""/>'
-        f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
-    )
-    yield SourceEdit(path, end, end, text.encode())
-
-
 def _not_written(it: Description) -> Iterator[Left]:
     """Names that a plugin takes where none is written: they need an element of their own."""
     document, _, _, declared, *_ = it.inventory
@@ -243,20 +242,24 @@ def _not_written(it: Description) -> Iterator[Left]:
             )
 
 
-def _prove(
+def _fault(
     it: Description,
     changes: Collection[Change],
     after: Mapping[str, bytes],
     argument: str,
     how: Expanding,
-) -> None:
-    """Nothing changes without a prefix, and with one the names alone; raises InputError."""
+) -> str:
+    """What is wrong with a description with a prefix: the names alone may change. Raises InputError for
+    one that is another without."""
     document = it.inventory.document
-    given = {"": document.source, TRIED: expected(document, changes)}
-    for prefix, wanted in given.items():
+    for prefix, wanted in (("", document.source), (TRIED, expected(document, changes))):
         more = {argument: prefix} if prefix else {}
-        made, _ = read_text(it.path, Expanding(how.reach, {**how.arguments, **more}), after)
+        given = Expanding(how.reach, {**how.arguments, **it.arguments, **more})
+        made, _ = read_text(it.path, given, after)
+        if made != wanted and not prefix:
+            raise InputError(
+                f"{it.words}: {_ALONE}; without it has {first_difference(made, wanted)}"
+            )
         if made != wanted:
-            what = "no place for the prefix changes names alone"
-            line = first_difference(made, wanted)
-            raise InputError(f"{it.path}: {what}; with {argument}:={prefix} it has {line}")
+            return f"with {argument}:={prefix} it has {first_difference(made, wanted)}"
+    return ""

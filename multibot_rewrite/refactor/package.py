@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Mapping
 from contextlib import redirect_stderr
 from io import StringIO
+from types import MappingProxyType
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -29,11 +30,18 @@ class Expanding(NamedTuple):
 
 
 class Description(NamedTuple):
-    """A description file, what is in it, and, of a xacro, how it was expanded."""
+    """A description file, what is in it, and, of a xacro, how it was expanded; ``arguments`` are those
+    of this configuration alone."""
 
     path: str
     inventory: Inventory
     read: Expansion | None = None
+    arguments: Mapping[str, str] = MappingProxyType({})
+
+    @property
+    def words(self) -> str:
+        """Its path, with its arguments."""
+        return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
 
 class Package(NamedTuple):

@@ -8,8 +8,9 @@ of the macro. Then every other place that uses this piece has to take it from th
 
 from __future__ import annotations
 
+import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml import etree
 
@@ -33,47 +34,53 @@ class Left(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """The edits, the changes that they make, and what is left."""
+    """The edits, the changes that they make in each description, and what is left."""
 
     edits: list[SourceEdit]
-    changes: list[Change]
+    changes: list[list[Change]]
     left: list[Left]
 
 
 class _Name(NamedTuple):
-    """A place for a prefix in a value: the spot where the value is used, that where the piece is made
-    that begins here, the spots of its ``other`` pieces, and the change of it, if there is one."""
+    """A place for a prefix in a value of description number ``of``: the spot where the value is used,
+    that where the piece is made that begins here, the spots of its ``other`` pieces, and the change of
+    it, if there is one."""
 
+    of: int
     used: Spot | None
     made: Spot | None
     other: frozenset[Spot]
     change: Change | None
 
 
-def placed(it: Description, changes: Sequence[Change], argument: str) -> Placed:
-    """The edits of the sources for the changes of one description."""
-    assert it.read is not None
-    names = list(_names(it, it.read, changes))
+def placed(
+    found: Sequence[Description], changes: Sequence[Sequence[Change]], argument: str
+) -> Placed:
+    """The edits of the sources for the changes of each description. They have sources in common: what
+    one of them needs at a place, the others get."""
+    both = enumerate(zip(found, changes, strict=True))
+    names = [name for of, (it, own) in both for name in _names(of, it, own)]
     deep = _made_elsewhere(names)
-    edits: list[SourceEdit] = []
-    kept: list[Change] = []
-    left: list[Left] = []
+    others = _not_alone(names)
+    made = Placed([], [[] for _ in found], [])
     for name in names:
         if name.change is None:
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
-        if spot is None or (spot == name.made and not _is_alone(spot, names)):
-            left.append(
-                Left(_place(it, it.read, name.change), f"{name.change.value!r} is put together")
-            )
+        if spot is None or (spot == name.made and spot in others):
+            place = _place(found[name.of], name.change)
+            made.left.append(Left(place, f"{name.change.value!r} is put together"))
             continue
-        edits.append(SourceEdit(*spot, spot[1], b"${%s}" % argument.encode()))
-        kept.append(name.change)
-    return Placed(edits, kept, left)
+        made.edits.append(SourceEdit(*spot, spot[1], b"${%s}" % argument.encode()))
+        made.changes[name.of].append(name.change)
+    return made
 
 
-def _names(it: Description, read: Expansion, changes: Iterable[Change]) -> Iterator[_Name]:
+def _names(of: int, it: Description, changes: Iterable[Change]) -> Iterator[_Name]:
     """Each change, and each value that is made at the same places and does not change."""
+    assert it.read is not None
+    read = it.read
+    real = {file: os.path.realpath(file) for file in read.sources}
     wanted: dict[tuple[int, str], dict[int, Change]] = defaultdict(dict)
     for change in changes:
         wanted[change.element, change.attribute][change.start] = change
@@ -83,7 +90,13 @@ def _names(it: Description, read: Expansion, changes: Iterable[Change]) -> Itera
             pieces = _with_ends(read.pieces.of(number, attribute, value))
             for at in mine or [len(value) - len(value.lstrip())]:
                 used = _used(read, number, attribute, pieces, at)
-                yield _Name(used, *_made(read, pieces, at), mine.get(at))
+                made, other = _made(read, pieces, at)
+                places = frozenset((real[file], start) for file, start in other)
+                yield _Name(of, _at(used, real), _at(made, real), places, mine.get(at))
+
+
+def _at(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+    return spot and (real[spot[0]], spot[1])
 
 
 def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
@@ -160,15 +173,18 @@ def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
         deep |= more
 
 
-def _is_alone(spot: Spot, names: Iterable[_Name]) -> bool:
-    """Does a piece make nothing but names that get the prefix, each at its beginning?"""
-    return all(it.change is not None for it in names if it.made == spot) and not any(
-        spot in it.other for it in names
-    )
+def _not_alone(names: Iterable[_Name]) -> set[Spot | None]:
+    """The pieces that make something besides names that get the prefix, each at its beginning."""
+    found: set[Spot | None] = set()
+    for it in names:
+        found |= it.other
+        if it.change is None:
+            found.add(it.made)
+    return found
 
 
-def _place(it: Description, read: Expansion, change: Change) -> str:
-    origin = read.origins.of(change.element)
-    if origin is None:
+def _place(it: Description, change: Change) -> str:
+    origin = it.read and it.read.origins.of(change.element)
+    if not it.read or not origin:
         return it.path
-    return ":".join(map(str, (origin.file, *locate(read.sources[origin.file], origin.start))))
+    return ":".join(map(str, (origin.file, *locate(it.read.sources[origin.file], origin.start))))

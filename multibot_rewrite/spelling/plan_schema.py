@@ -13,6 +13,7 @@ from multibot_rewrite.spelling.plan_states import GAP_KEYS, LIFECYCLE
 from multibot_rewrite.spelling.plan_states import KEYS as STATE_KEYS
 from multibot_rewrite.spelling.plan_value import (
     BY_NODE,
+    DOMAINS,
     KEYS,
     OPTIONAL_KEYS,
     OPTIONAL_ROBOT_KEYS,
@@ -21,6 +22,7 @@ from multibot_rewrite.spelling.plan_value import (
     SENDS,
     TOPIC_KEYS,
 )
+from multibot_rewrite.system.environment import MAX_DOMAIN
 from multibot_rewrite.system.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
 
 Schema = dict[str, Any]
@@ -61,6 +63,13 @@ def schema() -> Schema:
         },
         "distro": {"enum": ["", *RELEASES]},
         "ignored_nodes": _said(_TEXTS, "patterns of nodes that may come and go"),
+        DOMAINS: _said(
+            {
+                "type": "object",
+                "additionalProperties": {"type": "integer", "minimum": 0, "maximum": MAX_DOMAIN},
+            },
+            "the ROS_DOMAIN_ID of each robot, and of shared_nodes",
+        ),
         "topics": _by_name(_topic()),
         "one_of": _said({"type": "array", "items": _TEXTS}, "nodes of which one runs"),
         "states": _by_name(_state()),

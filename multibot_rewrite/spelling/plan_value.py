@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
 from multibot_rewrite.base.model import InputError
@@ -26,11 +26,13 @@ from multibot_rewrite.spelling.plan_states import (
     read_states,
     state_value,
 )
+from multibot_rewrite.system.environment import MAX_DOMAIN
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,
     RUNS,
     SUBSCRIBES,
+    Domain,
     Edge,
     End,
     Node,
@@ -48,11 +50,11 @@ ROBOT_KEYS = ("tf", "frames", "nodes")
 TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 # Policies whose value is a word.
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
-OPEN, SENDS, STATES = "open", "sends", "states"
+OPEN, SENDS, STATES, DOMAINS = "open", "sends", "states", "domains"
 # Node -> text. "ways" is how a node gets rules, if not by --ros-args.
 SOURCES, FROM, WAYS = "sources", "from", "ways"
 BY_NODE = (SOURCES, FROM, WAYS, SENDS)
-OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", STATES, *BY_NODE, OPEN)
+OPTIONAL_KEYS = ("distro", "ignored_nodes", DOMAINS, "topics", "one_of", STATES, *BY_NODE, OPEN)
 OPTIONAL_ROBOT_KEYS = ("other_frames", "optional", "spelled")
 REMEDY = "use the file that multibot plan wrote"
 # The endpoints of a node, a row each.
@@ -68,6 +70,7 @@ def value_of(plan: System) -> dict[str, object]:
     nodes = nodes_by_robot(plan)
     optional = {it.name for it in plan.nodes if it.sure.word == MAY.word}
     more = {
+        DOMAINS: {it.robot or KEYS[1]: it.number for it in plan.domains},
         "topics": {it.name: _topic_value(it) for it in plan.topics},
         "one_of": alternatives(plan),
         STATES: dict(_states(plan)),
@@ -158,6 +161,7 @@ def from_value(value: object, file: str) -> System:
         shared_frames=frames,
         ignored_nodes=texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
         gaps=tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
+        domains=tuple(_read_domains(top.get(DOMAINS, {}), [it.name for it in robots], file)),
     )
     nothing = vacuous(plan)
     if nothing:
@@ -262,6 +266,16 @@ def _read_topics(given: object, file: str) -> Iterator[Topic]:
             tuple(topic.get("bridge", ())),
             topic.get("type", ""),
         )
+
+
+def _read_domains(given: object, robots: Sequence[str], file: str) -> Iterator[Domain]:
+    for name, number in mapping(given or {}, (), file, DOMAINS).items():
+        place = f"{file}: {DOMAINS}.{name}"
+        if name not in (KEYS[1], *robots):
+            raise InputError(f"{place}: {unknown('robot', str(name), robots)}")
+        if type(number) is not int or not 0 <= number <= MAX_DOMAIN:
+            raise InputError(f"{place}: write a ROS_DOMAIN_ID, 0 to {MAX_DOMAIN}")
+        yield Domain("" if name == KEYS[1] else str(name), number)
 
 
 _ENDS = [[PUBLISHES], [SUBSCRIBES], [PUBLISHES, SUBSCRIBES]]

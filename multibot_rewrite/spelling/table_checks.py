@@ -90,8 +90,8 @@ RULE_WITHOUT_NAME = declare(
     "MR103",
     "rule-matches-no-name",
     WARNING,
-    what="A remap rule of a plugin in the description matches no name of that plugin, or a rule of a "
-    "launch file is for a name that its node has not, but nearly has.",
+    what="A remap rule of a plugin in the description matches no name of that plugin. Or a rule of "
+    "a launch file is for a name that its node does not have, but for nearly the same one.",
     why="The rule does nothing, and the name that it was meant for keeps its old name.",
     fix="Correct the name on the left of the rule, or remove the rule.",
     bad=_plugin_with("~/out:=scan", "laser_scan:=scan"),

@@ -139,12 +139,15 @@ def view_caveats(
     asked: DiscoverySettings,
     settled: str,
     expected: Iterable[str] = (),
+    last: Collection[str] = (),
 ) -> Iterator[Caveat]:
-    """What to know about a view before something in it is reported as missing."""
+    """What to know about a view before something in it is reported as missing; ``last`` are the names
+    that came or went last."""
     names = Counter(node.name for node in nodes)
     if settled == TIMEOUT:
-        text = "the graph was still changing when the timeout was over; give a longer --timeout"
-        yield Caveat("not-settled", True, text)
+        text = "the graph was still changing when the timeout was over"
+        which = f" (last came or went {shorten(sorted(last), SEVERAL)})" if last else ""
+        yield Caveat("not-settled", True, f"{text}{which}; give a longer --timeout")
     if settled == CHANGING:
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
@@ -198,8 +201,8 @@ def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Cav
     known = [count for name, count in machines.items() if name]
     if asked.range == "SUBNET" and asked.static_peers and min(known, default=inf) <= PEER_LIMIT:
         text = (
-            f"a machine has no more than {PEER_LIMIT} participants, which is all that Fast DDS"
-            " finds on a static peer under SUBNET without multicast: the view may be cut off; use"
+            f"{PEER_LIMIT} participants or fewer are seen of a machine, and the view may be cut off;"
+            " Fast DDS finds no more on a static peer under SUBNET without multicast; use"
             f" ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which finds {LOCAL_LIMIT}"
         )
         yield Caveat("peer-limit", True, text)

@@ -27,7 +27,8 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-_FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
+# Why looks ended, from good to bad.
+WORST_LAST = (EXPECTED, QUIET, TIMEOUT, CHANGING)
 _MANY = 4
 
 
@@ -50,7 +51,7 @@ def merged(looks: Sequence[Look]) -> System:
     nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
     endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
-    heard = {it[:2]: it for look in looks for it in look.snapshot.heard}
+    heard = {(it.topic, it.frame, it.joints): it for look in looks for it in look.snapshot.heard}
     around = _environment(looks, nodes, endpoints)
     parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
     controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
@@ -139,7 +140,9 @@ def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
         static = any(frame.static for frame in same)
         several = any(frame.several for frame in same)
         transform = next((frame.transform for frame in same if frame.transform), ())
-        yield Edge(child, parent, topic, static, tuple(sorted(publishers)), several, transform)
+        rate = max(frame.rate for frame in same)
+        senders = tuple(sorted(publishers))
+        yield Edge(child, parent, topic, static, senders, several, transform, rate)
 
 
 def _environment(
@@ -155,7 +158,7 @@ def _environment(
         discovery_server=_words(one.discovery_server for one in around),
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
-        settled=max((one.settled for one in around), key=_FROM_GOOD_TO_BAD.index),
+        settled=max((one.settled for one in around), key=WORST_LAST.index),
         seconds=max(one.seconds for one in around),
         caveats=(*_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
     )

@@ -50,7 +50,7 @@ def why_not_seen(graph: System, robot: str) -> str:
         (names,) = seen.values()
         return (
             f"all that is seen runs on one machine ({shorten(names)}). If {robot} is on another,"
-            " multicast may be lost, or it is on range LOCALHOST: set ROS_STATIC_PEERS to its"
+            " multicast may be lost, or it is on range LOCALHOST. Set ROS_STATIC_PEERS to its"
             " address, or take a snapshot there and join them (multibot snapshot --snapshot). If all"
             " robots are to be on this machine set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"
         )

@@ -162,7 +162,8 @@ class Edge(NamedTuple):
     """A transform on ``topic``, which is empty in a plan that says who sends it; ``publishers`` are all
     nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
     more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
-    empty if not known, or if several static ones differ; inf for NaN. ``OFF``: a parameter forbids it.
+    empty if not known, or if several static ones differ; inf for NaN. ``rate`` is how often it came a
+    second, 0 if not known. ``OFF``: a parameter forbids it.
     """
 
     child: str
@@ -172,6 +173,7 @@ class Edge(NamedTuple):
     publishers: tuple[str, ...]
     several: bool = False
     transform: tuple[float, ...] = ()
+    rate: float = 0.0
     sure: Sure = RUNS
     place: Place = NOWHERE
 
@@ -183,14 +185,17 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, 0 for less than a second or not known. ``rate`` are messages a second, 0 if not
-    known, ``child`` the ``child_frame_id`` of odometry."""
+    for a stamp of 0, and for a clock that stands, 0 for less than a second or not known. ``rate`` are
+    messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
+    names in a message about joints, which has no frame, ``back`` by how much a clock went back."""
 
     topic: str
     frame: str
     age: float = 0.0
     rate: float = 0.0
     child: str = ""
+    joints: tuple[str, ...] = ()
+    back: float = 0.0
 
 
 class Lookup(NamedTuple):
@@ -288,16 +293,24 @@ class Environment(NamedTuple):
     caveats: tuple[Caveat, ...] = ()
 
 
+class Domain(NamedTuple):
+    """The ROS_DOMAIN_ID of the nodes of a robot, or of all robots (empty name)."""
+
+    robot: str
+    number: int
+
+
 class System(NamedTuple):
-    """What runs, or would run, on some robots; what no source tells is empty.
+    """What runs, or would run, on some robots; what no source says is empty.
 
     ``heard`` are frames that messages name, one message a topic, ``lookups`` what nodes ask of tf,
     ``addresses`` what only one of them can have.
     ``parameters`` and ``controllers`` are what nodes answered, or what files set. A plan has a
     ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
     may come and go, besides the usual tools.
-    ``release`` is the one whose facts it rests on. ``gaps`` are findings about what is open in the
-    robots as they are planned: a name that is read and not sent, for example.
+    ``release`` is the one for which it was made. ``gaps`` are findings about what is open in the
+    robots as they are planned: a name that is read and not sent, for example. ``domains`` are those
+    of a plan whose robots are not in one.
     """
 
     nodes: tuple[Node, ...] = ()
@@ -318,6 +331,7 @@ class System(NamedTuple):
     gaps: tuple[Finding, ...] = ()
     lookups: tuple[Lookup, ...] = ()
     addresses: tuple[Address, ...] = ()
+    domains: tuple[Domain, ...] = ()
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:

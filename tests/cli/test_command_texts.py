@@ -397,6 +397,8 @@ def test_a_paragraph_is_wrapped() -> None:
         (["--from=a"], "unknown option --from; did you mean '--form'?"),
         (["--json"], "unknown option --json; use --format json"),
         (["--xyzabc"], "unknown option --xyzabc"),
+        # Dashes are not counted.
+        (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
         (["a", "b"], "unexpected b; a list is written A,B"),
     ],
 )

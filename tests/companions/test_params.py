@@ -381,6 +381,19 @@ def test_a_controller_is_identified_by_its_type() -> None:
     assert "tf_frame_prefix_enable: false" in text
 
 
+@pytest.mark.parametrize("end", ["", "\n", "\n\n"])
+@pytest.mark.parametrize("above", ["", "/**/", "/<robot_namespace>/"])
+def test_a_controller_without_a_section_gets_one_behind_the_last_line(above: str, end: str) -> None:
+    kind = "type: diff_drive_controller/DiffDriveController"
+    manager = section("controller_manager", "wheels_x:", f"  {kind}").rstrip("\n")
+    text, _ = made(f"{above}{manager}{end}")
+    read = yaml.safe_load(text)
+    key = "/**/wheels_x" if above == "/**/" else "/robot1/wheels_x"
+    assert list(read)[1:] == [key]
+    assert read[key]["ros__parameters"]["odom_frame_id"] == "r1/odom"
+    assert text.count("\n\n") == len(end) // 2
+
+
 def test_a_section_is_identified_by_its_parameters() -> None:
     lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
     assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]

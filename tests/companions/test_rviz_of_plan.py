@@ -94,6 +94,15 @@ def test_a_tf_topic_for_each_robot_is_a_window_for_each() -> None:
     assert len(windows_of_plan(plan, relayed=True)) == 1
 
 
+def test_what_is_of_no_robot_has_no_colour() -> None:
+    plan = two("frames-per-robot", "/tf", "/tf")
+    hall = planned_end("/lidar_of_the_hall", TOPIC, PUBLISHES, "/hall_scan", SCAN)
+    (made,) = windows_of_plan(plan._replace(ends=(*plan.ends, hall)), relayed=False)
+    shown = displays(yaml.safe_load(made.text)["Visualization Manager"])
+    (scan,) = [it for it in shown if it.get("Topic", {}).get("Value") == "/hall_scan"]
+    assert "Color" not in scan and "Color Transformer" not in scan
+
+
 @pytest.mark.more
 @pytest.mark.parametrize(
     "layout", ["frames-per-robot", "tf-per-robot", "both", "postfix", "frame-prefix"]

@@ -116,9 +116,10 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     nodes = list(nodes_of(given))
     roots = dict(descriptions(given))
     models = dict(models_of(given))
-    nodes += plugin_nodes(roots, models)
+    spawned = {**roots, **dict(spawned_files(given))}
+    nodes += plugin_nodes(spawned, models)
     world = simulator.world_of(given.starts, given.folder)
-    there = list(simulator.models_of(roots, models))
+    there = list(simulator.models_of(spawned, models))
     found = controllers.read(given, roots, nodes, {it.robot: it.kept.joints for it in there})
     nodes += found.nodes
     faults += found.faults
@@ -127,7 +128,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     ends = tuple(ends_of(nodes, resolved))
     gz = tuple(end for it in there for end in simulator.ends_of(it, world))
     edges = tuple(edges_of(given, nodes, roots, ends, gz, bridges))
-    unknown = tuple(sorted({*strangers(given, nodes), *gazebo.strangers(roots, models)}))
+    unknown = tuple(sorted({*strangers(given, nodes), *gazebo.strangers(spawned, models)}))
     faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
     posed = {it.robot for it in nodes if it.what.startswith("joint_state_publisher")}
     broken = [fault for it in there for fault in simulator.broken(it, world, it.robot in posed)]
@@ -189,6 +190,15 @@ def descriptions(given: Reader) -> Iterator[tuple[str, etree._Element]]:
         )
         if text:
             yield who, etree.fromstring(text.encode())
+
+
+def spawned_files(given: Reader) -> Iterator[tuple[str, etree._Element]]:
+    """The model that the simulator gets from a file, which may be another than the description."""
+    for who, it in given.of(*SPAWNERS):
+        words = it["arguments"]
+        path = words[words.index("-file") + 1] if "-file" in words else ""
+        if Path(path).is_file():
+            yield who, etree.parse(path).getroot()
 
 
 def models_of(given: Reader) -> Iterator[tuple[str, str]]:

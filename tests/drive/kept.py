@@ -100,7 +100,8 @@ def of_urdf(root: etree._Element, old: bool = False) -> Kept:
     queue = [it for it in body if it not in {joint.child for joint in joints}][:1]
     while queue:
         name = queue.pop()
-        own = next((it for it in joints if it.child == name), None)
+        # Of two that have the same child urdfdom keeps the last by name.
+        own = max((it for it in joints if it.child == name), default=None)
         lumped = own is not None and own.lumped
         if name != "world" and (old or not lumped) and weight(name, masses, joints) <= none:
             continue

@@ -181,6 +181,34 @@ def test_the_srdf_has_both_arms_and_a_group_of_both(tmp_path: Path) -> None:
     assert [it.get("group") for it in root.findall("group_state")] == ["left_arm", "right_arm"]
 
 
+def test_feet_on_one_world_are_adjacent(tmp_path: Path) -> None:
+    """compute_default_collisions.cpp: a link without geometry leaves those beside it adjacent."""
+    shape = '<collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+    texts = {
+        f"{it}_urdf": FILES[f"{it}.urdf"].replace("</link>", shape, 1) for it in ("arm", "other")
+    }
+    root = etree.fromstring(built(tmp_path, **texts)[0]["cell/cell.srdf"])
+    last = root.findall("disable_collisions")[-1]
+    assert dict(last.attrib) == {
+        "link1": "left/base",
+        "link2": "right/base",
+        "reason": "Adjacent",
+    }
+
+
+def test_one_arm_names_the_parameter_above_its_limits_and_the_other_does_not(
+    tmp_path: Path,
+) -> None:
+    own = fleet("pose: {y: -0.5}", "pose: {y: -0.5}, companions: {moveit: [other.yaml]}")
+    text = "robot_description_planning:\n  joint_limits: {elbow: {max_velocity: 2.0}}\n"
+    files, _ = built(tmp_path, fleet_yaml=own, other_yaml=text)
+    limits = parameters(files)["robot_description_planning"]["joint_limits"]
+    assert [(it, limits[it]["max_velocity"]) for it in sorted(limits)] == [
+        ("left_elbow", 1.0),
+        ("right_elbow", 2.0),
+    ]
+
+
 def test_move_group_gets_all_files_joined(tmp_path: Path) -> None:
     files, _ = built(tmp_path)
     given = parameters(files)
@@ -264,7 +292,7 @@ def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> N
     )
     (said,) = (it for it in findings if it.code == "MF836")
     assert said.line == 11
-    assert "default_velocity_scaling_factor 0.1" in said.message
+    assert "default_velocity_scaling_factor is 0.1, before it 0.5" in said.message
     assert parameters(files)["robot_description_planning"]["default_velocity_scaling_factor"] == 0.5
 
 
@@ -280,11 +308,11 @@ def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> N
         ("[left_arm, right_arm]", "[left_arm, rigth_arm]", "did you mean 'right_arm'"),
         ("both: [", "left_arm: [", "is a group of one arm"),
         ("{groups:", "{name: left, groups:", "a robot is called 'left', too"),
-        ("layout:", "groups: keep\nlayout:", "no arm has a group 'left_arm'"),
+        ("layout:", "groups: keep\nlayout:", "; set groups: rename"),
         (
             "cell: {groups: {both: [left_arm, right_arm]}}",
             "cell: {}\ngroups: keep",
-            "two robots have the group 'arm'",
+            "robot 'right': group 'arm' is in ",
         ),
     ],
 )
@@ -298,9 +326,11 @@ def test_what_cannot_be_joined_is_one_line(old: str, new: str, said: str, tmp_pa
 @pytest.mark.more
 def test_an_arm_that_moves_or_has_no_single_root_is_refused(tmp_path: Path) -> None:
     floating = SRDF.replace('type="fixed"', 'type="floating"')
-    assert "'left_place' of robot 'left' is floating" in refused(tmp_path, arm_srdf=floating)
+    assert "robot 'left': its virtual joint 'left_place' is floating" in refused(
+        tmp_path, arm_srdf=floating
+    )
     apart = FILES["arm.urdf"].replace("</robot>", '<link name="loose"/></robot>')
-    assert "robot 'left' has 2 root links" in refused(tmp_path, arm_urdf=apart)
+    assert "robot 'left': 2 of its links have no parent" in refused(tmp_path, arm_urdf=apart)
 
 
 def test_a_manager_for_one_controller_manager_is_refused(tmp_path: Path) -> None:

@@ -176,11 +176,18 @@ def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -
     ("text", "words"),
     [
         ("version: nav2_route 1.3.9", "nav2_route 1.3.9 or newer"),
-        ("use_mag != false and version: a 1.0 or on", "use_mag != false and a 1.0 or newer or on"),
+        (
+            "use_mag != false and version: a 1.0 or on",
+            "use_mag is not false and a 1.0 or newer or on is true",
+        ),
+        ("<c>.plugin|<c>.class = MPPI | DWB", "<c>.plugin or <c>.class is MPPI or DWB"),
+        ("heard: points and scan_topic unset", "points has a subscriber and scan_topic is not set"),
+        # What the files of a fleet say besides.
+        ("its parameters are in nav2.yaml", "its parameters are in nav2.yaml"),
         ("open: device", "only if the device has it"),
-        ("open: device or on", "only if the device has it or on"),
+        ("open: device or on", "only if the device has it or on is true"),
         ("", ""),
     ],
 )
-def test_people_read_a_version_as_one_or_newer(text: str, words: str) -> None:
+def test_people_read_a_condition_as_english(text: str, words: str) -> None:
     assert said(text) == words

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.knowledge.conditions import ALSO
 from multibot_rewrite.knowledge.parameters import Branch, KnownNode, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts, Param
 from multibot_rewrite.knowledge.stacks import built_in
@@ -67,7 +68,8 @@ def test_a_parameter_that_names_something_is_known_as_a_name(release: str) -> No
     for facts, node in both(release):
         if node is None and facts.name in NO_PARAMETERS:
             continue
-        wanted = [(it.parameter, NAMES) for it in facts.endpoints if it.parameter]
+        ends = [it.parameter for it in facts.endpoints if it.parameter]
+        wanted = [(one, NAMES) for it in ends for one in it.split(ALSO)]
         wanted += [(it.parameter, FRAMES) for it in facts.frames]
         for path, kinds in wanted:
             there = {it.kind for it in params_of(node, path)} if node else set()

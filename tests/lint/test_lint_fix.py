@@ -16,7 +16,7 @@ from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.rules.settings import Settings
 
-SAMPLE = 60
+SAMPLE = 120
 BOM = b"\xef\xbb\xbf"
 # A prefix that is not used, twice, and a comment that suppresses nothing.
 FIXABLE = (
@@ -87,15 +87,7 @@ def test_marks_and_line_ends_around_it_stay(data: bytes) -> None:
 def test_files_of_the_corpus(corpus: dict[str, Path]) -> None:
     # Most of what is fixed are prefixes that nothing uses.
     likely = {name: path for name, path in corpus.items() if b" xmlns:" in path.read_bytes()}
-    assert sum(check(str(it), it.read_bytes()) for it in spread(likely, SAMPLE).values()) > 5
-
-
-@pytest.mark.deep
-def test_every_file_of_the_corpus(corpus: dict[str, Path]) -> None:
-    fixed = 0
-    for path in corpus.values():
-        fixed += check(str(path), path.read_bytes())
-    assert fixed > 50
+    assert sum(check(str(it), it.read_bytes()) for it in spread(likely, SAMPLE).values()) > 10
 
 
 def with_edits(monkeypatch: pytest.MonkeyPatch, *edits: Edit) -> None:

@@ -401,7 +401,7 @@ def test_the_cost_of_many_files_grows_with_their_number_and_not_faster(tmp_path:
 # ---------------------------------------------------------------- damaged files
 
 ROBOTS = ("robot1", "robot2")
-FEW_MUTANTS, MANY_MUTANTS = 300, 5_000
+FEW_MUTANTS, MANY_MUTANTS = 300, 2_000
 
 
 def hunt(sources: list[bytes], seeds: range) -> int:
@@ -456,11 +456,10 @@ def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Fin
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("form", FORMATS)
-def test_of_the_corpus_neither(form: str, corpus: dict[str, Path], tmp_path: Path) -> None:
+def test_of_the_corpus_neither(corpus: dict[str, Path], tmp_path: Path) -> None:
     home = str(next(iter(corpus.values())).parents[1])
-    for jobs in ("1", "2", "4"):
+    for jobs in ("1", "4"):
         target = str(tmp_path / jobs)
-        assert main([home, "--jobs", jobs, "--format", form, "--output", target]) == 1
-    one, two, four = ((tmp_path / jobs).read_bytes() for jobs in ("1", "2", "4"))
-    assert one == two == four
+        assert main([home, "--jobs", jobs, "--format", "json", "--output", target]) == 1
+    one, four = ((tmp_path / jobs).read_bytes() for jobs in ("1", "4"))
+    assert one == four

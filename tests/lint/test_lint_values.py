@@ -25,16 +25,15 @@ QUIET = {
 }
 # What nothing tells: a filter of a costmap among its layers, which is loaded all the same; what Jazzy
 # takes (it was refused in Humble, where it is told); a sensor type that sdformat takes; a node that is
-# not known; what twist_mux never reads; a map on the robot; wheels of an SDF model; a weight alone.
+# not known; what twist_mux never reads; a map on the robot.
 UNTOLD = {
     *("q_keepout_as_layer", "u_pursuit_turns_and_reverses", "v_camera_type_word"),
     *("u_gz_control_node", "u_mux_output_stamped", "v_map_not_there"),
-    "v_mass_in_grams",
 }
 
 
 def test_the_lists_are_whole() -> None:
-    assert len(EVERY) == len({it.name for it in EVERY}) == 261
+    assert len(EVERY) == len({it.name for it in EVERY}) == 264
     assert len(ODD) == 154
     assert all(it.source.startswith("https://") for it in QUESTIONS)
 

@@ -38,8 +38,8 @@ def write(folder: Path, files: Mapping[str, str | bytes]) -> None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-# Notes, and the file was not checked.
-UNREAD = ("MB145", "MB119")
+# Notes: the file was not checked, or is a part that hangs on a link of another.
+NOTES = ("MB145", "MB119", "MB202")
 
 
 def linted(folder: Path, *paths: str, **settings: object) -> list[Finding]:
@@ -49,7 +49,7 @@ def linted(folder: Path, *paths: str, **settings: object) -> list[Finding]:
     os.chdir(folder)
     try:
         chosen = Settings(**{"select": ("MB1", "MB2", "MB501"), **settings})  # type: ignore[arg-type]
-        return [it for it in lint_files(paths, chosen) if it.level != NOTE or it.code in UNREAD]
+        return [it for it in lint_files(paths, chosen) if it.level != NOTE or it.code in NOTES]
     finally:
         os.chdir(before)
 
@@ -437,3 +437,41 @@ def test_a_part_alone_is_known_by_what_includes_it(
     write(tmp_path, {"package.xml": MANIFEST % "p", **files})
     found = linted(tmp_path, "part.urdf.xacro", select=("MB202",))
     assert [it.code for it in found] == codes
+
+
+LACKS = {
+    "r.urdf": (f'<link name="a"/><link name="base"/>{LOST}', "error"),
+    "r.xacro": (f'<link name="a"/><link name="base"/>{LOST}', "warning"),
+    "part.xacro": (f'<link name="a"/>{LOST}', "note"),
+}
+
+
+@pytest.mark.parametrize("name", LACKS)
+def test_what_a_file_lacks_is_as_bad_as_it_is_certain(name: str, tmp_path: Path) -> None:
+    body, level = LACKS[name]
+    assert one(tmp_path, {name: xacro(body)}, name, select=("MB202",)).level == level
+
+
+@pytest.mark.parametrize(("file", "level"), [("other.xacro", "warning"), ("r.urdf", "warning")])
+def test_a_name_that_nothing_makes_stops_no_more_than_that_file(
+    file: str, level: str, tmp_path: Path
+) -> None:
+    found = one(tmp_path, {file: xacro("<xacro:m/>", "r"), "x/a.urdf": xacro("")}, file)
+    assert (found.code, found.level) == ("MB103", level)
+
+
+def test_a_macro_of_another_file_of_the_package_makes_a_part(tmp_path: Path) -> None:
+    made = xacro('<xacro:macro name="m"><link name="a"/></xacro:macro>')
+    write(
+        tmp_path, {"package.xml": MANIFEST % "p", "m.xacro": made, "r.xacro": xacro("<xacro:m/>")}
+    )
+    found = lint_files([str(tmp_path / "r.xacro")], Settings(select=("MB103",)))
+    assert [it.level for it in found] == [NOTE]
+
+
+def test_a_value_that_an_argument_gives_is_no_error(tmp_path: Path) -> None:
+    argument = '<xacro:arg name="m" default="-1"/><xacro:property name="p" value="$(arg m)"/>'
+    for value, level in (("-1", "error"), ("$(arg m)", "warning"), ("${p}", "warning")):
+        link = f'<link name="a"><inertial><mass value="{value}"/></inertial></link>'
+        found = one(tmp_path, {"r.xacro": xacro(argument + link)}, select=("MB125",))
+        assert found.level == level

@@ -201,7 +201,7 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
         end("/scan"),
         end("/two"),
         end("/two", node="/b"),
-        end("/joints", JOINTS),
+        end("/joy", "sensor_msgs/msg/Joy"),
         end("/silent"),
     ]
     for _ in range(2):

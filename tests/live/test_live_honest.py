@@ -100,7 +100,7 @@ def test_the_participants_beyond_32_are_not_called_missing(ros: None, tmp_path: 
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("count", [30, 32, 34, 50, 100])
+@pytest.mark.parametrize("count", [30, 32, 34])
 def test_how_many_participants_are_seen(ros: None, count: int, tmp_path: Path) -> None:
     names, nodes = crowd(count)
     plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
@@ -190,7 +190,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
 def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) -> None:
     """Who looks later does not see it."""
     with one_robot_killed(plan, 82) as lines:
-        twins = wait_for(lines, "+ /robot1/drive", "MG301 2 nodes have this name")
+        twins = wait_for(lines, "+ /robot1/drive", "MG301 2 nodes have the name")
         fresh = check(plan, 82)
     assert "a node that was killed stays visible for 20 s" in twins
     assert (fresh.returncode, fresh.stdout) == (0, ""), fresh.stderr

@@ -71,7 +71,7 @@ def test_a_leak_on_another_host_is_named(plan: Path) -> None:
             done = run(base, "check", plan, "-v", **SUBNET)
     assert done.returncode == 1, done.stderr
     assert "/robot2/drive: error: MG102" in done.stdout
-    assert "/robot2/drive: error: MG310 uses /cmd_vel" in done.stdout
+    assert "/robot2/drive: error: MG320 uses /cmd_vel" in done.stdout  # a String moves nothing
     assert "/robot1/drive" not in done.stdout
 
 
@@ -157,7 +157,7 @@ def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("count", [3, 31, 33, 60, 100])
+@pytest.mark.parametrize("count", [33, 60])
 def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
     names = [f"robot{number}" for number in range(1, count + 1)]
     plan = write_plan(tmp_path / "plan.yaml", names)

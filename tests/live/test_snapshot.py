@@ -522,7 +522,7 @@ def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
     at = SimpleNamespace(x=x, y=0.0, z=0.0)
     turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     return SimpleNamespace(
-        header=SimpleNamespace(frame_id=parent), child_frame_id=child,
+        header=SimpleNamespace(frame_id=parent, stamp=0.0), child_frame_id=child,
         transform=SimpleNamespace(translation=at, rotation=turn),
     )  # fmt: skip
 

@@ -30,7 +30,7 @@ OPTIONS: tuple[dict[str, str], ...] = (
     {"layout": "L2", "affix": "prefix"},
     {"affix": "prefix"},
 )
-FEW, MANY = 250, 20_000
+FEW, MANY = 250, 6_000
 # So many of the mutants at least must get past the parser and be rewritten, or nothing is tested.
 LEAST_REWRITTEN = 0.2
 

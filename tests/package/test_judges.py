@@ -29,7 +29,7 @@ ROBOTS = ("robot1", "robot2")
 # An address has no name: each judge calls it by what opens it.
 CODES = tuple(sorted(SHARED_CODES - {"MB412"}))
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-EVERY = 41
+EVERY = 13
 _NAME = re.compile(r"'([^']+)'")
 
 
@@ -76,11 +76,6 @@ def test_five_judges_agree(corpus: dict[str, Path], tmp_path: Path) -> None:
     with_plugins = [it for it in corpus.values() if b"<plugin" in it.read_bytes()]
     assert len(with_plugins[::EVERY]) > 10
     assert disagreements(with_plugins[::EVERY], tmp_path) == {}
-
-
-@pytest.mark.deep
-def test_five_judges_agree_about_every_file(corpus: dict[str, Path], tmp_path: Path) -> None:
-    assert disagreements(corpus.values(), tmp_path) == {}
 
 
 @pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.deep)])

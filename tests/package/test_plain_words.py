@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterator
+from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from parsed import sources
+import said_texts
 from paths import ROOT
 
 from multibot_rewrite.base import other_words
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.multibot import overview
 from multibot_rewrite.cli.parser import make_parser
+from multibot_rewrite.lint import catalogue
 
 # Pages for users; those of measurements and for contributors name the code's own terms.
 PAGES = (
@@ -35,6 +37,7 @@ class Term(NamedTuple):
     plain: tuple[str, ...]
 
 
+@cache
 def terms() -> list[Term]:
     rows = [it.split("\t") for it in TERMS.read_text().splitlines() if not it.startswith("#")]
     return [
@@ -57,26 +60,6 @@ def found_in(text: str) -> Iterator[str]:
             yield f"{word[0]!r}, write {it.instead}: {' '.join(text.split())[:90]}"
 
 
-def messages() -> Iterator[tuple[str, str]]:
-    """Every text of more than one word in the code that is no docstring: with file and line."""
-    for path, tree in sources().items():
-        firsts = (getattr(it, "body", None) for it in ast.walk(tree))
-        docs = {
-            id(it[0].value)
-            for it in firsts
-            if isinstance(it, list) and it and isinstance(it[0], ast.Expr)
-        }
-        for it in ast.walk(tree):
-            text = getattr(it, "value", None)
-            if (
-                isinstance(it, ast.Constant)
-                and isinstance(text, str)
-                and " " in text
-                and id(it) not in docs
-            ):
-                yield f"{path}:{it.lineno}", text
-
-
 def test_a_term_is_found_unless_it_is_plain_english() -> None:
     assert list(found_in("whom nobody hears"))
     assert list(found_in("the loop closes"))
@@ -86,7 +69,25 @@ def test_a_term_is_found_unless_it_is_plain_english() -> None:
 
 @pytest.mark.more
 def test_messages_have_no_private_term() -> None:
-    assert [f"{place}: {it}" for place, text in messages() for it in found_in(text)] == []
+    """Those of the code, the words of rules, and the notes of data files that messages show."""
+    texts = chain(said_texts.messages(), said_texts.rule_words(), said_texts.notes())
+    assert [f"{place}: {it}" for place, text in texts for it in found_in(text)] == []
+
+
+def test_a_name_of_a_rule_has_no_private_term() -> None:
+    names = [it.name.replace("-", " ") for it in catalogue.rules().values()]
+    assert [it for name in names for it in found_in(name)] == []
+
+
+@pytest.mark.more
+def test_every_kind_of_text_is_looked_at() -> None:
+    """A message with a value, a word of a rule, a note of a node, a plugin and a schema."""
+    messages, notes = dict(said_texts.messages()), dict(said_texts.notes())
+    assert any("did you mean" in it for it in messages.values())
+    assert any(it.startswith("unknown option X") for it in messages.values())
+    assert len(messages) > 5000
+    kinds = {Path(it.partition(":")[0]).suffix for it in notes}
+    assert kinds == {".yaml", ".vocab", ".schema", ".json", ".js"}
 
 
 @pytest.mark.parametrize("name", [*COMMANDS, *(it.name for it in PROGRAMS)])

@@ -261,7 +261,7 @@ def test_most_random_robots_are_rewritten() -> None:
 
 @pytest.mark.deep
 @given(random_robots(), options, robot_names)
-@settings(max_examples=10_000)
+@settings(max_examples=2_000)
 def test_thousands_of_robots(robot: Robot, words: Options, name: str) -> None:
     result = attempt(robot, words, name)
     if result:

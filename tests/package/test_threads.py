@@ -16,7 +16,7 @@ from threads_child import Job, outcome
 
 CHILD = Path(__file__).parents[1] / "support" / "threads_child.py"
 THREADS = 8
-OFTEN, VERY_OFTEN = range(10), range(10, 200)
+OFTEN, VERY_OFTEN = range(10), range(10, 50)
 
 
 @cache

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tarfile
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
@@ -41,24 +40,50 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("RoboAlQuds2027+temp_ros2_issue_spawn_two_robot", "ede9146", "", {}),
     ("Kinovarobotics+ros2_kortex", "2f2ba44", "", {}),
 ]
-_NO = [
-    f":(exclude)*{it}" for it in (".dae", ".stl", ".STL", ".obj", ".png", ".jpg", ".gif", ".pdf")
+_TEXTS = [
+    "xacro",
+    "urdf",
+    "srdf",
+    "sdf",
+    "world",
+    "xml",
+    "yaml",
+    "yml",
+    "rviz",
+    "py",
+    "cpp",
+    "cc",
+    "c",
+    "hpp",
+    "hh",
+    "h",
+    "lua",
+    "launch",
+    "txt",
 ]
 _PARTS = ("link", "joint", "ros2_control")
 
 
-def git(repo: Path, *words: str) -> bytes:
-    """What git prints."""
-    words = ("git", f"--git-dir={repo}", *words)
-    return subprocess.run(words, capture_output=True, check=True).stdout
+def git(repo: Path, *words: str, given: bytes = b"") -> bytes:
+    """What git prints; nothing is fetched."""
+    words = ("git", "-c", "remote.origin.promisor=false", f"--git-dir={repo}", *words)
+    return subprocess.run(words, input=given, capture_output=True, check=True).stdout
 
 
 def checkout(repo: Path, commit: str, folder: Path) -> Path:
-    """The text files of a commit."""
-    data = git(repo, "archive", commit, *_NO)
-    with tarfile.open(fileobj=BytesIO(data)) as tar:
-        files = [it for it in tar.getmembers() if it.isfile() or it.isdir()]
-        tar.extractall(folder, files, filter="data")
+    """The text files of a commit; a mirror lacks the largest."""
+    names = git(repo, "ls-tree", "-r", "-z", "--name-only", commit).decode().split("\0")
+    texts = [it for it in names if it.rpartition(".")[2] in _TEXTS]
+    asked = "".join(f"{commit}:{it}\n" for it in texts).encode()
+    stream = BytesIO(git(repo, "cat-file", "--batch", given=asked))
+    for name in texts:
+        head = stream.readline().split()
+        if head[-1] == b"missing":
+            continue
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(stream.read(int(head[-1])))
+        stream.read(1)
     (folder / ".git").mkdir()
     return folder
 

@@ -357,7 +357,8 @@ def _named(edges: list[Edge]) -> set[str]:
 
 
 def _edges_by_sender(graph: System) -> dict[str, list[Edge]]:
-    """Whose transform each is: of those that publish its topic one that sends nothing else there."""
+    """Whose transform each is, of those that publish its topic: AMCL's in the map, the description's if
+    it is static, else another's."""
     found: dict[str, list[Edge]] = defaultdict(list)
     kinds = Counter((it.node, it.name) for it in graph.ends if it.role == PUBLISHES)
     described = {
@@ -365,7 +366,9 @@ def _edges_by_sender(graph: System) -> dict[str, list[Edge]]:
     }
     for edge in graph.edges:
         able = [it for it in edge.publishers if kinds[it, edge.topic]]
-        first = sorted(able, key=lambda it: (it in described) != edge.static)
+        in_map = "map" in edge.parent.split("/")
+        fixed = edge.static and not in_map
+        first = sorted(able, key=lambda it: ((it in described) != fixed, ("amcl" in it) != in_map))
         for node in first[: 2 if edge.several else 1]:
             found[node].append(edge)
     return found

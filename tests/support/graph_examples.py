@@ -16,6 +16,8 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     transform PARENT -> CHILD on TOPIC [at X Y Z] [by NODES] [twice]    a transform, who publishes
                                                      there, and whether several of them send it
     frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
+    joints NAME on TOPIC                the joint that a message on the topic names
+    /clock runs, /clock goes back NUMBER s     the time on it
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
     state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
     host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
@@ -89,6 +91,8 @@ HOLDS = re.compile(r"(/\S+) holds (device|calibration|computer|own) (\S+) (\S+)"
 LOOKS_UP = re.compile(r"(/\S+) looks up (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 CAME = re.compile(r"(/\S+) came (\d+) times")
+JOINTS = re.compile(r"joints (\S+) on (/\S+)")
+CLOCK_TIME = re.compile(r"(/clock) (?:runs|goes back ([\d.]+) s)")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
@@ -168,7 +172,19 @@ def _with_node(plan: System, name: str) -> System:
 def _is_known(line: str) -> bool:
     states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
-    every = (NODE, TRANSFORM, FRAME_ID, INTERFACE, HOLDS, LOOKS_UP, CAME, *planned, *ANSWERS)
+    every = (
+        NODE,
+        TRANSFORM,
+        FRAME_ID,
+        JOINTS,
+        CLOCK_TIME,
+        INTERFACE,
+        HOLDS,
+        LOOKS_UP,
+        CAME,
+        *planned,
+        *ANSWERS,
+    )
     return any(it.fullmatch(line) for it in every)
 
 
@@ -229,6 +245,15 @@ def _kind(role: str, type_: str) -> str:
     return TOPIC if role in (PUBLISHES, SUBSCRIBES) else SERVICE
 
 
+def _heard(lines: list[str]) -> Iterator[Heard]:
+    for frame, topic, age in _words(FRAME_ID, lines):
+        yield Heard(topic, frame, float(age or 0))
+    for joint, topic in _words(JOINTS, lines):
+        yield Heard(topic, "", joints=(joint,))
+    for topic, back in _words(CLOCK_TIME, lines):
+        yield Heard(topic, "", back=float(back or 0))
+
+
 def read_graph(lines: list[str]) -> System:
     """What the lines say is running."""
     ends = [words for words in _words(NODE, lines) if words[1]]
@@ -244,9 +269,7 @@ def read_graph(lines: list[str]) -> System:
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
-        tuple(
-            Heard(topic, frame, float(age or 0)) for frame, topic, age in _words(FRAME_ID, lines)
-        ),
+        tuple(_heard(lines)),
         interfaces=tuple(
             Interface(kind, name, node, role) for node, role, kind, name in _words(INTERFACE, lines)
         ),

@@ -25,7 +25,7 @@ from typing import Any
 
 from waiting import PATIENCE
 
-READY = "ready"
+READY, CLOCK = "ready", "rosgraph_msgs/msg/Clock"
 _MODULES = {
     "TFMessage": "tf2_msgs.msg",
     "Trigger": "std_srvs.srv",
@@ -92,6 +92,7 @@ def main(spec: str) -> None:
     # Nobody is answered; a large fleet that spins would keep the machine busy.
     busy = ("frames", "headers", "parameters", "state")
     sends = any(one.get(key) for one in specs for key in busy)
+    sends = sends or any(it[1] == CLOCK for one in specs for it in one.get("publishers", ()))
     print(READY, flush=True)
     stop = _input_closed()
     while not stop.done():
@@ -128,7 +129,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     if spec.get("changed"):
         signal.signal(signal.SIGUSR1, lambda *_: _change(node, spec["changed"]))
     for name, type_, *words in spec.get("publishers", ()):
-        node.create_publisher(_type(type_), name, _qos(words))
+        publisher = node.create_publisher(_type(type_), name, _qos(words))
+        _run_clock(node, publisher, type_)
     for name, type_, *words in spec.get("subscriptions", ()):
         node.create_subscription(_type(type_), name, lambda _: None, _qos(words))
     for name, type_ in spec.get("services", ()):
@@ -144,6 +146,19 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     for header in spec.get("headers", ()):
         _send_header(node, *header)
     return node
+
+
+def _run_clock(node: Any, publisher: Any, type_: str) -> None:
+    """A simulation that has run for a while, if it is a clock."""
+    if type_ != CLOCK:
+        return
+    message = _type(CLOCK)()
+
+    def tick() -> None:
+        message.clock.sec += 1
+        publisher.publish(message)
+
+    node.create_timer(0.1, tick)
 
 
 def _change(node: Any, values: Mapping[str, Any]) -> None:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, reduce
 from typing import NamedTuple
@@ -192,8 +193,9 @@ def by_check(plan: System, graph: System) -> tuple[Finding, ...]:
 def tells(fault: Told, found: Iterable[Finding]) -> bool:
     """Does one error or warning have all the words? What is other than planned need have two of them:
     the plan says the rest."""
+    words = [re.compile(rf"(?<!\w){re.escape(it)}(?![\w/])", re.IGNORECASE) for it in fault.says]
     return any(
-        sum(word.casefold() in f"{it} {it.hint}".casefold() for word in fault.says)
+        sum(bool(word.search(f"{it} {it.hint}")) for word in words)
         >= (2 if it.code in DEVIATIONS else len(fault.says))
         for it in found
         if it.level in (ERROR, WARNING)

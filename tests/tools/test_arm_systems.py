@@ -39,8 +39,9 @@ PUBLISHER = "robot_state_publisher"
 # Humble's manager subscribes to it only without the parameter of that name, which the vendors' launch
 # files give it (controller_manager.cpp): with all that its sources declare it waits for a publisher.
 WAITS = {
-    ("humble", f"/{it}/controller_manager/robot_description", f"/{it}/robot_description")
+    ("humble", f"/{it}{sep}controller_manager/robot_description", f"/{it}/robot_description")
     for it in ROBOTS
+    for sep in "/_"
 }
 # The vendor's launch file leads this client to the controller by a rule (ur_control.launch.py); the
 # system here starts it without.

@@ -87,8 +87,8 @@ POSTFIX = Command(
                     "--world-systems",
                     "HOW",
                     WORLD_SYSTEMS,
-                    "systems of the whole world, as Sensors: keep (default), or leave them to the"
-                    " world, which has to load each once",
+                    "systems of the whole world, such as Sensors; keep (default), or leave them to"
+                    " the world, which has to load each once",
                     default=KEEP,
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
@@ -233,8 +233,8 @@ RENAME = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, a name that is not there or taken, or one that cannot be changed alone",
-    more="Changed are the xacro files that make the name, plain descriptions, SRDFs, parameters,"
-    " RViz configs, bridges, MoveIt's files and behavior trees, all or none.",
+    more="It changes the xacro files that make the name, plain descriptions, SRDFs, parameters, RViz"
+    " configs, bridges, MoveIt's files and behavior trees. It changes all of them, or none.",
 )
 ADOPT = Command(
     "adopt",
@@ -260,9 +260,9 @@ ADOPT = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, or no place for the prefix that changes nothing else",
-    more="Proved for each description: with an empty prefix the result is what it was, with"
-    " prefix:=robot1_ every name of a link, joint, frame, sensor and of ros2_control has it."
-    " Launch files are left.",
+    more="It checks each description twice. With an empty prefix the result is what it was. With"
+    " prefix:=robot1_ every link, joint, frame, sensor and name of ros2_control begins with it."
+    " Launch files are not changed.",
 )
 JOIN = Command(
     "join",
@@ -350,11 +350,11 @@ JOIN = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, a file that cannot be read, or parts that cannot be joined",
-    more="Proved on each run: every part taken out of the result again is what went in, and no joint"
+    more="Each run checks that every part can be taken out of the result as it was, and that no joint"
     " inside a part has changed. Names that two parts have are refused: give one a --prefix."
-    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part, the"
-    " first one too, join these as well, into PATH.srdf and PATH_controllers.yaml. A .join file says"
-    " all of it as YAML, and every command that takes a description takes one:"
+    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part and for"
+    " the first one, join these files, too. They become PATH.srdf and PATH_controllers.yaml. A .join"
+    " file has all of it as YAML, and every command that takes a description takes one:"
     "\n\n  join:\n    - {description: arm.urdf}\n"
     "    - {description: hand.urdf, prefix: hand_, at: {parent: tool0, pose: {z: 0.1}}}",
 )

@@ -96,8 +96,8 @@ _COUNT = value(
     "-n",
     "--count",
     metavar="COUNT",
-    about="so many robots: with init of each description (default: 2), with build the first ones of the"
-    " file and more like the last one (default: as the file has them)",
+    about="how many robots; init makes so many of each description (default: 2); build takes the first"
+    " ones of the file, or adds more like the last one (default: as the file has them)",
     type=values.count,
 )
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
@@ -208,15 +208,15 @@ PLAN = Command(
         _DESCRIPTION,
         output_group(
             output(
-                "write it there, not to standard output; a plan is YAML to read and edit, or, if FILE"
-                " ends in .json, JSON, which is read ten times faster"
+                "write it there, not to standard output; a plan is YAML to read and edit; if FILE"
+                " ends in .json, it is JSON, which is read ten times faster"
             ),
             form(
                 PLAN_FORMS,
-                "plan, for multibot check; the remap rules of each node as a table, as lines for a"
-                " shell (ros-args), for launch_ros (launch), for programs (yaml, json), for tags of"
-                " plugins (gazebo); topics for ros_gz_bridge (bridge); a policy of SROS2, an enclave"
-                " for each robot",
+                "plan: for multibot check; remap rules of each node: table, ros-args (lines for a"
+                " shell), launch (for launch_ros), gazebo (tags of plugins); yaml and json: the rules"
+                " for programs; bridge: topics for ros_gz_bridge; sros2: a policy with an enclave for"
+                " each robot",
             ),
         ),
         NAMING,
@@ -273,9 +273,10 @@ REHEARSE = Command(
         GENERAL,
     ),
     LIVE_CODES,
-    more=_FLEET_FILE + " Starts a stub for every node of each robot's plugins and stack with the"
-    " names of its code, applies the rules of multibot plan, and looks at the graph as multibot"
-    " check does. A type that is not installed is replaced.",
+    more=_FLEET_FILE
+    + " It starts a stub for every node of each robot's plugins and stack, with its"
+    " own names and the rules of multibot plan. Then it looks at the graph as multibot check"
+    " does. A type that is not installed is replaced.",
     fail_on=ERROR,
     findings_first=True,
 )

@@ -38,8 +38,8 @@ from multibot_rewrite.cli.options import (
 
 STATE = switch(
     "--state",
-    about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and the"
-    " parameters that multibot build wrote beside PLAN",
+    about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and"
+    " parameters that multibot build wrote",
 )
 HEADERS = rare(
     switch(
@@ -169,7 +169,7 @@ SNAPSHOT = Command(
                 ("json", "rosgraph", "nodes", "nodl"),
                 "json: the snapshot; rosgraph: a message of the type rosgraph_msgs/Graph (YAML, as ros2"
                 " topic echo prints it); nodes: a file of nodes and stacks for multibot plan --nodes;"
-                " nodl: NoDL interface files, with -o a folder for several nodes. Default: nodl if -o"
+                " nodl: NoDL interface files, with -o a folder for several nodes; default: nodl if -o"
                 " ends in .nodl.yaml, else json",
             ),
         ),

@@ -36,9 +36,9 @@ INSPECT = Command(
                 argument(
                     "words",
                     "WORD",
-                    "a finding's code, how it begins, or its name; a library, class, element or"
-                    " sensor type; or files and folders, which are searched for *.urdf and *.sdf;"
-                    " NAME:=VALUE is for xacro",
+                    "a finding's code, its beginning, or its name; a library, class, element or"
+                    " sensor type; files, or folders to search for *.urdf and *.sdf; NAME:=VALUE is"
+                    " for xacro",
                     "*",
                 ),
                 path_option(

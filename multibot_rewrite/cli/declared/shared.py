@@ -21,7 +21,7 @@ from multibot_rewrite.cli.options import (
     value,
 )
 
-_LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
+_LAYOUTS = "; ".join(f"{it.name} ({it.short}): {it.about}" for it in LAYOUTS)
 LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
 

@@ -18,7 +18,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.alone import rewrite_alone
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, PLANNING, file_kind
+from multibot_rewrite.companions.moveit.file_kind import ABOVE, OF_SERVO, PLANNING, file_kind
+from multibot_rewrite.companions.moveit.name_sites import entries
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
 from multibot_rewrite.companions.params.joined import added
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
@@ -40,10 +41,10 @@ class PartMoveit(NamedTuple):
 
 
 class JoinedMoveit(NamedTuple):
-    """The joined files by their names, and what a person should know."""
+    """The joined files by their names, and what a person should know: a file, and what of it."""
 
     files: Mapping[str, bytes]
-    notes: tuple[str, ...]
+    notes: tuple[tuple[str, str], ...]
 
 
 def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix: str) -> PartMoveit:
@@ -66,24 +67,30 @@ def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
     """One file of each kind, and of each pipeline."""
     roots: dict[str, yaml.MappingNode] = {}
     sources: dict[str, list[str]] = {}
-    notes: list[str] = []
+    notes: list[tuple[str, str]] = []
     for it in files:
         if it.kind == OF_SERVO:
-            notes.append(f"{it.file}: it is for one group of one servo_node, and left out")
+            notes.append((it.file, "it is for one group of one servo_node, and left out"))
             continue
-        root = it.document.root
+        root = _body(it)
         name = _name(it)
         if not isinstance(root, yaml.MappingNode):
             continue
         sources.setdefault(name, []).append(os.path.basename(it.file))
         first = roots.setdefault(name, root)
         if first is not root:
-            notes += (f"{it.file}: {what}" for what in added(first, root, ""))
+            notes += ((it.file, what) for what in added(first, root, ""))
     made = {}
     for name, root in roots.items():
         head = f"# joined by multibot from {', '.join(dict.fromkeys(sources[name]))}\n"
         made[name] = f"{head}{yaml.serialize(root, width=200)}".encode()
     return JoinedMoveit(made, tuple(notes))
+
+
+def _body(it: PartMoveit) -> yaml.Node | None:
+    """The parameters of a file without the one that some have above them."""
+    root, above = it.document.root, ABOVE.get(it.kind)
+    return next((value for key, value in entries(root) if key.value == above), root)
 
 
 def _name(it: PartMoveit) -> str:

@@ -253,8 +253,8 @@ MIXED_KEY = declare(
     "MF101",
     "mixed-section-key",
     ERROR,
-    what="The sections below one key need different names: a node of each robot is below it, and a "
-    "wildcard, a placeholder or a node that serves all robots.",
+    what="The sections below one key need different names. Below it is a node of each robot, and "
+    "also a wildcard, a placeholder or a node that serves all robots.",
     why="A node of each robot needs the robot's namespace in the key, the others need it as it is. "
     "With either key, one of the nodes has no section and runs with its defaults.",
     fix="Write each section under its own key, as in sensors/camera:.",

@@ -146,8 +146,8 @@ WRONG_TARGET = declare(
     WARNING,
     what="The remap rules of a node turn a topic that a parameter names into another one than they did "
     "for a single robot.",
-    why="Remap rules also match names that come from parameters, and in a namespace another rule may "
-    "match: the node uses a topic that no other node uses.",
+    why="Remap rules also match names that come from parameters, and in a namespace another rule "
+    "may match. Then the node uses a topic that no other node uses.",
     fix="Remove the name from the remap rules of the node, or from the file.",
     bad="""\
 slam_toolbox:

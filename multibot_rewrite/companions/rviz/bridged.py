@@ -27,8 +27,8 @@ BARE_HEADERS = declare(
     WARNING,
     what="A window shows all robots of a layout with bare frames, whose tf is bridged to /tf, and a "
     "display shows messages.",
-    why="tf_namespace_bridge puts the robot's name before frames in tf, not before those in headers of "
-    "messages: RViz finds no frame base_scan, and the display stays empty.",
+    why="tf_namespace_bridge puts the robot's name before frames in tf, not before those in "
+    "headers of messages. RViz finds no frame base_scan, and the display stays empty.",
     fix="Look at messages in the window of the robot, whose config is built, too. Or take layout both: "
     "its messages have the robot's frames.",
     bad="""\

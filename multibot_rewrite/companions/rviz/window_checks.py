@@ -81,8 +81,8 @@ OWN_FIXED_FRAME = declare(
     "becomes the world frame of the fleet.",
     why="RViz shows only what it can transform to the Fixed Frame. A robot that no transform "
     "connects to the world frame stays invisible.",
-    fix="Publish a transform from the world frame to each robot (pose: in the fleet file does "
-    "it), or set world: to a frame that all robots share.",
+    fix="Publish a transform from the world frame to each robot: `pose` in the fleet file does it. "
+    "Or set `world` to a frame that all robots share.",
     bad="""\
 Visualization Manager:
   Global Options:

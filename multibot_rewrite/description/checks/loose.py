@@ -8,14 +8,17 @@ from collections.abc import Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.loose_xml import slips
+from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import Document, tag_end
 
 CODE = "MB146"
-_READERS = (
-    "urdfdom and sdformat read it; Python's XML parsers, and so xacro, read it otherwise or not"
-)
+_READERS = "urdfdom and sdformat read it, but Python's XML parsers and xacro do not"
+_MENDS = {
+    DASHES: "write == for --",
+    LATE: "delete what is before <?xml",
+    DEFAULT: "delete xmlns=, or give it a prefix",
+}
 
 
 def loosely_written(document: Document) -> Iterator[Problem]:
@@ -29,7 +32,8 @@ def loosely_written(document: Document) -> Iterator[Problem]:
             seen.add(what)
             element = document.elements[min(bisect_left(starts, offset), len(starts) - 1)]
             line, _ = locate(source, offset)
-            yield Problem(element, f"{what} in line {line}", None, _READERS, (), CODE)
+            hint = f"{_MENDS[what]}; {_READERS}"
+            yield Problem(element, f"{what} in line {line}", None, hint, (), CODE)
     for prefix, uri in _undeclared(document):
         found = next((it for it in document.elements if _uses(it, uri)), document.root)
         message = f"the prefix {prefix!r} is not declared"

@@ -32,6 +32,7 @@ from multibot_rewrite.description.steps.document import read_document
 
 _NAMED = ("group", "end_effector")
 _USES = ("group", "group_state")
+_PREFIX = "give the part a prefix of its own"
 
 
 class PartSemantics(NamedTuple):
@@ -63,9 +64,11 @@ def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
     return PartSemantics(part, data, file)
 
 
-def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0) -> JoinedSemantics:
-    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have, and as
-    ``touching`` where ``samples`` poses are asked for."""
+def joined_srdf(
+    parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0, hint: str = _PREFIX
+) -> JoinedSemantics:
+    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have, with the
+    ``hint`` what to do, and as ``touching`` where ``samples`` poses are asked for."""
     described = read_xml(urdf, "the joined description")
     root = etree.Element("robot", name=described.get("name", ""))
     known: dict[tuple[str, ...], str] = {}
@@ -73,7 +76,7 @@ def joined_srdf(parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0) -
         own = read_xml(it.data, it.file) if it.data else root.makeelement("robot", {})
         if at:
             without_virtual_joints(own)
-        _check_names(own, it, known)
+        _check_names(own, it, known, hint)
         root.extend(list(own))
     reasons = dict.fromkeys(sorted(set(_adjacent(described, parts))), "Adjacent")
     others = [it for it in _between(described, parts) if it not in reasons]
@@ -104,12 +107,14 @@ def xml_text(root: _Element) -> bytes:
     return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
 
 
-def _check_names(own: _Element, it: PartSemantics, known: dict[tuple[str, ...], str]) -> None:
+def _check_names(
+    own: _Element, it: PartSemantics, known: dict[tuple[str, ...], str], hint: str
+) -> None:
     named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
     for key in dict.fromkeys(named):
         if key in known:
-            what = f"{key[0]} {key[1]!r} is in {known[key]}, too; give the part a prefix of its own"
-            raise InputError(f"{it.file}: {what}")
+            what = f"{key[0]} {key[1]!r} is in {known[key]}, too"
+            raise InputError(f"{it.file}: {what}; {hint}")
         known[key] = it.file
 
 

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.fleet.checks.across_domains import not_across
 from multibot_rewrite.fleet.checks.judged import (
     apart,
     contradicted,
@@ -74,7 +75,7 @@ def gaps_of(
     known = {it for it in found if it.code in codes() and it.level != NOTE}
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
-    known |= {*_gaps(plan, fleet, texts, known)}
+    known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet)}
     return tuple(sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
 
 

@@ -26,8 +26,12 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.fleet.robots.own_values import Written, own_value, sources_of
 from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.system.records import KINDS
 
 NOTHING: Mapping[str, Written] = MappingProxyType({})
+ONE_DOMAIN: Mapping[str, int] = MappingProxyType({})
+# What nodes of two domains may both have.
+_OF_ROS = frozenset((NODE, *KINDS))
 
 
 def with_meetings(
@@ -35,18 +39,23 @@ def with_meetings(
     members: Sequence[Member],
     naming: Naming,
     written: Mapping[str, Written] = NOTHING,
+    domains: Mapping[str, int] = ONE_DOMAIN,
 ) -> Table:
     """The table with an error for each name that two robots have and that is not shared; ``written``
-    are the files of robots, by namespace.
+    are the files of robots, by namespace, ``domains`` theirs where they are not in one.
 
     Controllers that a stack names are in the table, with their spawners' rules.
     """
-    found = tuple(dict.fromkeys(_meetings(table, members, naming, written)))
+    found = tuple(dict.fromkeys(_meetings(table, members, naming, written, domains)))
     return table._replace(problems=(*table.problems, *found))
 
 
 def _meetings(
-    table: Table, members: Sequence[Member], naming: Naming, written: Mapping[str, Written]
+    table: Table,
+    members: Sequence[Member],
+    naming: Naming,
+    written: Mapping[str, Written],
+    domains: Mapping[str, int],
 ) -> Iterator[Finding]:
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.nodes if it.home.is_controller}
@@ -60,6 +69,8 @@ def _meetings(
         return
     by_robot = {it.robot: it for it in members}
     for it in meetings(_named(table, members), naming):
+        if it.name.kind in _OF_ROS and domains.get(it.robot) != domains.get(it.other):
+            continue
         yield _finding(it, by_robot.get(it.robot), written.get(it.robot))
 
 

@@ -46,19 +46,28 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
         kinds = value.items() if key == "companions" and value else [("", value)]
         for kind, paths in kinds:
             here = (*at, key, kind) if kind else (*at, key)
-            for path in (it for it in listed(paths) if not os.path.isfile(it)):
+            words = (it for it in listed(paths) if isinstance(it, str))
+            for path in (it for it in words if not os.path.isfile(it)):
                 file, line = places[here]
                 what = "is a folder, not a file" if os.path.isdir(path) else "does not exist"
                 raise InputError(f"{file}:{line}: {path} {what}; correct the path")
+
+
+def texts_of(values: Sequence[Any], file: str) -> dict[str, str]:
+    """The texts of parameters that stand in the fleet file itself, by the path that each has then."""
+    given = [it for it in values if not isinstance(it, str)]
+    paths = (os.path.join(file, f"values{at or ''}.yaml") for at in range(len(given)))
+    full = ({node: {"ros__parameters": own} for node, own in it.items()} for it in given)
+    return {path: yaml.safe_dump(it, sort_keys=False) for path, it in zip(paths, full, strict=True)}
 
 
 def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     """The data with every path relative to the working directory."""
 
     def resolve(value: Any) -> Any:
-        return (
-            os.path.join(folder, value) if isinstance(value, str) else [resolve(it) for it in value]
-        )
+        if isinstance(value, str):
+            return os.path.join(folder, value)
+        return value if isinstance(value, dict) else [resolve(it) for it in value]
 
     result = dict(data)
     for key in (*PATHS, *BESIDE):

@@ -12,6 +12,7 @@ from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import chosen_release
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
+from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
     FleetData,
     listed,
@@ -40,7 +41,8 @@ class FleetFile(NamedTuple):
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
-    ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations.
+    ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations;
+    ``apart`` are the domains of robots that are not in one.
     ``installed`` is where the results are when they are used, empty for where
     they are written. ``simulator_world`` is the user's world for it, which the file names at
     ``world_place``."""
@@ -64,6 +66,7 @@ class FleetFile(NamedTuple):
     zenoh: Setup | None = None
     simulator_world: str = ""
     world_place: tuple[str, int] = ("", 1)
+    apart: Apart = TOGETHER
 
 
 def read_fleet(
@@ -107,6 +110,7 @@ def read_fleet(
         zenoh_of(read),
         data.get("simulator_world", ""),
         read.places.get(("simulator_world",), (read.file, 1)),
+        apart_of(read, robots),
     )
 
 

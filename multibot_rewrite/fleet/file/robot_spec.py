@@ -5,18 +5,19 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import JOIN as LIST
 from multibot_rewrite.fleet.file.checked_yaml import Path
-from multibot_rewrite.fleet.file.fleet_data import FleetData, given_arguments, listed
+from multibot_rewrite.fleet.file.fleet_data import FleetData, given_arguments, listed, texts_of
 from multibot_rewrite.fleet.file.listed_parts import described
 from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
@@ -44,8 +45,9 @@ class RobotSpec(NamedTuple):
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
-    is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameter
-    files in which a launch replaces something, and what is made of ``parts``, which are joined.
+    is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
+    in the fleet file itself, parameter files in which a launch replaces something, and what is made of
+    ``parts``, which are joined.
     ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so. ``use_sim_time``
     is what all its nodes have, None if the file does not say. ``simulated`` is the model that the
     simulator gets, empty where that is the description. ``bridge_namespace`` is the one below its
@@ -82,7 +84,9 @@ class RobotSpec(NamedTuple):
     @property
     def files(self) -> Iterator[str]:
         """Every file of a disk that it is made of."""
-        made = {self.description, *dict(self.filled)} if self.parts else set()
+        # Parameters in the fleet file itself are called as if it were a folder.
+        made = {it for it, _ in self.filled if os.path.dirname(it) == self.file}
+        made |= {self.description, *dict(self.filled)} if self.parts else set()
         own = (self.description, self.srdf, self.simulated)
         beside = (path for paths in self.companions.values() for path in paths)
         yield from (it for it in (*own, *beside) if it and (it not in made or it.endswith(LIST)))
@@ -119,6 +123,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
     companions = {**data.get("companions", {}), **own.get("companions", {})}
+    texts = texts_of(listed(companions.get(PARAMS, [])), file)
     stacks = tuple(listed(own.get("stack", data.get("stack", []))))
     _check_stacks(read, at, stacks, release)
     return RobotSpec(
@@ -132,10 +137,11 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         _pose(own, place),
         _colour(own, place),
         stacks,
-        {kind: tuple(listed(it)) for kind, it in companions.items()},
+        {kind: tuple(_files(listed(it), texts)) for kind, it in companions.items()},
         file,
         line,
         tuple(_launch(data, own, place)),
+        tuple(texts.items()),
         simulator=own.get("simulator", data.get("simulator", "")),
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
         simulated=_simulated(data, own),
@@ -143,6 +149,12 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         fills=own.get("fill_arguments", data.get("fill_arguments", True)),
         parts=parts,
     )
+
+
+def _files(values: Sequence[Any], texts: Iterable[str]) -> Iterator[str]:
+    """The paths of companions: of parameters in the fleet file itself that of their text."""
+    made = iter(texts)
+    yield from (it if isinstance(it, str) else next(made) for it in values)
 
 
 def _simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> str:

@@ -36,6 +36,7 @@ from multibot_rewrite.knowledge.programs import (
 )
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
+from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
 from multibot_rewrite.system.records import PUBLISHES
@@ -47,6 +48,7 @@ _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 _DESCRIBE = "describe it in a file of nodes, with `programs:` (docs/stacks.md)"
 _NAME = "if it does, add it to a `stack:`, declare it in a parameter file, or start it here"
 _BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
+_DOMAIN_BRIDGE = Program("domain_bridge", "domain_bridge")
 
 
 def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
@@ -67,7 +69,7 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     placed = start_poses.start_poses(one).transforms
     starts += [it.start for it in placed]
     copied, bridged_tf = _relays(given)
-    starts += copied
+    starts += [*copied, *_domain_bridge(robot, files)]
     params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
     told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
     found = tuple(starts), tuple(spawned), tuple(left.items())
@@ -270,6 +272,14 @@ def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
     made = relays(given.robot.spec.namespace, naming, file)
     starts = tuple(it.start for it in made)
     return (starts, ()) if naming.layout.frames else ((), starts)
+
+
+def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
+    """What brings topics between its domain and that of all robots."""
+    path = bridge_path(robot.spec.namespace)
+    if path in files:
+        name = bridge_name(robot.spec.namespace)
+        yield Start(*_DOMAIN_BRIDGE[:2], "", name, arguments=(File(path),))
 
 
 def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:

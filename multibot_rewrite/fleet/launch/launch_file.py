@@ -57,7 +57,15 @@ def fleet_starts(
         bool(simulators) if clock is None else clock,
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
+        _domains(plan),
     )
+
+
+def _domains(plan: FleetPlan) -> dict[str, int]:
+    """By a robot's name, as it is chosen with, not by its namespace."""
+    numbers = {it.robot: it.number for it in plan.file.apart.domains}
+    own = {it.spec.name: numbers[it.spec.namespace] for it in plan.robots if numbers}
+    return {**own, "": numbers[""]} if numbers else {}
 
 
 def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> RobotStarts:

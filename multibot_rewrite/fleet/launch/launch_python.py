@@ -33,7 +33,7 @@ _IMPORTS = {
     "launch": ("LaunchDescription",),
     "launch.actions": (
         *("DeclareLaunchArgument", "EmitEvent", "GroupAction", "IncludeLaunchDescription"),
-        *("LogInfo", "OpaqueFunction", "RegisterEventHandler"),
+        *("LogInfo", "OpaqueFunction", "RegisterEventHandler", "SetEnvironmentVariable"),
     ),
     "launch.conditions": ("IfCondition",),
     "launch.events": ("matches_action",),
@@ -86,6 +86,11 @@ def brought_up(node):
     )
     return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
 '''
+_IN_DOMAIN = '''\
+def in_domain(name, actions):
+    """Start the nodes of a robot in its ROS domain."""
+    return GroupAction([SetEnvironmentVariable("ROS_DOMAIN_ID", DOMAINS[name]), *actions])
+'''
 _CHOSEN = '''\
 def first(count):
     """Return the names of so many robots."""
@@ -104,8 +109,10 @@ def chosen(context):
     if unknown:
         known = ", ".join(ROBOTS)
         raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {known}")
-    return [action for name in words or ROBOTS for action in ROBOTS[name]()]
+    return {started}
 '''
+_STARTED = "[action for name in words or ROBOTS for action in ROBOTS[name]()]"
+_STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
 
 def to_python(it: FleetStarts) -> str:
@@ -141,9 +148,18 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield ("", "", *own.lines)
     calls = dict(call for own in made for call in own.calls)
     names = (f'    "{robot.name}": {calls[robot.name]},' for robot in it.robots)
-    yield "", "", "ROBOTS = {", *names, "}", "", "", *_CHOSEN.splitlines()
+    yield "", "", "ROBOTS = {", *names, "}", *_domains(it)
+    chosen = _CHOSEN.replace("{started}", _STARTED_APART if it.domains else _STARTED)
+    yield "", "", *chosen.splitlines()
     yield from (("", "", *_SWITCHES[one]) for one in it.simulators)
     yield "", "", *_description(it)
+
+
+def _domains(it: FleetStarts) -> Iterator[str]:
+    """The domain of each robot, as an environment has it."""
+    if it.domains:
+        own = (f'    "{robot.name}": "{it.domains[robot.name]}",' for robot in it.robots)
+        yield from ("DOMAINS = {", *own, "}", "", "", *_IN_DOMAIN.splitlines())
 
 
 def _head(it: FleetStarts) -> Iterator[str]:
@@ -229,6 +245,8 @@ def _description(it: FleetStarts) -> Iterator[str]:
         yield f"                default_value={value(default)},"
         yield f'                description="{about}",'
         yield "            ),"
+    if it.domains:
+        yield f'            SetEnvironmentVariable("ROS_DOMAIN_ID", "{it.domains[""]}"),'
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
     inside = [start for start in it.shared if it.simulators and start.package == BRIDGES]

@@ -49,9 +49,9 @@ NOT_REWRITTEN = declare(
     "MF824",
     "launched-parameters-not-rewritten",
     NOTE,
-    what="A launch file gives a node a parameter file that is not rewritten: the robot has another "
-    "file of that name (a note), or the launch writes a robot's name in it, or more (a warning). Or it "
-    "gives a node frames or topics itself, without a file (a warning).",
+    what="A launch file gives a node a parameter file that is not rewritten. It is a note where "
+    "the robot has another file of that name. It is a warning where the launch writes a robot's "
+    "name in it, or more. Or it gives a node frames or topics itself, without a file (a warning).",
     why="Robots that are launched with it all read the same frames, joints and topics.",
     fix="Nothing, if the launch is to get the file that is written in its place; else give one of them "
     "another name. Write a file with $(var ...) out for one robot, and list that under `params`. "

@@ -38,7 +38,7 @@ OTHER_PREFIX = declare(
     "launch-file-adds-prefix",
     WARNING,
     what="A launch file starts robot_state_publisher with a frame_prefix that does not go with the "
-    "layout: the built description has the robot's name in its links already, or the layout leaves "
+    "layout. The built description has the robot's name in its links already, or the layout leaves "
     "frames without it.",
     why="The frames of the description get the prefix besides, and every lookup of the planned frames "
     "fails: there are two trees.",

@@ -12,6 +12,7 @@ from multibot_rewrite.spelling.ways import ros_arguments
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
+TOGETHER: Mapping[str, int] = {}
 
 
 class File(NamedTuple):
@@ -87,7 +88,8 @@ class RobotStarts(NamedTuple):
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
     the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
-    type; ``world`` is the simulator's by default."""
+    type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
+    of all (empty name), where they are not in one."""
 
     head: str
     simulators: Sequence[str]
@@ -97,6 +99,7 @@ class FleetStarts(NamedTuple):
     use_sim_time: bool
     driving: Sequence[str]
     world: File | str = ""
+    domains: Mapping[str, int] = TOGETHER
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:

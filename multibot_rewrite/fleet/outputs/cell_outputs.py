@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
 
 import yaml
 
@@ -19,31 +18,29 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.moveit.file_kind import SIMPLE
+from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, SIMPLE, file_kind
+from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit
+from multibot_rewrite.companions.moveit.name_sites import entries
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml, replaced, spliced
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
     FILE,
     PROGRAMS,
-    SEMANTIC,
-    SERVO_PARAMETERS,
     parameter_file,
-    parameters_of,
+    parameters_from,
 )
-from multibot_rewrite.fleet.outputs.output_file import (
-    FilesAndFindings,
-    OutputFile,
-)
-from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_srdf, joined_urdf
+from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 
 _NAMES, _MANAGER = "controller_names", "moveit_controller_manager"
+_DESCRIPTION = "robot_description"
 _ONE_MANAGER = "Ros2ControlManager"
 _ARM = """\
 <robot name="arm">
@@ -67,7 +64,7 @@ DISAGREE = declare(
     "arms-of-a-cell-disagree",
     WARNING,
     what="The MoveIt files of two arms of a cell give one parameter two values; the first is taken.",
-    why="move_group runs once for all arms and has one value: the other arm moves by a limit or a "
+    why="move_group runs once for all arms and has one value. The other arm moves by a limit or a "
     "setting that was not meant for it.",
     fix="Give both arms the same value, or set it in your launch file after these parameters.",
     bad=_FLEET.replace("OTHER", "slow/limits.yaml"),
@@ -92,18 +89,20 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     if cell is None:
         return
     made = {it.path: it.data for it in files}
-    arms = [_arm(plan, robot) for robot in plan.robots]
     tree = builtin_tree(plan.file.vocabulary, plan.file.distro)
-    urdf = joined_urdf(cell.name, world_of(plan.file, plan.fleet.naming), arms, tree)
-    srdf = joined_srdf(cell, arms)
-    values: dict[str, Any] = {"robot_description": urdf.decode(), SEMANTIC: srdf.decode()}
-    for robot in plan.robots:
-        own = _of_cell(plan, robot, parameters_of(robot, made, plan.file.distro))
-        for name, first, other in _add(values, own, ""):
-            yield _disagree(robot, name, first, other)
+    world = world_of(plan.file, plan.fleet.naming)
+    joined = joined_arms(cell, world, [_arm(robot) for robot in plan.robots], tree)
+    moveit = [(it, robot) for robot in plan.robots for it in _moveit(plan, robot, made)]
+    planning = joined_moveit(it for it, _ in moveit)
+    robot_of = {it.file: robot for it, robot in moveit}
+    for file, what in planning.notes:
+        yield _disagree(robot_of[file], what)
+    texts = {name: data.decode() for name, data in planning.files.items()}
+    urdf, srdf = (joined[it].decode() for it in (".urdf", ".srdf"))
+    values = {_DESCRIPTION: urdf, **parameters_from(srdf, texts, plan.file.distro)}
     sources = tuple(it for robot in plan.robots for it in _sources(robot))
-    for name, data in ((".urdf", urdf), (".srdf", srdf)):
-        yield OutputFile(f"{cell.name}/{cell.name}{name}", data, sources)
+    for ending, data in joined.items():
+        yield OutputFile(f"{cell.name}/{cell.name}{ending}", data, sources)
     yield OutputFile(parameters_path(cell), parameter_file(values), sources)
 
 
@@ -120,7 +119,7 @@ def cell_commands(plan: FleetPlan) -> Iterator[str]:
         yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
 
 
-def _arm(plan: FleetPlan, robot: RewrittenRobot) -> Arm:
+def _arm(robot: RewrittenRobot) -> Arm:
     spec = robot.spec
     place = f"{spec.file}:{spec.line}"
     return Arm(spec.name, spec.tag, robot.description, robot.srdf, spec.pose, place)
@@ -131,46 +130,44 @@ def _sources(robot: RewrittenRobot) -> Iterator[str]:
     yield from (spec.description, spec.srdf, *spec.companions.get("moveit", ()))
 
 
-def _of_cell(plan: FleetPlan, robot: RewrittenRobot, own: Mapping[str, Any]) -> dict[str, Any]:
-    """An arm's parameters as a move_group for all has them; servo runs for each arm."""
-    found = {key: it for key, it in own.items() if key not in (SEMANTIC, SERVO_PARAMETERS)}
-    if str(found.get(_MANAGER, "")).endswith(f"/{_ONE_MANAGER}"):
+def _moveit(
+    plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
+) -> Iterator[PartMoveit]:
+    """An arm's MoveIt files as a move_group for all has them; servo runs for each arm."""
+    for it in robot.spec.companions.get("moveit", ()):
+        path = path_for(robot, it)
+        document = read_yaml(made[path], path)
+        kind = file_kind(document)
+        _check_manager(document, robot)
+        if plan.fleet.naming.topics == NAMESPACE:
+            _into_namespace(document.root, robot.spec.namespace)
+        if kind != OF_SERVO:
+            yield PartMoveit(path, kind, document)
+
+
+def _check_manager(document: YamlText, robot: RewrittenRobot) -> None:
+    found = next((it for key, it in entries(document.root) if key.value == _MANAGER), None)
+    if found is not None and str(found.value).endswith(f"/{_ONE_MANAGER}"):
         place = f"{robot.spec.file}:{robot.spec.line}: cell: {robot.spec.name!r}"
         what = f"{_MANAGER} is {_ONE_MANAGER}, which asks one controller manager"
-        raise InputError(f"{place}: {what}; write moveit_simple_controller_manager")
-    if SIMPLE in found and plan.fleet.naming.topics == NAMESPACE:
-        found[SIMPLE] = dict(_in_namespace(found[SIMPLE], robot.spec.namespace))
-    return found
+        raise InputError(f"{place}: {what}; write {SIMPLE}")
 
 
-def _in_namespace(controllers: Mapping[str, Any], namespace: str) -> Iterator[tuple[str, Any]]:
-    names = controllers.get(_NAMES, [])
-    for key, value in controllers.items():
-        if key == _NAMES:
-            yield key, [f"{namespace}/{it}" for it in names]
-        else:
-            yield (f"{namespace}/{key}" if key in names else key), value
+def _into_namespace(node: yaml.Node | None, namespace: str) -> None:
+    """Put the namespace before the names of controllers, where a file lists them."""
+    found = {str(key.value): value for key, value in entries(node)}
+    listed = found[_NAMES].value if _NAMES in found else ()
+    names = {it.value for it in listed}
+    for it in (*listed, *(key for key, _ in entries(node) if key.value in names)):
+        it.value = f"{namespace}/{it.value}"
+    if SIMPLE in found:
+        _into_namespace(found[SIMPLE], namespace)
 
 
-def _add(
-    into: dict[str, Any], more: Mapping[str, Any], at: str
-) -> Iterator[tuple[str, object, object]]:
-    """Add parameters, lists behind each other; those with two values: name, first, other."""
-    for key, value in more.items():
-        first, name = into.setdefault(key, value), f"{at}{key}"
-        if isinstance(first, dict) and isinstance(value, dict):
-            into[key] = dict(first)
-            yield from _add(into[key], value, f"{name}.")
-        elif isinstance(first, list) and isinstance(value, list):
-            into[key] = [*first, *(it for it in value if it not in first)]
-        elif first != value:
-            yield name, first, value
-
-
-def _disagree(robot: RewrittenRobot, name: str, first: object, other: object) -> Finding:
+def _disagree(robot: RewrittenRobot, what: str) -> Finding:
     spec = robot.spec
-    message = f"{spec.name!r} has {name} {other!r}, an arm before it {first!r}, which is taken"
     hint = "give all arms of the cell one value"
+    message = f"{spec.name!r}: {what}"
     return DISAGREE.finding(message, hint, file=spec.file, line=spec.line, column=1)
 
 

@@ -42,6 +42,8 @@ def commands_file(
         spawned, findings = spawn.spawns(one)
         yield from (*poses.findings, *findings)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
+        numbers = {it.robot: it.number for it in plan.file.apart.domains}
+        rows += [f"export ROS_DOMAIN_ID={numbers[robot.spec.namespace]}\n"] if numbers else []
         clock = robot.spec.use_sim_time
         clocks.add(clock)
         rows += [f"{with_clock(shell_line(it.start), clock)}\n" for it in poses.transforms]

@@ -36,9 +36,9 @@ OTHER_CONTROLLER_FILE = declare(
     "MF708",
     "controller-file-of-all-robots",
     WARNING,
-    what="A description loads a file of controllers that has the name of one of the fleet's parameter "
-    "files, and it is not certain that they are the same.",
-    why="The robot's own file is written, and its controller manager still reads the old one: the "
+    what="A description loads a file of controllers that has the name of one of the fleet's "
+    "parameter files. It is not certain that they are the same.",
+    why="The robot's own file is written, and its controller manager still reads the old one. The "
     "node in it has another name, and the joints are those of one robot.",
     fix="Name under `params` the file that the description loads.",
     bad="""\

@@ -42,7 +42,7 @@ PROGRAMS = {
     "servo_node": ("moveit_servo", "servo_node"),
 }
 _MANAGER = f"{SIMPLE}/MoveItSimpleControllerManager"
-SEMANTIC, SERVO_PARAMETERS = "robot_description_semantic", ABOVE[OF_SERVO]
+SEMANTIC = "robot_description_semantic"
 # Files that are none of move_group's.
 _OF_OTHERS = (OF_SERVO, "initial_positions", EMPTY)
 _OMPL = "ompl"
@@ -110,7 +110,7 @@ def parameters_of(
     paths = robot.spec.companions.get("moveit", ())
     texts = {it: made[path_for(robot, it)].decode() for it in paths}
     srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
-    return _parameters(srdf, texts, release)
+    return parameters_from(srdf, texts, release)
 
 
 def parameter_file(values: Mapping[str, Any]) -> bytes:
@@ -120,7 +120,8 @@ def parameter_file(values: Mapping[str, Any]) -> bytes:
     return str(yaml.dump(data, None, dumper, sort_keys=False, width=100)).encode()
 
 
-def _parameters(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
+def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
+    """The parameters that an SRDF and MoveIt files, by path, are for the nodes of MoveIt."""
     found: dict[str, Any] = {
         SEMANTIC: srdf,
         "publish_robot_description_semantic": True,

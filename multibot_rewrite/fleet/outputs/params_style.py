@@ -28,7 +28,6 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.fleet.robots.start_poses import start_poses
-from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.spelling.records import EndpointName
 
@@ -133,13 +132,15 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
     started = {it.name for stack in _STACKS for it in load_stack(stack, plan.file.distro)}
     names = {it.full_name: it.node for it in plan.fleet.table.nodes if it.robot == first}
     left = [
-        f"{it.endpoint.name} of {names[it.node]} ({said(it.endpoint.when)})"
+        f"{it.endpoint.name} of {names[it.node]}"
         for it in plan.fleet.table.names
         if it.robot == first and names.get(it.node) in started and _is_left(it)
     ]
     if left:
         message = f"nav2_bringup gives no remap rule for {', '.join(dict.fromkeys(left))}"
-        hint = "all robots share these names where they are used"
+        hint = (
+            "all robots share them; if you use one, start Nav2 with nav2.launch.py of this package"
+        )
         yield NO_RULE.finding(message, hint, file=plan.file.file, line=1, column=1)
 
 

@@ -124,8 +124,13 @@ def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     if cell := plan.file.cell:
         given[cell.name] = parameters_path(cell)
+    spaces = {it.spec.name: it.spec.namespace for it in plan.robots}
+    domains = {it.robot: f"ROS_DOMAIN_ID={it.number} " for it in plan.file.apart.domains}
     return [
-        shlex.join([*start_command(window, window_path(window, it.source)), *_given(window, given)])
+        domains.get(spaces.get(window.robot, ""), "")
+        + shlex.join(
+            [*start_command(window, window_path(window, it.source)), *_given(window, given)]
+        )
         for it in configs
         for window in it.windows
     ]

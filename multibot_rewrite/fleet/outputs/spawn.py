@@ -262,8 +262,8 @@ PLUGIN_OF_ROS_1 = declare(
     "plugin-of-ros-1",
     WARNING,
     what="A plugin of a simulated robot is known of ROS 1 alone.",
-    why="No package of ROS 2 has its library: the simulator says that it cannot load it and goes on "
-    "without it, so nothing moves the joints, or a sensor sends nothing.",
+    why="No package of ROS 2 has its library. The simulator says that it cannot load it and goes "
+    "on without it. So nothing moves the joints, or a sensor sends nothing.",
     fix="Put the plugin of ROS 2 in its place, as gazebo_ros2_control for gazebo_ros_control, or "
     "delete it.",
     bad="robots:\n  - {name: robot1, description: old.urdf}\n",

@@ -51,8 +51,8 @@ SAME_FOR_ALL = declare(
     "MF842",
     "yarp-file-of-all-robots",
     NOTE,
-    what="A plugin of yarp loads a file that is the same for all robots: it is not there, or it is "
-    "of a form that is not rewritten.",
+    what="A plugin of yarp loads a file that is the same for all robots. The file is not there, or "
+    "it is of a form that is not rewritten.",
     why="Two robots would open ports of the same names, and look for the joints of one robot.",
     fix="Put the file where the description names it, or give each robot its own file.",
     bad=_FLEET,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
@@ -63,6 +63,45 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
     alike = [it for it in order[1:] if _same_robot(it, order[0])]
     rivals = [it for it in order[1:] if it not in alike and not _is_behind(it, order[0])]
     return Chosen(order, rivals, alike)
+
+
+def may_be_partners(path: str, found: Found) -> Iterator[str]:
+    """Files of the other kind that may be of the same robot: an SDF of a URDF, a URDF of an SDF. They
+    are called alike, or a launch file names both."""
+    for other in found.every:
+        if is_model(other) != is_model(path) and (
+            _stem(other) == _stem(path) or _are_launched_together(path, other, found)
+        ):
+            yield other
+
+
+def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
+    """Of these the one of another kind that has most of the same links, half of them at least."""
+    own = _bare_links(it)
+    shared = {id(one): len(own & _bare_links(one)) for one in others}
+    fits = [one for one in others if one.tag != it.tag and 2 * shared[id(one)] >= one.links > 0]
+    return max(fits, key=lambda one: shared[id(one)], default=None)
+
+
+def _bare_links(it: Looked) -> set[str]:
+    """Its links without what a xacro puts in front for a robot."""
+    return {name.rpartition("/")[2] for name in _links(it)}
+
+
+def is_model(path: str) -> bool:
+    """Is it an SDF, or a xacro of one?"""
+    return ".sdf" in os.path.basename(path)
+
+
+def _are_launched_together(path: str, other: str, found: Found) -> bool:
+    both = [_word_for(it) for it in (path, other)]
+    return any(all(it in text_of(launch) for it in both) for launch in found.launch)
+
+
+def _word_for(path: str) -> str:
+    """What names a description in a launch file: a model by its folder."""
+    base = os.path.basename(path)
+    return base if base != "model.sdf" else os.path.basename(os.path.dirname(path))
 
 
 def acts(it: Looked) -> bool:

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting
+from multibot_rewrite.fleet.proposal.given_by_launch import files_given, readings
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -76,7 +78,7 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
     files = {kind: tuple(_of_kind(kind, robot, getattr(found, kind), left)) for kind in kinds}
-    sections = dict(_sections(_nearest(robot, found.params, found.launch), release, left))
+    sections = dict(_sections(_fitting(robot, found, release, left), left))
     idle = _controllers_of_others(robot, sections)
     left |= idle | _bridges_of_others(robot, found)
     files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
@@ -143,20 +145,34 @@ def _of_kind(
             yield path
 
 
-def _sections(
-    paths: Iterable[str], release: str, left: dict[str, str]
-) -> Iterator[tuple[str, frozenset[str]]]:
-    """Parameter files with the nodes that they are for; one that has a node of an earlier one is left
-    out."""
+def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) -> Iterator[Fitting]:
+    """The parameter files that can be read; those with fewest names that the robot has not come first,
+    then the nearest. Raises UsageError where none is more likely than another for one node."""
     known = load_known_nodes("", release)
-    before: dict[str, str] = {}
-    for path in paths:
+    given = files_given(readings(found.launch, robot.path, found.every))
+    read = []
+    for path in _nearest(robot, found.params, found.launch, given):
         try:
             nodes = given_nodes([read_yaml(read_file(path), path)], known)
         except InputError as error:
             left[path] = str(error)
             continue
-        names = frozenset(word for it in nodes for word in (it.name, it.known) if word)
+        read.append(fitting(robot, path, nodes, known, found.bridge))
+    loaded = {*_loaded(robot)}
+    meant = {it.path for it in read if it.path in found.meant or os.path.abspath(it.path) in loaded}
+    order = sorted(read, key=lambda it: (it.path not in meant, len(it.strange)))
+    settled = {node for it in order if it.path in meant for node in it.nodes}
+    check_winner([it for it in order if not it.nodes & settled])
+    yield from order
+
+
+def _sections(
+    read: Iterable[Fitting], left: dict[str, str]
+) -> Iterator[tuple[str, frozenset[str]]]:
+    """Parameter files with the nodes that they are for; one that has a node of an earlier one is left
+    out."""
+    before: dict[str, str] = {}
+    for path, names, _ in read:
         again = sorted(names & before.keys())
         if again:
             left[path] = f"{os.path.basename(before[again[0]])} has parameters of {again[0]}, too"
@@ -177,17 +193,24 @@ def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
     return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 
-def _nearest(robot: Looked, paths: Sequence[str], launch: Sequence[str] = ()) -> list[str]:
-    """What the description itself loads first, then the files of its own package, those that a launch
-    file names, and by how like its own their paths are."""
+def _nearest(
+    robot: Looked,
+    paths: Sequence[str],
+    launch: Sequence[str] = (),
+    given: Container[str] = (),
+) -> list[str]:
+    """What the description itself loads first, what launch files give to nodes (``given``), what is in
+    its own package, what a launch file names, and by how like its own the paths are."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
     loaded = set(_loaded(robot))
 
-    def distance(path: str) -> tuple[bool, bool, bool, int, str]:
+    def distance(path: str) -> tuple[bool, bool, bool, bool, int, int, str]:
         base = os.path.basename(path)
         named = any(base in text_of(it) for it in launch)
         like = len(words & set(_WORD.findall(path.lower())))
-        return os.path.abspath(path) not in loaded, package_of(path) != home, not named, -like, path
+        first = os.path.abspath(path) not in loaded, path not in given
+        more = len(set(_WORD.findall(path.lower())) - words)
+        return *first, package_of(path) != home, not named, -like, more, path
 
     return sorted(paths, key=distance)
 

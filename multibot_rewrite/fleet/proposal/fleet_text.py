@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.base.editors import FLEET, schema_line
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 
@@ -59,11 +60,12 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
             key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
         )
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
-    if it.launched:
+    if it.launched.rest:
         yield ""
-        yield "# Launch files give nodes more than this fleet has: write the values into a"
-        yield "# file of params; a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
-        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in it.launched)
+        yield "# Launch files give nodes more than this fleet has: write the values into params;"
+        yield "# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
+        rest = it.launched.rest
+        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in rest)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
@@ -78,7 +80,8 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
-    yield from ((os.path.relpath(path, folder), why) for path, why in it.refused.items())
+    for path, why in it.refused.items():
+        yield path if path == VALUES else os.path.relpath(path, folder), why
     for path in it.others:
         yield os.path.relpath(path, folder), "another description"
     for member in it.members:
@@ -109,11 +112,14 @@ def _common(it: Proposal, folder: str) -> dict[str, tuple[Any, tuple[str, ...]]]
     """What all robots have, if they have one description, with the reasons."""
     if len(it.members) > 1:
         return {}
-    return dict(_of_member(it.members[0], folder))
+    return dict(_of_member(it.members[0], folder, it.launched.values))
 
 
-def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
-    """The keys of a description and its files, each with the reasons."""
+def _of_member(
+    member: Member, folder: str, launched: Mapping[str, Mapping[str, Any]] = {}
+) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
+    """The keys of a description and its files, each with the reasons; ``launched`` are values that
+    launch files give to nodes."""
 
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
@@ -130,10 +136,16 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
     if beside.stacks:
         whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
         yield "stack", (list(beside.stacks), whys)
-    if beside.files:
-        files = {kind: [here(path) for path in its] for kind, its in beside.files.items()}
-        one = {kind: its[0] if kind == "rviz" else its for kind, its in files.items()}
-        yield "companions", (one, ("Files written for one robot; each robot gets its own of them",))
+    files: dict[str, Any] = {
+        kind: here(its[0]) if kind == "rviz" else [here(path) for path in its]
+        for kind, its in beside.files.items()
+    }
+    whys = ("Files written for one robot; each robot gets its own of them",)
+    if launched:
+        files["params"] = [*files.get("params", ()), dict(launched)]
+        whys = (*whys, "{NODE: {PARAMETER: value}} is what launch files give a node")
+    if files:
+        yield "companions", (files, whys)
 
 
 def _needed(it: Looked) -> Iterator[str]:

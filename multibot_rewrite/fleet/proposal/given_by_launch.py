@@ -1,75 +1,179 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What launch files themselves give to nodes that a fleet starts: parameters in their text, and remap
-rules. A fleet has neither, so ``init`` names them.
+"""What launch files themselves give to nodes that a fleet starts: parameters in their text, files of
+parameters, and remap rules. ``init`` carries what is plain, and names the rest.
 """
 
 from __future__ import annotations
 
 import ast
 import os
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
+from typing import Any
 
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.proposal.launch_text import (
+    UNKNOWN,
+    Reading,
+    argument,
+    launch_text,
+    word_of,
+)
 from multibot_rewrite.fleet.proposal.searching import text_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 
-_ACTIONS = ("Node", "LifecycleNode", "ComposableNode")
 # What a build gives each node anyway, or what is of one machine.
-_USUAL = frozenset(
-    ("use_sim_time", "robot_description", "autostart", "node_names", "yaml_filename")
-)
+_USUAL = frozenset(("use_sim_time", "autostart", "node_names", "yaml_filename", "frame_prefix"))
+_DESCRIPTION = "robot_description"
+# What the values of launch files are called where they are refused.
+VALUES = "values of launch files"
 _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
 
 
+class Launched(NamedTuple):
+    """What launch files give: values of parameters by node, which are the same in all of them, and what
+    else there is, by file and line."""
+
+    values: Mapping[str, Mapping[str, Any]] = {}
+    rest: tuple[tuple[str, int, str], ...] = ()
+
+
+class _Given(NamedTuple):
+    """What one launch file gives one node: ``node`` is its name in the fleet, empty for one of another
+    name."""
+
+    file: str
+    line: int
+    who: str
+    node: str
+    values: Mapping[str, Any]
+    rules: tuple[str, ...]
+
+
+def readings(launch: Iterable[str], description: str, every: Sequence[str]) -> list[Reading]:
+    """The launch files in Python, but for those of other descriptions, each with the arguments that
+    others include it with."""
+    others = {os.path.basename(it) for it in every} - {os.path.basename(description)}
+    own = (
+        it
+        for it in launch
+        if os.path.basename(description) in text_of(it)
+        or not any(other in text_of(it) for other in others)
+    )
+    texts = [launch_text(it) for it in own if it.endswith(".py")]
+    given: dict[str, dict[str, Any]] = {}
+    for text in texts:
+        for target, arguments in _included(Reading(text, {})):
+            known = given.setdefault(os.path.normpath(target), {})
+            for name, value in arguments.items():
+                known[name] = value if known.get(name, value) == value else UNKNOWN
+    return [Reading(it, given.get(os.path.normpath(it.file), {})) for it in texts]
+
+
+def files_given(read: Iterable[Reading]) -> frozenset[str]:
+    """The files that nodes or included launch files get as parameters."""
+    found = (path for it in read for path in _files(it))
+    return frozenset(os.path.normpath(it) for it in found if it)
+
+
+def _files(it: Reading) -> Iterator[str]:
+    for _, arguments in _included(it):
+        yield from (value for value in arguments.values() if isinstance(value, str))
+    for call in it.text.nodes:
+        yield from map(it.path, _elements(argument(call, "parameters")))
+
+
+def _included(it: Reading) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The path of each file that is included, and its arguments."""
+    for call in it.text.includes:
+        target = it.path(argument(call, "launch_description_source", 0))
+        pairs = _pairs(argument(call, "launch_arguments", 1))
+        values = ((word_of(key), it.path(value) or it.value(value)) for key, value in pairs)
+        yield target, {name: value for name, value in values if name}
+
+
+def _pairs(it: ast.expr | None) -> Iterator[tuple[ast.expr | None, ast.expr]]:
+    """The arguments of an include: ``{...}.items()``, or pairs."""
+    if isinstance(it, ast.Call) and isinstance(it.func, ast.Attribute) and it.func.attr == "items":
+        it = it.func.value
+    if isinstance(it, ast.Dict):
+        yield from zip(it.keys, it.values, strict=True)
+    for each in _elements(it):
+        if isinstance(each, ast.Tuple) and len(each.elts) == 2:
+            yield each.elts[0], each.elts[1]
+
+
+def _elements(it: ast.expr | None) -> Sequence[ast.expr]:
+    return it.elts if isinstance(it, ast.List | ast.Tuple) else ()
+
+
 def given_by_launch(
-    launch: Iterable[str], stacks: Iterable[str], release: str
-) -> Iterator[tuple[str, int, str]]:
-    """File, line and what it is, for the nodes of these stacks; of launch files in Python, as far as it
-    stands in them. A file that Python cannot parse has none."""
+    read: Iterable[Reading], stacks: Iterable[str], release: str, carried: bool = True
+) -> Launched:
+    """What launch files give to the nodes of these stacks; nothing is ``carried`` where that does not
+    build."""
     nodes = [node for stack in stacks for node in load_stack(stack, release)]
-    names = {word for node in nodes for word in _called(node)}
-    for path in (it for it in launch if it.endswith(".py")):
-        for call in _calls(text_of(path)):
-            given = {it.arg: it.value for it in call.keywords if it.arg}
-            who = _word(given.get("name")) or _word(given.get("executable"))
-            own = {who, _word(given.get("executable"))}
-            said = [*_parameters(given.get("parameters")), *_rules(given.get("remappings"))]
-            if said and own & names:
-                yield path, call.lineno, f"{who}: {', '.join(said)}"
+    every = [given for it in read for given in _given(it, nodes)]
+    said: dict[tuple[str, str], list[Any]] = {}
+    for given in every:
+        for name, value in given.values.items():
+            said.setdefault((given.node, name), []).append(value)
+    values: dict[str, dict[str, Any]] = {}
+    for (node, name), its in said.items():
+        if carried and node and its[0] is not UNKNOWN and all(it == its[0] for it in its):
+            values.setdefault(node, {})[name] = its[0]
+    return Launched(values, tuple(_rest(every, values)))
 
 
-def _called(node: NodeFacts) -> Collection[str]:
-    return {os.path.basename(node.name), *map(os.path.basename, node.programs)}
+def _rest(
+    every: Iterable[_Given], values: Mapping[str, Mapping[str, Any]]
+) -> Iterator[tuple[str, int, str]]:
+    for it in every:
+        left = [name for name in it.values if name not in values.get(it.node, {})]
+        if left or it.rules:
+            yield it.file, it.line, f"{it.who}: {', '.join((*left, *it.rules))}"
 
 
-def _calls(text: str) -> Iterator[ast.Call]:
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError):
-        return
-    for it in ast.walk(tree):
-        named = it.func if isinstance(it, ast.Call) else None
-        name = getattr(named, "id", "") or getattr(named, "attr", "")
-        if isinstance(it, ast.Call) and name in _ACTIONS:
-            yield it
+def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
+    for call in it.text.nodes:
+        program = word_of(argument(call, "executable"))
+        who = word_of(argument(call, "name")) or program
+        node = next((one for one in nodes if {who, program} & _called(one)), None)
+        if node is None:
+            continue
+        values = {key: _data(value) for key, value in _parameters(it, call)}
+        own = os.path.basename(node.name)
+        named = argument(call, "name") is None or who == own
+        rules = tuple(_rules(argument(call, "remappings")))
+        yield _Given(it.text.file, call.lineno, who, own if named else "", values, rules)
 
 
-def _word(it: ast.expr | None) -> str:
-    found = it.value if isinstance(it, ast.Constant) else ""
-    return found if isinstance(found, str) else ""
+def _called(node: NodeFacts) -> frozenset[str]:
+    return frozenset((os.path.basename(node.name), *map(os.path.basename, node.programs)))
 
 
-def _parameters(it: ast.expr | None) -> Iterator[str]:
-    for each in it.elts if isinstance(it, ast.List | ast.Tuple) else ():
-        for key in each.keys if isinstance(each, ast.Dict) else ():
-            if _word(key) and _word(key) not in _USUAL:
-                yield _word(key)
+def _parameters(it: Reading, call: ast.Call) -> Iterator[tuple[str, Any]]:
+    for each in _elements(argument(call, "parameters")):
+        assigned = it.text.assigned.get(each.id) if isinstance(each, ast.Name) else each
+        if isinstance(assigned, ast.Dict):
+            for key, value in zip(assigned.keys, assigned.values, strict=True):
+                name = word_of(key)
+                if name and name not in _USUAL and not name.startswith(_DESCRIPTION):
+                    yield name, it.value(value)
+
+
+def _data(value: Any) -> Any:
+    """A value as a parameter can have it; a path is another's where this file is read."""
+    if isinstance(value, list):
+        return UNKNOWN if UNKNOWN in map(_data, value) else value
+    is_path = isinstance(value, str) and os.path.exists(value) and os.sep in value
+    return value if isinstance(value, bool | int | float | str) and not is_path else UNKNOWN
 
 
 def _rules(it: ast.expr | None) -> Iterator[str]:
-    for each in it.elts if isinstance(it, ast.List | ast.Tuple) else ():
-        words = [_word(one) for one in each.elts] if isinstance(each, ast.Tuple) else []
+    for each in _elements(it):
+        words = [word_of(one) for one in each.elts] if isinstance(each, ast.Tuple) else []
         yield from (f"{a}:={b}" for a, b in pairwise(words) if a and b and _is_moved(a))
 
 

@@ -15,9 +15,21 @@ from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.choosing import Chosen, acts, chosen, launches_of
+from multibot_rewrite.fleet.proposal.choosing import (
+    Chosen,
+    acts,
+    chosen,
+    launches_of,
+    may_be_partners,
+    partner,
+)
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of, srdf_of
-from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch
+from multibot_rewrite.fleet.proposal.given_by_launch import (
+    VALUES,
+    Launched,
+    given_by_launch,
+    readings,
+)
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     NO_SIMULATOR,
@@ -60,7 +72,7 @@ class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots, and why; ``launched`` is what launch files give
-    its nodes, by file and line."""
+    its nodes."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -68,7 +80,7 @@ class Proposal(NamedTuple):
     notes: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
     refused: Mapping[str, str] = {}
-    launched: tuple[tuple[str, int, str], ...] = ()
+    launched: Launched = Launched()
 
 
 def layout_of(members: Sequence[Member]) -> Choice:
@@ -151,6 +163,8 @@ def unlike(words: Iterable[str]) -> list[str]:
 
 # Descriptions of a folder that are looked at.
 MOST = 60
+# Files that may be of the same robot that are looked at.
+MOST_PARTNERS = 5
 # Metres, for a robot without a shape whose size is known.
 UNKNOWN_RADIUS = 0.5
 # Packages that start a simulator.
@@ -214,7 +228,10 @@ def see(wanted: Wanted) -> Seen:
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
     if named:
         _refuse([it for it in named if not it.links], "")
-        return Seen(found, named, True)
+        if len(named) > 1:
+            return Seen(found, named, True)
+        beside = [look(it, wanted.arguments, reach, values) for it in _partners(named[0], found)]
+        return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
     usable = [it for it in looked if it.links and acts(it)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
@@ -226,11 +243,28 @@ def see(wanted: Wanted) -> Seen:
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
     order, rivals, alike = ([it.robot for it in its] for its in best)
-    # A robot_state_publisher takes no SDF: the URDF of the same robot is for it.
-    urdf = next((it for it in alike if order[0].tag == "sdf" and it.tag == "robot"), None)
-    if urdf and wanted.simulator != REAL:
-        order[0] = with_model(urdf, order[0])
-    return Seen(found, order, False, rivals, alike)
+    known = {*_partners(order[0], found)}
+    beside = [it for it in usable if it in alike or it.path in known]
+    first = _with_partner(order[0], beside, wanted)
+    left = [] if first == order[0] else [order[0]]
+    rivals = [it for it in rivals if it.path not in (first.path, first.model)]
+    return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike])
+
+
+def _partners(it: Looked, found: Found) -> list[str]:
+    """Files that may be of the same robot: none of a URDF that has its simulator's part itself."""
+    if it.tag == "robot" and it.simulator != NO_SIMULATOR:
+        return []
+    return [*may_be_partners(it.path, found)][:MOST_PARTNERS]
+
+
+def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looked:
+    """The URDF of a robot for robot_state_publisher, which takes no SDF, and its SDF for the simulator,
+    where both are there."""
+    other = partner(it, others) if wanted.simulator != REAL else None
+    if other is None or (it.tag == "robot" and it.simulator != NO_SIMULATOR):
+        return it
+    return with_model(other, it) if it.tag == "sdf" else with_model(it, other)
 
 
 def _rather(best: Chosen, looked: Sequence[Looked], found: Found) -> list[Looked]:
@@ -315,7 +349,9 @@ def propose(
     }
     poses = poses_of(members, wanted.apart)
     stacks = dict.fromkeys(stack for it in members for stack in it.companions.stacks)
-    launched = tuple(given_by_launch(found.launch, stacks, release.value))
+    # Launch files of several robots give each its own values.
+    read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
+    launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
     return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
 
 

@@ -23,6 +23,8 @@ MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 _SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
 _BUILT = frozenset((MANIFEST, PLAN))
 _ENDS = (".urdf", ".sdf", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
+# Files that go with a description, never one themselves.
+_BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
 _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
@@ -44,7 +46,8 @@ _MOVEIT = frozenset(
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
+    are files beside them that were named.
     """
 
     descriptions: tuple[str, ...] = ()
@@ -58,6 +61,7 @@ class Found(NamedTuple):
     worlds: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
+    meant: tuple[str, ...] = ()
 
 
 def search(paths: Sequence[str]) -> Found:
@@ -70,18 +74,20 @@ def search(paths: Sequence[str]) -> Found:
             raise UsageError(
                 f"{path}: there is no such file or folder; give a description or a folder"
             )
-    files = [os.path.normpath(it) for it in paths if not os.path.isdir(it)]
+    named = [os.path.normpath(it) for it in paths if not os.path.isdir(it)]
+    meant = [it for it in named if it.endswith(_BESIDE)]
+    files = [it for it in named if it not in meant]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
     homes = dict.fromkeys((*folders, *(home_of(it) for it in files)))
-    every = dict.fromkeys(path for home in homes for path in _files(home))
+    every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):
         kinds.setdefault(kind, []).append(path)
     kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
-    named = {kind: tuple(its) for kind, its in kinds.items() if kind}
-    return Found(**named, folders=tuple(homes))
+    fields = {kind: tuple(its) for kind, its in kinds.items() if kind}
+    return Found(**fields, folders=tuple(homes), meant=tuple(meant))
 
 
 def without(found: Found, paths: Container[str]) -> Found:
@@ -183,6 +189,8 @@ def _of_xml(_: str, data: bytes) -> str:
 
 
 def _of_xacro(stem: str, data: bytes) -> str:
+    if b"<sdf" in data:
+        return _of_sdf(stem, data)
     if not _ROBOT.search(data):
         return ""
     return "srdf" if ".srdf" in stem or b"<group " in data else "descriptions"

@@ -12,9 +12,11 @@ from multibot_rewrite.base.model import MultibotError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_data import DICT
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
+from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked, without_names
 from multibot_rewrite.fleet.proposal.propose import (
     Choice,
@@ -29,6 +31,8 @@ from multibot_rewrite.fleet.proposal.searching import Found
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
 MOST_ROUNDS, MOST_TRIED = 10, 5
+# Where parameters stand that are in the fleet itself.
+_LAUNCHED = os.path.join(DICT, "values.yaml")
 # Descriptions that are shown where nothing says which is meant.
 MOST_SHOWN = 6
 
@@ -49,6 +53,16 @@ def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
     for it in seen.alike[:MOST_TRIED] if all(one.notes for one in tried) else ():
         tried.append(that_builds([it], seen.found, wanted))
     return next((it for it in tried if not it.notes), tried[0])
+
+
+def as_named(seen: Seen, wanted: Wanted) -> Proposal:
+    """The fleet of the descriptions that were named; without the other file of the same robot where it
+    does not build with it."""
+    made = that_builds(seen.robots, seen.found, wanted)
+    if not made.notes or list(seen.alike) in ([], list(seen.robots)):
+        return made
+    other = that_builds(seen.alike, seen.found, wanted)
+    return made if other.notes else other
 
 
 def _refuse_to_choose(likely: Sequence[Looked]) -> None:
@@ -99,6 +113,8 @@ def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[s
         own = file or os.path.abspath(place.partition(":")[0])
         if own in files:
             yield files[own], line if file else why
+        elif own == os.path.abspath(_LAUNCHED):
+            yield VALUES, line if file else why
 
 
 def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, str]]:

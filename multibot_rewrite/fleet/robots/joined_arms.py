@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several arms as one robot: their URDFs below one world link, their SRDFs in one.
+"""Several arms as one robot: the robots of a cell, as they are written, joined at one world link.
 
-Sources: urdfdom model.cpp (a material that is declared twice ends the reading), moveit2 2.12.4
-robot_model.cpp (``buildModel``: a virtual joint counts only where its child is the root link).
+Source: moveit2 2.12.4 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is
+the root link).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from lxml import etree
 from lxml.etree import _Element
@@ -15,16 +15,17 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.joining.join import Given, join_texts
+from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
-from multibot_rewrite.description.joining.part import Part
-from multibot_rewrite.description.joining.semantic import without_virtual_joints, xml_text
+from multibot_rewrite.description.joining.part import Part, ReadPart
+from multibot_rewrite.description.joining.semantic import PartSemantics, joined_srdf, xml_text
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.fleet.file.cell_file import Cell
 from multibot_rewrite.fleet.file.robot_spec import Pose
 
 _STANDING = Pose()
+_HINT = "set groups: rename"
 
 
 class Arm(NamedTuple):
@@ -38,92 +39,72 @@ class Arm(NamedTuple):
     pose: Pose | None
     place: str
 
-
-def joined_urdf(name: str, world: str, arms: Sequence[Arm], tree: Tree) -> bytes:
-    """One URDF of all arms, each fixed to the link ``world`` where it stands.
-
-    Raises InputError for an arm that has no place, and as ``join_texts``.
-    """
-    root = etree.Element("robot", name=name)
-    etree.SubElement(root, "link", name=world)
-    parts = [Given(Part("", name=name), etree.tostring(root), name)]
-    for arm in arms:
-        pose = tuple(arm.pose or _STANDING)
-        part = Part("", world, pose, name=arm.tag)
-        _check_place(arm, _root_link(read_xml(arm.urdf, arm.place), arm), world)
-        parts.append(Given(part, arm.urdf, f"{arm.place}: cell: robot {arm.name!r}"))
-    return without_marks(join_texts(parts, tree).data)
+    @property
+    def where(self) -> str:
+        """What a message begins with."""
+        return f"{self.place}: cell: robot {self.name!r}"
 
 
-def joined_srdf(cell: Cell, arms: Sequence[Arm]) -> bytes:
-    """One SRDF with what all arms have, and the cell's own groups.
+def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
+    """One URDF and one SRDF of all arms, by their endings: each arm is fixed to the link ``world``
+    where it stands, and the cell's own groups are there besides.
 
-    A virtual joint says where an arm stands: the URDF of the cell does. Raises InputError for one that
-    moves, for groups of one name, and for groups of the cell that name others.
+    Raises InputError for an arm that has no place or moves, for groups that are not there, and as
+    ``join_texts`` and ``joined_srdf``.
     """
     root = etree.Element("robot", name=cell.name)
+    etree.SubElement(root, "link", name=world)
+    parts = [Given(Part("", name=cell.name), etree.tostring(root), cell.name)]
     for arm in arms:
-        own = read_xml(arm.srdf, arm.place)
-        for it in own.iterchildren("virtual_joint"):
-            _check_stands(it, arm)
-        without_virtual_joints(own)
-        root.extend(list(own))
-    known = [it.get("name", "") for it in root.iterchildren("group")]
-    for name, parts in cell.groups.items():
-        _check_parts(cell, name, parts, known)
-        group = etree.SubElement(root, "group", name=name)
-        group.extend(etree.Element("group", name=it) for it in parts)
-    _check_names(root, ("group", "end_effector"), arms)
-    return xml_text(root)
+        part = Part("", world, tuple(arm.pose or _STANDING), name=arm.tag)
+        parts.append(Given(part, arm.urdf, arm.where))
+    made = join_texts(parts, tree)
+    semantics = _semantics(made, world, arms)
+    srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
+    _add_groups(srdf, cell)
+    return {".urdf": without_marks(made.data), ".srdf": xml_text(srdf)}
 
 
-def _root_link(own: _Element, arm: Arm) -> str:
-    below = {it.get("link") for it in own.iterfind("joint/child")}
-    found = [it.get("name", "") for it in own.iterchildren("link") if it.get("name") not in below]
-    if own.tag != "robot" or len(found) != 1:
-        what = f"{len(found)} root links" if own.tag == "robot" else f"a description in <{own.tag}>"
-        raise InputError(
-            f"{arm.place}: cell: robot {arm.name!r} has {what}; give it a URDF with one"
-        )
-    return found[0]
+def _semantics(made: JoinedText, world: str, arms: Sequence[Arm]) -> list[PartSemantics]:
+    first, *others = (it.part for it in made.parts)
+    found = [PartSemantics(first, b"", "")]
+    for arm, part in zip(arms, others, strict=True):
+        _check_place(arm, part, world)
+        _check_stands(arm)
+        found.append(PartSemantics(part, arm.srdf, arm.where))
+    return found
 
 
-def _check_place(arm: Arm, base: str, world: str) -> None:
-    where = f"{arm.place}: cell: robot {arm.name!r}"
-    if base == world and arm.pose not in (None, _STANDING):
+def _check_place(arm: Arm, part: ReadPart, world: str) -> None:
+    if part.root == world and arm.pose not in (None, _STANDING):
         what = f"has a pose, but its description fixes it to {world!r}"
-        raise InputError(f"{where} {what}; set shared_frames: [map], or remove the pose")
-    if base != world and arm.pose is None:
-        raise InputError(
-            f"{where} has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
-        )
+        raise InputError(f"{arm.where} {what}; set shared_frames: [map], or remove the pose")
+    if part.root != world and arm.pose is None:
+        what = f"has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
+        raise InputError(f"{arm.where} {what}")
 
 
-def _check_stands(joint: _Element, arm: Arm) -> None:
-    if joint.get("type") != "fixed":
-        what = (
-            f"the virtual joint {joint.get('name')!r} of robot {arm.name!r} is {joint.get('type')}"
-        )
-        raise InputError(f"{arm.place}: cell: {what}; an arm of a cell stands: make it fixed")
+def _check_stands(arm: Arm) -> None:
+    """A virtual joint says where an arm stands; in a cell the URDF does."""
+    for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
+        if it.get("type") != "fixed":
+            what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
+            raise InputError(f"{arm.where}: {what}; an arm of a cell stands: make it fixed")
 
 
-def _check_parts(cell: Cell, name: str, parts: Sequence[str], known: Sequence[str]) -> None:
-    where = f"{cell.place}: cell: group {name!r}"
+def _add_groups(srdf: _Element, cell: Cell) -> None:
+    known = [it.get("name", "") for it in srdf.iterchildren("group")]
+    for name, parts in cell.groups.items():
+        for what in _faults(name, parts, known):
+            raise InputError(f"{cell.place}: cell: group {name!r}{what}")
+        group = etree.SubElement(srdf, "group", name=name)
+        group.extend(etree.Element("group", name=it) for it in parts)
+
+
+def _faults(name: str, parts: Sequence[str], known: Sequence[str]) -> Iterator[str]:
     if name in known:
-        raise InputError(f"{where} is a group of one arm; write another name")
+        yield " is a group of one arm; write another name"
     for it in parts:
         if it not in known:
             near = did_you_mean_one_of(it, known) or "name a group of an SRDF"
-            raise InputError(f"{where}: no arm has a group {it!r}; {near}")
-
-
-def _check_names(root: _Element, tags: Iterable[str], arms: Sequence[Arm]) -> None:
-    for tag in tags:
-        seen: set[str] = set()
-        for it in root.iterchildren(tag):
-            name = it.get("name", "")
-            if name in seen:
-                hint = "set groups: rename" if tag in ("group", "end_effector") else "rename one"
-                what = f"two robots have the {tag} {name!r}"
-                raise InputError(f"{arms[0].place}: cell: {what}; {hint}")
-            seen.add(name)
+            yield f": no arm has a group {it!r}; {near}"

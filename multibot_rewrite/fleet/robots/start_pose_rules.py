@@ -56,8 +56,8 @@ POSE_ON_WORLD = declare(
     "pose-of-robot-on-world",
     ERROR,
     what="A robot has a pose, and a joint of its description holds it on the world already.",
-    why="The joint's origin is where tf has the robot, so the pose moves it in the simulator alone: "
-    "two arms of one description are at the same place in tf, and plan through each other.",
+    why="The joint's origin is where tf has the robot, so the pose moves it in the simulator "
+    "alone. In tf two arms of one description are at the same place, and plan through each other.",
     fix="Make the joint's origin an argument of the xacro, give it with `arguments`, and remove the "
     "pose. Or let each real robot have a world of its own: write shared_frames: [map], and the pose is "
     "that of robot1/world in map. A simulator fixes robots to a link that is called world and to no "
@@ -103,7 +103,7 @@ OWN_ODOMETRY = declare(
     "known of. The pose is not published.",
     why="If that node sends odom -> base, a pose of the base would be its second parent, and the robot "
     "would jump between two places.",
-    fix="Describe the node in a file of nodes, with `frames` and, if it sends that, `sends`: the "
+    fix="Describe the node in a file of nodes, with `frames` and, if it sends that, `sends`. The "
     "pose is then that of the odometry frame (docs/stacks.md).",
     bad="""\
 robots:

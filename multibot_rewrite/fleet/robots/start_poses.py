@@ -136,7 +136,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
         what = f"its pose is not published, because it has {frames} instead of one"
-        yield _finding(NO_SINGLE_ROOT, robot, what, "connect them")
+        yield _finding(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
         return
     if own := _own_odometry(plan, robot):
         what = f"its pose is not published, because {own} may send where its base is"

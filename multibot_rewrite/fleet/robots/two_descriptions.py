@@ -64,8 +64,9 @@ SDF_ALONE = declare(
     "sdf-for-state-publisher",
     WARNING,
     what="robot_state_publisher gets an SDF.",
-    why="It reads one only where the package sdformat_urdf is installed, which it does not depend on: "
-    "without it the node ends at its start, and no node sends the transforms of the robot's links.",
+    why="It reads one only with the package sdformat_urdf, which it does not depend on. Without "
+    "that package the node ends at its start, and no node sends the transforms of the robot's "
+    "links.",
     fix="Name the robot's URDF as `description` and the SDF as `simulated`, or install "
     "ros-$ROS_DISTRO-sdformat-urdf on the robots.",
     bad="description: rover.sdf\nrobots: [{name: robot1}]\n",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from importlib import import_module
 from itertools import islice
 from math import inf
@@ -21,7 +21,14 @@ from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
-from multibot_rewrite.producers.zenoh.cdr import read_header_frame, read_tf
+from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED
+from multibot_rewrite.producers.ros.pace import Pace
+from multibot_rewrite.producers.zenoh.cdr import (
+    read_header_frame,
+    read_joint_names,
+    read_stamp,
+    read_tf,
+)
 from multibot_rewrite.system.records import Caveat, Edge, Qos
 
 if TYPE_CHECKING:
@@ -121,13 +128,25 @@ def _unread(topic: str) -> Caveat:
 def _topic(reader: Reader, name: str, connections: list[Connection]) -> RecordedTopic:
     first = connections[0]
     count = sum(it.msgcount for it in connections)
-    frames: dict[str, None] = {}
-    if count and _has_header(first):
-        for data in _first(reader, connections, HEADERS):
-            frame = read_header_frame(data)
-            frames |= {} if frame is None else {frame: None}
+    type_, frames, joints, back = str(first.msgtype), {}, {}, 0.0
+    if type_ in JOINTED:
+        names = map(read_joint_names, _first(reader, connections, HEADERS))
+        joints = dict.fromkeys(it for it in names if it)
+    elif count and _has_header(first):
+        found = map(read_header_frame, _first(reader, connections, HEADERS))
+        frames = dict.fromkeys(it for it in found if it is not None)
+    elif type_ == CLOCK_TYPE:
+        back = _back(_first(reader, connections, TRANSFORMS))
     qos = tuple(_qos(it) for own in connections for it in _profiles(own))
-    return RecordedTopic(name, str(first.msgtype), count, qos, tuple(frames))
+    return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back)
+
+
+def _back(messages: Iterable[bytes]) -> float:
+    """By how many seconds a clock goes back, at most."""
+    pace = Pace()
+    for data in messages:
+        pace = pace.after(read_stamp(data) or 0.0)
+    return round(pace.back, 1)
 
 
 def _has_header(connection: Connection) -> bool:
@@ -144,16 +163,25 @@ def _transforms(
 ) -> tuple[Collection[Edge], bool]:
     """The transforms on a tf topic as they were at last, and whether some could not be read."""
     found: dict[tuple[str, str], Edge] = {}
+    paces: dict[tuple[str, str], Pace] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
     for read, data in enumerate(_first(reader, connections, TRANSFORMS + 1)):
         message = read_tf(data) if read < TRANSFORMS else None
         if message is None:
-            return found.values(), True
+            return _paced(found, paces), True
         for it in message.transforms:
             edge = (it.child_frame_id, it.header.frame_id)
             last = numbers_of(it.transform)
             found[edge] = Edge(*edge, topic, static, (RECORDER,), transform=last)
-    return found.values(), False
+            paces[edge] = paces.get(edge, Pace()).after(it.header.stamp)
+    return _paced(found, paces), False
+
+
+def _paced(
+    found: Mapping[tuple[str, str], Edge], paces: Mapping[tuple[str, str], Pace]
+) -> Collection[Edge]:
+    """The transforms with how often each came."""
+    return [it if it.static else it._replace(rate=paces[key].rate()) for key, it in found.items()]
 
 
 def _profiles(connection: Connection) -> Iterable[Any]:

@@ -30,7 +30,8 @@ class RecordedTopic(NamedTuple):
     """A topic of a recording.
 
     ``qos`` has one profile for each publisher that was recorded; ``frames`` are the ``header.frame_id``
-    of its first messages.
+    of its first messages, ``joints`` the names in those of joints, ``back`` by how many seconds a clock
+    went back.
     """
 
     name: str
@@ -38,6 +39,8 @@ class RecordedTopic(NamedTuple):
     messages: int
     qos: tuple[Qos, ...] = ()
     frames: tuple[str, ...] = ()
+    joints: tuple[tuple[str, ...], ...] = ()
+    back: float = 0.0
 
 
 class Recording(NamedTuple):
@@ -67,8 +70,15 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
         for it in found.transforms
     )
     around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
-    heard = (Heard(it.name, frame) for it in found.topics for frame in it.frames)
-    return System((), tuple(_publishers(found.topics)), frames, around, tuple(heard))
+    heard = tuple(one for it in found.topics for one in _heard(it))
+    return System((), tuple(_publishers(found.topics)), frames, around, heard)
+
+
+def _heard(it: RecordedTopic) -> Iterable[Heard]:
+    yield from (Heard(it.name, frame) for frame in it.frames)
+    yield from (Heard(it.name, "", joints=names) for names in it.joints)
+    if it.back:
+        yield Heard(it.name, "", back=it.back)
 
 
 def counted(found: Recording) -> dict[str, int]:

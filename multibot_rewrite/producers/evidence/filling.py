@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_topic_name
-from multibot_rewrite.knowledge.conditions import Values, chosen_type, holds, verdict
+from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 
@@ -235,12 +235,19 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iter
 
 
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
-    """Parameters and the topics in them: of all that match a pattern, of a list each. An empty text
-    is one, too: it stands for no topic."""
-    for name in _called(parameter, values):
-        given = values[name]
-        words = _words(given) if isinstance(given.value, list) else [str(given.value)]
-        yield from ((name, it) for it in words if not it or not check_topic_name(it))
+    """Parameters and the topics in them: of all that match a pattern, of a list each; of several
+    parameters the first that has one. An empty text is one, too: it stands for no topic."""
+    found: list[tuple[str, str]] = []
+    for one in parameter.split(ALSO):
+        found = [it for name in _called(one, values) for it in _topics(name, values[name])]
+        if any(topic for _, topic in found):
+            break
+    yield from found
+
+
+def _topics(name: str, given: Given) -> Iterator[tuple[str, str]]:
+    words = _words(given) if isinstance(given.value, list) else [str(given.value)]
+    yield from ((name, it) for it in words if not it or not check_topic_name(it))
 
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:

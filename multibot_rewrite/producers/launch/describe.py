@@ -11,7 +11,6 @@ import os
 import pathlib
 import re
 import shlex
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any
@@ -20,43 +19,62 @@ import yaml
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.failures import failure, missing_package
+from multibot_rewrite.producers.launch.include_arguments import not_among, unread
+from multibot_rewrite.producers.launch.kept_paths import (
+    LIMIT,
+    is_made,
+    kept_file,
+    lasting,
+    read_text,
+)
 from multibot_rewrite.producers.launch.made_files import source_of
-from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.places import place_of
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchNote,
+    ParameterText,
+    UnreadArgument,
+)
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
-from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
-_LIMIT = 1 << 24
-SIMULATOR = "gzserver"
+SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
 # The commands of Gazebo, and the package that ROS starts it with.
 _GAZEBO = {
     "gz": "ros_gz_sim",
     "ign": "ros_gz_sim",
-    "gazebo": "gazebo_ros",
-    "gzserver": "gazebo_ros",
+    "gazebo": CLASSIC,
+    "gzserver": CLASSIC,
 }
-# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
-_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
-_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
+SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", CLASSIC)
+# The launch files that start Gazebo and nothing else.
+_SIMULATES = (
+    *("gz_sim.launch.py", "gz_server.launch.py", "ign_gazebo.launch.py"),
+    *("gazebo.launch.py", "gzserver.launch.py", "gzclient.launch.py"),
+)
 # Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
 _WORLDS = ("gz_args", "ign_args", "world")
-# ament_index_python and Python say it so.
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
-# In the share folder of a package that is stood in for (source_packages.py).
-_NOT_FOUND = re.compile(
-    rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
-)
+_SIM_WORDS = (*_WORLDS, "gz_version", "ign_version", "debugger", "on_exit_shutdown")
+# What ros_gz_sim spawns with: its arguments, and the words of create that they are
+# (ros_gz jazzy ros_gz_sim/launch/gz_spawn_model.launch.py).
+_SPAWNS = ("gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py")
+_SPAWN_WORDS = {
+    **{it: f"-{it}" for it in ("world", "file", "topic", "x", "y", "z", "R", "P", "Y")},
+    "entity_name": "-name",
+    "model_string": "-string",
+}
+_SHARE = re.compile(r"/share/([\w-]+)/")
 
 
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
-    timer starts with its visit and the locals that it keeps, the place of what is visited, what starts
-    it if not the launch itself, and after how many events."""
+    timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
+    without effect, what starts it if not the launch itself, and after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -64,6 +82,7 @@ class Visit(NamedTuple):
     files: dict[str, ParameterText]
     waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
+    unread: list[UnreadArgument]
     later: str = ""
     events: int = 0
 
@@ -74,68 +93,54 @@ class Visit(NamedTuple):
         self.notes.append(LaunchNote(self.place, message, parameters, file, fails))
 
 
-def failure(error: BaseException) -> str:
-    """What went wrong, in one line; for a package that is missing what to do."""
-    name = missing_package(error) or missing_module(error)
-    if name:
-        return not_installed(name)
-    if variable := _variable(error):
-        return f"the environment variable {variable} is not set here; set it as for ros2 launch"
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
-def _variable(error: BaseException) -> str:
-    """The environment variable that os.environ has not; empty for another fault."""
-    # launch has an error of its own around it.
-    error = error.__cause__ or error
-    last = error.__traceback__
-    while last is not None and last.tb_next is not None:
-        last = last.tb_next
-    of_os = last is not None and last.tb_frame.f_globals.get("__name__") == "os"
-    return str(error.args[0]) if of_os and isinstance(error, KeyError) else ""
-
-
-NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
-
-
-def not_installed(name: str) -> str:
-    """What is said of a package that is missing."""
-    return f"package {name!r} is not installed here; {ROOTS}"
-
-
-def missing_package(error: BaseException) -> str:
-    """The package of ROS that was not found; empty for another fault."""
-    found = _NOT_FOUND.search(str(error))
-    return (found[1] or found[2] or "") if found else ""
-
-
-def missing_module(error: BaseException) -> str:
-    """The Python package that was not found; empty for another fault."""
-    found = _NOT_FOUND.search(str(error))
-    return (found[3] or "") if found else ""
-
-
-def is_certain(error: BaseException, here: Visit) -> bool:
-    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
-    or the launch file itself raises what names no file or device of a machine."""
-    if isinstance(error, FileNotFoundError):
-        folder = os.path.dirname(os.path.realpath(here.place.file))
-        return str(error.filename or "").startswith(f"{folder}/")
-    last = error.__traceback__
-    while last is not None and last.tb_next is not None:
-        last = last.tb_next
-    own = last is not None and last.tb_frame.f_code.co_filename.endswith(".launch.py")
-    return own and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
-
-
 def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
-    """The simulator of a package that is missing here: that it starts one is known without it, and with
-    which words."""
-    package = missing_package(error)
-    if package not in _GAZEBO.values():
+    """The simulator of a package that is missing here, or whose launch file only a build makes: that it
+    starts one is known without it, and with which words."""
+    path = _path_of(include, here.context)
+    of_path = _SHARE.search(path)
+    package = missing_package(error) or (of_path[1] if of_path else "")
+    name = os.path.basename(path)
+    spawns = name in _SPAWNS
+    if package not in SIMULATORS or not (spawns or name in _SIMULATES):
         return None
-    words = tuple(_simulator_words(include, here.context))
-    return LaunchedNode(package, SIMULATOR, "", "/", (), (), "", words, here.later, here.place)
+    known = _SPAWN_WORDS if spawns else _SIM_WORDS
+    for one, near in not_among(given_names(include, here.context), known, whole=spawns):
+        here.unread.append(UnreadArgument(here.place, name, one, near))
+    words = (_spawner_words if spawns else _simulator_words)(include, here.context)
+    program = "create" if spawns else SIMULATOR
+    kept = (*lasting(words),)
+    return LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
+
+
+def without_effect(include: Any, here: Visit) -> None:
+    """Keep the arguments that the file of an include does not read."""
+    path = _path_of(include, here.context)
+    for name, near in unread(path, given_names(include, here.context)):
+        here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
+
+
+def given_names(include: Any, context: Any) -> list[str]:
+    """The names of the arguments of an include, where they are known."""
+    found = []
+    for name, _ in include.launch_arguments or ():
+        with suppress(Exception):
+            found.append(text(name, context))
+    return found
+
+
+def _path_of(include: Any, context: Any) -> str:
+    """The path of the file that is included; empty where that is not known."""
+    with suppress(Exception):
+        return text(include.launch_description_source.location, context)
+    return ""
+
+
+def _spawner_words(include: Any, context: Any) -> Iterator[str]:
+    """The words of the program that gz_spawn_model.launch.py starts."""
+    for name, value in include.launch_arguments:
+        with suppress(Exception):
+            word = _SPAWN_WORDS.get(text(name, context))
+            yield from (word, text(value, context)) if word else ()
 
 
 def _simulator_words(include: Any, context: Any) -> Iterator[str]:
@@ -177,12 +182,23 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         text(_kept(action, "node_name"), here.context) or given.name,
         given.namespace or _namespace(_kept(action, "node_namespace"), here.context),
         tuple(rules),
-        (*_parameters(own, here), *_given(given.values, files, here)),
+        (
+            *_described(package, given.own),
+            *_parameters(own, here),
+            *_given(given.values, files, here),
+        ),
         "",
-        given.own,
+        (*lasting(given.own),),
         here.later,
         place_of(action, here.place.file, (package, executable)),
     )
+
+
+def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
+    """The description whose file is the first word of a robot_state_publisher: it is read where no
+    parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
+    if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
+        yield _values({"robot_description": read_text(words[0])})
 
 
 def component(it: Any, container: str, here: Visit) -> LaunchedNode:
@@ -214,7 +230,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     values = tuple(_given(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
-    yield LaunchedNode(*names, given.rules, values, "", given.own, here.later, here.place)
+    kept = (*lasting(given.own),)
+    yield LaunchedNode(*names, given.rules, values, "", kept, here.later, here.place)
 
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
@@ -273,6 +290,10 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         # A value may be the output of a program that is not started; other ones fail in a launch, too.
         if _FAILS in str(error):
             here.note(failure(error), parameters=True)
+        elif isinstance(error, FileNotFoundError) and not missing_package(error):
+            # Its folder may be a link to sources, which is gone when this is read.
+            path = os.path.realpath(str(error.filename))
+            here.note(_lost(path), parameters=True, file=path)
         elif not isinstance(given, dict):
             here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
         if isinstance(given, dict):
@@ -294,7 +315,7 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
 def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     """The texts of files that the launch makes and names in values, such as that of a bridge."""
     for path in (it for it in values if isinstance(it, str) and "\n" not in it):
-        if os.path.isfile(path) and not _kept_file(path):
+        if os.path.isfile(path) and not kept_file(path):
             yield from _file(path, here)
 
 
@@ -317,7 +338,7 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
-        return _kept_file(value) or value
+        return kept_file(value) or value
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]
@@ -334,27 +355,19 @@ def _given(
 
 
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
-    if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
+    if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
         said = (
             f"a parameter file of the package {lost!r}, which is not installed here, is not known"
         )
-        what = said if lost else f"the parameter file {path!r} is not there"
-        here.note(what, parameters=True, file="" if lost else path)
+        here.note(said if lost else _lost(path), parameters=True, file="" if lost else path)
         return
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
     # A file that the launch makes is gone when this is read.
-    yield ParameterText("" if _is_made(path) else os.path.realpath(path), text_, _kept_file(source))
+    yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))
 
 
-def _is_made(path: str) -> bool:
-    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
-
-
-def _kept_file(path: str) -> str:
-    """The real path of a file that is there when the launch is over, else nothing."""
-    if "\n" in path:
-        return ""
-    return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)
+def _lost(path: str) -> str:
+    return f"the parameter file {path!r} is not there"

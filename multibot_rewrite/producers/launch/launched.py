@@ -19,14 +19,14 @@ from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.producers.launch.describe import SIMULATOR
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchGraph, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, RunningNode
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
 from multibot_rewrite.system.records import Place, System
 
-_WORLDS = (".sdf", ".world")
+_WORLDS = (".sdf", ".world", ".model")
 # The topics of a fleet with a tf each: those of a model are its own then.
 _NAMING = make_naming("tf-per-robot")
 
@@ -93,13 +93,17 @@ def _in_simulator(it: Model, release: str) -> InSimulator | None:
 
 
 def worlds(launched: Launched) -> Iterator[World]:
-    """The files of worlds that simulators are started with."""
+    """The files of worlds that gz is started with."""
     for it in launched.graph.nodes:
-        words = (word for text in it.arguments for word in _split(text))
-        for word in words if it.executable == SIMULATOR else ():
-            if word.endswith(_WORLDS):
-                with suppress(InputError, OSError):
-                    yield World(word, read_xml(read_file(word), word), it.place)
+        for word in world_files(it) if it.package != CLASSIC else ():
+            with suppress(InputError, OSError):
+                yield World(word, read_xml(read_file(word), word), it.place)
+
+
+def world_files(it: LaunchedNode) -> list[str]:
+    """The files of worlds in the words of a simulator."""
+    words = (word for text in it.arguments for word in _split(text))
+    return [it for it in words if it.endswith(_WORLDS)] if it.executable == SIMULATOR else []
 
 
 def _split(text: str) -> list[str]:

@@ -12,12 +12,15 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 
+from lxml.etree import SubElement, tostring
+
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.parameters import MODEL
-from multibot_rewrite.description.readback.reading import FRAME, Reading, read
+from multibot_rewrite.description.readback.reading import FRAME, Reading, RuntimeName, read
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.sources.read import read_file
@@ -34,8 +37,10 @@ _GIVEN = ParameterText(
 )
 # Frames of systems of gz that send odometry, and their topic (gz-sim src/systems: diff_drive,
 # ackermann_steering, mecanum_drive, tracked_vehicle, odometry_publisher).
-_PARENTS, _CHILDREN = ("frame_id", "odom_frame"), ("child_frame_id", "robot_base_frame")
-_TF = "tf_topic"
+_PARENTS = ("frame_id", "odom_frame", "odometry_frame")
+_CHILDREN = ("child_frame_id", "robot_base_frame")
+_TF, _CLASSIC_TF = "tf_topic", "/tf"
+_FRAME = "frame_name"
 
 
 class Published(NamedTuple):
@@ -74,17 +79,46 @@ def models_of(
     texts = {it.topic: it for it in published}
     found, lost, taken = [], [], set()
     for it in spawners:
-        words = dict(pairwise(it.arguments))
+        said = (*it.arguments, *_of_parameters(it))
+        words = dict(pairwise(said))
         topic = expand(words.get("-topic", ""), it.namespace, "") if "-topic" in words else ""
         text = texts[topic].text if topic in texts else _given(words)
         name = words.get("-name", words.get("-entity", ""))
-        model = _read(name, text, it.place, release, spawned=True)
-        found += [model._replace(words=it.arguments)] if model else []
+        moved = _moved(text, words.get("-robot_namespace", ""))
+        model = _read(name, moved, it.place, release, spawned=True)
+        found += [model._replace(text=text, words=said)] if model else []
         lost += [] if model else [it]
         taken.add(topic)
     rest = (it for it in texts.values() if it.topic not in taken)
     more = (_read("", it.text, it.place, release, spawned=False) for it in rest)
     return Models((*found, *filter(None, more)), tuple(lost))
+
+
+def _of_parameters(it: LaunchedNode) -> Iterator[str]:
+    """The words of a spawner that are parameters (ros_gz jazzy ros_gz_sim/src/create.cpp)."""
+    for given in it.parameters:
+        found = load_yaml(given.text)
+        own = found.get("/**", {}) if isinstance(found, dict) else {}
+        for name, value in (own.get("ros__parameters") or {}).items():
+            if value != "":
+                yield from (f"-{name}", str(value))
+
+
+def _moved(text: str, namespace: str) -> str:
+    """The description with the namespace that Classic gives all plugins in it
+    (gazebo_ros_pkgs ros2 gazebo_ros/src/gazebo_ros_factory.cpp, AddNamespace)."""
+    if not namespace or not text:
+        return text
+    try:
+        root = read_xml(text.encode(), "")
+    except InputError:
+        return text
+    for plugin in root.iter("plugin"):
+        ros = plugin.find("ros")
+        ros = SubElement(plugin, "ros") if ros is None else ros
+        own = ros.find("namespace")
+        (SubElement(ros, "namespace") if own is None else own).text = namespace
+    return tostring(root, encoding="unicode")
 
 
 def _given(words: Mapping[str, str]) -> str:
@@ -124,6 +158,37 @@ def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
     """The remap rules of a plugin."""
     for rule in (it.rule for it in node.rules):
         yield f"{rule.node}:{rule.source}".lstrip(":"), rule.target
+
+
+def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
+    """The frame of what the node of a plugin measures, by the node, where the description says it
+    (gazebo_ros_pkgs ros2 gazebo_ros/src/utils.cpp, SensorFrameID)."""
+    found = {}
+    for reading in (it.reading for it in models if it.spawned):
+        frames = {it.number: it.name for it in reading.names if it.path == _FRAME}
+        for node in (it for it in reading.nodes if it.number in frames):
+            found[expand(node.name, node.namespace or "/", "")] = frames[node.number]
+    return found
+
+
+def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]]:
+    """The transforms that nodes of plugins send, by the node, each with its topic in ROS
+    (gazebo_ros_pkgs ros2 gazebo_plugins/src/gazebo_ros_diff_drive.cpp, PublishOdometryTf)."""
+    found: dict[str, list[tuple[str, Edge]]] = {}
+    for reading in (it.reading for it in models if it.spawned):
+        for node in (it for it in reading.nodes if not is_manager(it)):
+            own = {it.path: it.name for it in reading.names if _of(it, node)}
+            parent, child = (
+                next((own[it] for it in way if it in own), "") for way in (_PARENTS, _CHILDREN)
+            )
+            if _CLASSIC_TF in own and parent and child:
+                name = expand(node.name, node.namespace or "/", "")
+                found.setdefault(name, []).append((own[_CLASSIC_TF], edge_of(parent, child)))
+    return found
+
+
+def _of(it: RuntimeName, node: ReadNode) -> bool:
+    return (it.tag, it.number) == ("plugin", node.number)
 
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:

@@ -10,15 +10,15 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands
-from multibot_rewrite.producers.launch.describe import (
+from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.failures import (
     NOT_THERE,
-    Visit,
     failure,
     missing_module,
     missing_package,
     not_installed,
 )
-from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
@@ -56,6 +56,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
             lost = [it for it in _lost(graph.notes) if it not in missing]
             for name in lost:
                 add_empty(name, folder)
+                add_unknown(name)
             missing += lost
             if not lost:
                 break
@@ -72,7 +73,9 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
                 add_unknown(module)
             missing.append(name)
     files = (*graph.files, *descriptions_in(reads))
-    unsaid = [it for it in missing if it not in _lost(graph.notes)]
+    # What the launch files of these start is known without them.
+    said = (*_lost(graph.notes), *SIMULATORS)
+    unsaid = [it for it in missing if it not in said]
     return graph._replace(notes=(*graph.notes, *_not_there(order, unsaid)), files=files)
 
 
@@ -105,12 +108,13 @@ def read_own(file: str, folder: str) -> LaunchGraph:
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1))
+    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1), [])
     visit_all(description, seen)
     for it in faults(context):
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(seen.notes))
-    return LaunchGraph(tuple(seen.nodes), notes, tuple(seen.files.items()))
+    files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
+    return LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
 
 
 def _included(order: LaunchOrder) -> Any:

@@ -86,15 +86,26 @@ class LaunchNote(NamedTuple):
     fails: bool = False
 
 
+class UnreadArgument(NamedTuple):
+    """An argument of an include that the launch ``file`` does not read; ``near`` is one that it
+    declares and that is called nearly so."""
+
+    place: Place
+    file: str
+    name: str
+    near: str
+
+
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
-    launch is not installed and its stand-in read them."""
+    launch is not installed and its stand-in read them. ``unread`` are arguments without effect."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
     files: tuple[tuple[str, ParameterText], ...] = ()
     stood_in: bool = False
+    unread: tuple[UnreadArgument, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -185,6 +196,7 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
         tuple(note for it in graphs for note in it.notes),
         tuple(file for it in graphs for file in it.files),
         any(it.stood_in for it in graphs),
+        tuple(one for it in graphs for one in it.unread),
     )
 
 
@@ -202,13 +214,14 @@ def order_of(text: str) -> LaunchOrder:
 
 def graph_of(text: str) -> LaunchGraph:
     """The graph that ``to_json`` wrote."""
-    nodes, notes, files, stood_in = json.loads(text)
+    nodes, notes, files, stood_in, unread = json.loads(text)
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
         tuple(found),
         tuple((path, ParameterText(*it)) for path, it in files),
         stood_in,
+        tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
     )
 
 

@@ -30,6 +30,7 @@ from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.models import (
     Model,
@@ -60,7 +61,6 @@ UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
 _STATIC = "static_transform_publisher"
-_CLASSIC = ("gazebo_ros", "gzserver")
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 
@@ -156,11 +156,11 @@ def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
     """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
     passes it on."""
     for it in graph.nodes:
-        if (it.package, it.executable) == _CLASSIC:
+        if (it.package, it.executable) == (CLASSIC, SIMULATOR):
             clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
             facts = NodeFacts("gazebo", it.package, (clock,))
             names = (facts.name, "/", (), (), "/")
-            yield RunningNode(*names, facts, {}, SIMULATED, (), _CLASSIC[1], it.place)
+            yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
             return
 
 

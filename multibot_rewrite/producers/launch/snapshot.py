@@ -7,6 +7,7 @@ condition that nobody knows is left out.
 
 from __future__ import annotations
 
+import os
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
@@ -30,8 +31,14 @@ from multibot_rewrite.producers.launch.launched import (
     Launched,
     frames_of_sensors,
     models_in_simulator,
+    world_files,
 )
-from multibot_rewrite.producers.launch.models import Models, sent_in_simulator
+from multibot_rewrite.producers.launch.models import (
+    Models,
+    frames_of_plugins,
+    sent_by_plugins,
+    sent_in_simulator,
+)
 from multibot_rewrite.producers.launch.node_transforms import (
     TF_TYPE,
     Sent,
@@ -50,6 +57,7 @@ from multibot_rewrite.producers.launch.running import (
     bound_of,
     running_nodes,
 )
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.transforms import lookups_of
 from multibot_rewrite.system.parameters import parameter_text
@@ -99,8 +107,11 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     parts, refused = _parts(nodes, inside)
+    of_plugins = sent_by_plugins(models.found)
+    parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
-    caveats = (*_stood_in(graph), *_refused(refused), *more, *_of_models(models))
+    lost = (*_of_models(models), *_of_worlds(graph))
+    caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
         tuple(_nodes(nodes, parts)),
         tuple(end for part in parts for end in part.endpoints),
@@ -112,7 +123,8 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
     found = Launched(graph, nodes, spawned, models, system, known.release)
-    heard = _heard(nodes, dict(frames_of_sensors(models_in_simulator(found))))
+    heard = [*_heard(nodes, dict(frames_of_sensors(models_in_simulator(found))))]
+    heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 
 
@@ -154,6 +166,13 @@ def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[
             if end.role == PUBLISHES and frame:
                 bound = bound_of(it.name, it.namespace, it.rules)
                 yield Heard(resolve_bound(end.name, end.kind, bound), frame)
+
+
+def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:
+    """The frames of what nodes of plugins measure."""
+    for end in (it for part in parts if part.name in frames for it in part.endpoints):
+        if end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
+            yield Heard(end.name, frames[end.node])
 
 
 def _lookups(it: RunningNode) -> Iterator[Lookup]:
@@ -234,6 +253,16 @@ def _of_models(models: Models) -> Iterator[Caveat]:
         listed = shorten(list(dict.fromkeys(unknown)), SEVERAL)
         text = f"what these plugins of spawned models start is not known: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
+
+
+def _of_worlds(graph: LaunchGraph) -> Iterator[Caveat]:
+    """A world may have robots in it, which nobody spawns."""
+    for it in graph.nodes:
+        for file in world_files(it):
+            told = NOT_INSTALLED in file
+            if os.path.isabs(file) and not os.path.isfile(file) and not told:
+                text = f"the world {file} is not here, so what robots in it send is not known"
+                yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
 
 
 def _part(it: RunningNode, inside: Sent) -> _Part:

@@ -9,8 +9,11 @@ AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``).
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
 
 from multibot_rewrite.description.sources.packages import (
     MANIFEST,
@@ -18,8 +21,10 @@ from multibot_rewrite.description.sources.packages import (
     packages_below,
     sources_around,
 )
+from multibot_rewrite.producers.launch.install_rules import link_share
 
 _INDEX = os.path.join("share", "ament_index", "resource_index", "packages")
+_PYTHON = re.compile(r"ament_python_install_package\(\s*(\w+)")
 _PATH = "AMENT_PREFIX_PATH"
 # The prefix of packages that have an empty folder here.
 NOT_INSTALLED = "not_installed"
@@ -30,10 +35,19 @@ def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
     ``folder`` gets links to them. What is installed is found first, then what is below the roots.
     """
     for name, path in dict(_packages(file, roots)).items():
-        os.symlink(path, _shared(name, os.path.join(folder, "sources")))
-        if os.path.isfile(os.path.join(path, name, "__init__.py")):
+        link_share(name, path, _shared(name, os.path.join(folder, "sources")))
+        if os.path.isfile(os.path.join(path, name, "__init__.py")) or _installs_python(path):
             sys.path.append(path)
     _search(os.path.join(folder, "sources"))
+
+
+def _installs_python(folder: str) -> bool:
+    """Does its CMakeLists.txt install a Python package of another name than its own?"""
+    with suppress(OSError, UnicodeDecodeError):
+        text = Path(folder, "CMakeLists.txt").read_text("utf-8")
+        names = _PYTHON.findall(text)
+        return any(os.path.isfile(os.path.join(folder, it, "__init__.py")) for it in names)
+    return False
 
 
 def add_empty(name: str, folder: str) -> None:

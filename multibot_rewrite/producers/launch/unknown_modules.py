@@ -18,34 +18,47 @@ def add_unknown(name: str) -> None:
     sys.meta_path.append(_Finder(name))
 
 
+def is_unknown(value: object) -> bool:
+    """Is it such a package, or something taken of it?"""
+    return isinstance(value, Unknown | _Module)
+
+
 class Unknown(dict[Any, Any]):
-    """What nothing is known of."""
+    """What nothing is known of but the module that it is taken from."""
+
+    def __init__(self, module: str) -> None:
+        super().__init__()
+        self._multibot_module = module
 
     def __getattr__(self, name: str) -> Unknown:
         if name.startswith("__"):
             raise AttributeError(name)
-        return Unknown()
+        return Unknown(self._multibot_module)
 
     def __call__(self, *_: object, **__: object) -> Unknown:
-        return Unknown()
+        return Unknown(self._multibot_module)
 
     def __missing__(self, _: object) -> Unknown:
-        return Unknown()
+        return Unknown(self._multibot_module)
 
     def __fspath__(self) -> str:
         return "unknown"
 
     def __add__(self, _: object) -> Unknown:
-        return Unknown()
+        return Unknown(self._multibot_module)
 
     __radd__ = __truediv__ = __add__
+
+    def perform(self, _: object) -> str:
+        """As the text of something: raises LookupError."""
+        raise LookupError(f"what is taken of {self._multibot_module!r} is not known")
 
 
 class _Module(ModuleType):
     def __getattr__(self, name: str) -> Unknown:
         if name.startswith("__"):
             raise AttributeError(name)
-        return Unknown()
+        return Unknown(self.__name__)
 
 
 class _Finder(MetaPathFinder, Loader):

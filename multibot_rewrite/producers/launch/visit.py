@@ -14,19 +14,19 @@ from typing import Any
 from multibot_rewrite.producers.launch.describe import (
     Visit,
     component,
-    failure,
-    is_certain,
     is_wanted,
     node,
     process,
     simulator,
     text,
+    without_effect,
 )
+from multibot_rewrite.producers.launch.failures import failure, is_certain
 from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.
 _EXECUTED = (
-    *("LaunchDescription", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("LaunchDescription", "GroupAction", "OpaqueFunction"),
     *("ForEach", "ForLoop"),
     *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
     *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
@@ -83,7 +83,10 @@ def visit(entity: Any, seen: Visit) -> None:
             here.nodes.append(missing)
             return
         ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=is_certain(error, here))
+        here.note(
+            f"{here.later} {failure(error)}{ended}".strip(),
+            fails=is_certain(error, here.place.file),
+        )
     finally:
         if own:
             seen.context._pop_locals()
@@ -101,6 +104,13 @@ def _is(entity: Any, *names: str) -> bool:
 
 def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
     found: Iterable[Any] | None = entity.visit(seen.context)
+    return found
+
+
+def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    found = _execute(entity, seen)
+    if is_wanted(entity, seen.context):
+        without_effect(entity, seen)
     return found
 
 
@@ -210,6 +220,7 @@ _HANDLERS: Mapping[str, Handler] = MappingProxyType(
     {
         **dict.fromkeys(_EXECUTED, _execute),
         **dict.fromkeys(_PASSED, _pass),
+        "IncludeLaunchDescription": _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,
         "Node": _node,

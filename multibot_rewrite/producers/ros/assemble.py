@@ -53,6 +53,7 @@ class ReceivedTransform(NamedTuple):
 
 
 NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
+NO_RATES: Mapping[ReceivedTransform, float] = {}
 
 
 class LastChange(NamedTuple):
@@ -105,9 +106,20 @@ def so_far(names: Sequence[str]) -> str:
     return f"{plural(len(names), 'node')}{where} so far"
 
 
-def cut_short() -> Iterator[Caveat]:
-    """Where the time was over in the midst of the slow queries."""
-    text = "the timeout was over before the QoS of all topics was read; give a longer --timeout"
+def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat]:
+    """Where the time was over in the midst of the slow queries: what was not asked."""
+    known = {it.name for it in endpoints if it.qos is not None}
+    topics = {it.name: [it.name] for it in endpoints if it.kind == TOPIC}
+    left = [it for it in topics_to_query(names, endpoints, topics, ()) if it not in known]
+    which = f" ({shorten(left, SEVERAL)})" if left else ""
+    text = f"the timeout was over before the QoS of all topics was read{which}"
+    yield Caveat("cut-short", True, f"{text}; give a longer --timeout")
+
+
+def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
+    """Where the time was over before messages could come."""
+    which = f" on {shorten(silent, SEVERAL)}" if silent else ""
+    text = f"the timeout was over before messages could come{which}; give a longer --timeout"
     yield Caveat("cut-short", True, text)
 
 
@@ -216,10 +228,12 @@ def frames(
     endpoints: Iterable[End],
     of_several: Collection[ReceivedTransform] = (),
     last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
+    rates: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
-    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last.
+    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
+    ``rates`` how often it came.
     """
     publishers = defaultdict(set)
     for end in endpoints:
@@ -231,8 +245,10 @@ def frames(
         latched[edge] = is_latched or latched.get(edge, False)
     several = {(it.topic, it.parent, it.child) for it in of_several}
     numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
+    often = {(it.topic, it.parent, it.child): own for it, own in rates.items()}
     for edge, static in sorted(latched.items()):
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
         transform = numbers.get(edge, ())
-        yield Edge(child, parent, topic, static, senders, edge in several, transform)
+        rate = often.get(edge, 0.0)
+        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate)

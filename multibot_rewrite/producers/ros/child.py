@@ -68,11 +68,14 @@ class RosProcess(NamedTuple):
 
 
 def observe(
-    request: Request, environ: Mapping[str, str], tell: Callable[[str], None] = lambda _: None
+    request: Request,
+    environ: Mapping[str, str],
+    tell: Callable[[str | System], None] = lambda _: None,
 ) -> System:
     """A snapshot of the graph with the variables of ``environ``; raises Unusable.
 
-    ``tell`` gets what is seen while the graph is waited for. No process is left running, however this
+    ``tell`` gets what is seen while the graph is waited for, in words, and as a view that may not be
+    whole. No process is left running, however this
     call ends.
     """
     began = time.monotonic()
@@ -101,12 +104,14 @@ def _may_contain_dead_nodes(seen: System) -> bool:
 
 
 def _observe_once(
-    request: Request, environ: Mapping[str, str], tell: Callable[[str], None]
+    request: Request, environ: Mapping[str, str], tell: Callable[[str | System], None]
 ) -> System:
     limit = request.timeout + SLACK_SECONDS
     with running(OBSERVE, to_text(request), environ, limit) as child:
         while (data := child.next_message()) and data.startswith(SO_FAR):
-            tell(data.removeprefix(SO_FAR).decode())
+            said = data.removeprefix(SO_FAR)
+            is_view = said.startswith(b"{")
+            tell(from_json(said, "the view so far") if is_view else said.decode())
         assert data is not None
         return from_json(data, "the view of the graph")
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from multibot_rewrite.producers.ros import assemble, ros
-from multibot_rewrite.producers.ros.headers import HeaderSamples, Receive
+from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
 from multibot_rewrite.producers.ros.look import GraphSession
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.producers.ros.voices import Mark
@@ -33,6 +33,10 @@ class Ears:
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
             self.headers.update(endpoints)
+
+    def silent(self) -> list[str]:
+        """The topics on which nothing has come."""
+        return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:
         """Whether something may still come."""
@@ -60,7 +64,9 @@ def _subscribe_to_headers(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
 ) -> Callable[[], None] | None:
     """Subscribe to the last message only, since there may be large images; None without a header."""
-    if not ros.begins_with_header(type_):
+    if type_ != CLOCK_TYPE and not ros.begins_with_header(type_):
         return None
     class_, _ = ros.raw_message_class(type_)
-    return class_ and ros.subscribe(session.node, class_, topic, latched, callback, depth=1)
+    # Of the clock all are wanted: it may go back at any.
+    depth = 0 if type_ == CLOCK_TYPE else 1
+    return class_ and ros.subscribe(session.node, class_, topic, latched, callback, depth=depth)

@@ -10,18 +10,24 @@ from __future__ import annotations
 import math
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Set
 
-from multibot_rewrite.base.conventions import LISTENER
+from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.ros.pace import Pace
 from multibot_rewrite.producers.ros.voices import Mark
-from multibot_rewrite.producers.zenoh.cdr import read_child_frame, read_header_frame, read_stamp
+from multibot_rewrite.producers.zenoh.cdr import (
+    read_child_frame,
+    read_header_frame,
+    read_joint_names,
+    read_stamp,
+)
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
     "sensor_msgs", "nav_msgs", "geometry_msgs", "stereo_msgs", "vision_msgs", "radar_msgs",
-    "map_msgs", "nav2_msgs", "grid_map_msgs", "octomap_msgs", "visualization_msgs",
+    "map_msgs", "nav2_msgs", "grid_map_msgs", "octomap_msgs", "visualization_msgs", "trajectory_msgs",
 )  # fmt: skip
 # But not these: joint_state_broadcaster, joy and teleop_twist_joy write words of their own there.
 WITHOUT_FRAME = frozenset({
@@ -29,6 +35,12 @@ WITHOUT_FRAME = frozenset({
     "sensor_msgs/msg/TimeReference", "sensor_msgs/msg/BatteryState", "geometry_msgs/msg/TwistStamped",
     "geometry_msgs/msg/AccelStamped",
 })  # fmt: skip
+# These name joints: of a robot, and of whom a planner sends there.
+JOINTED = frozenset({
+    "sensor_msgs/msg/JointState", "sensor_msgs/msg/MultiDOFJointState",
+    "trajectory_msgs/msg/JointTrajectory",
+})  # fmt: skip
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 # A subscription costs a few milliseconds.
 MOST_TOPICS = 200
 # Of a topic with several publishers.
@@ -57,7 +69,12 @@ class SensorTopic(NamedTuple):
     @property
     def has_rate(self) -> bool:
         """Whether it is worth more than one message: small ones, of one publisher, now and then."""
-        return self.publishers == 1 and not self.latched and self.type not in LARGE
+        return (
+            self.type != CLOCK_TYPE
+            and self.publishers == 1
+            and not self.latched
+            and self.type not in LARGE
+        )
 
 
 class _Span(NamedTuple):
@@ -80,7 +97,7 @@ def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
     """The topics worth a subscription, sensors first."""
     found: dict[str, list[End]] = defaultdict(list)
     for end in endpoints:
-        if (end.kind, end.role) == (TOPIC, PUBLISHES) and _names_a_frame(end):
+        if (end.kind, end.role) == (TOPIC, PUBLISHES) and (_names_a_frame(end) or _is_clock(end)):
             found[end.name].append(end)
     for name, ends in sorted(found.items(), key=_rank):
         latched = all(it.qos and it.qos.durability == "TRANSIENT_LOCAL" for it in ends)
@@ -89,11 +106,18 @@ def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
 
 def _rank(topic: tuple[str, list[End]]) -> tuple[int, str]:
     name, ends = topic
-    return PACKAGES.index(ends[0].type.partition("/")[0]), name
+    package = ends[0].type.partition("/")[0]
+    return PACKAGES.index(package) if package in PACKAGES else -1, name
+
+
+def _is_clock(end: End) -> bool:
+    """The clock of all: its time is where others have their stamp."""
+    return (end.name, end.type) == (CLOCK, CLOCK_TYPE)
 
 
 def _names_a_frame(end: End) -> bool:
-    known = end.type.partition("/")[0] in PACKAGES and end.type not in WITHOUT_FRAME
+    other = end.type not in WITHOUT_FRAME or end.type in JOINTED
+    known = end.type.partition("/")[0] in PACKAGES and other
     return known and "/_" not in end.name and LISTENER not in end.node
 
 
@@ -104,7 +128,8 @@ class HeaderSamples:
         self._subscribe = subscribe
         self._asked: set[str] = set()
         self._open: dict[str, Callable[[], None]] = {}
-        self._heard: dict[str, dict[str, Heard]] = defaultdict(dict)
+        self._heard: dict[str, dict[tuple[str, ...], Heard]] = defaultdict(dict)
+        self._clock: Pace | None = None
         self._spans: dict[str, _Span] = {}
         self._left_out = 0
         self._began = time.monotonic()
@@ -127,11 +152,18 @@ class HeaderSamples:
             self._began = time.monotonic()
 
     def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
-        frame, own = read_header_frame(data), self._heard[topic.name]
-        if frame is not None and frame not in own:
+        if topic.type == CLOCK_TYPE:
+            self._clock = (self._clock or Pace()).after(read_stamp(data) or 0.0)
+            return
+        joints = read_joint_names(data) if topic.type in JOINTED else ()
+        # What is there in place of a frame is a word of its sender's own.
+        frame = "" if topic.type in JOINTED else read_header_frame(data)
+        own = self._heard[topic.name]
+        if frame is not None and (frame, *joints) not in own:
             age = 0.0 if topic.latched else _age(read_stamp(data))
             child = read_child_frame(data) if topic.type == ODOMETRY else ""
-            own[frame] = Heard(topic.name, frame, age, child=child or "")
+            told = Heard(topic.name, frame, age, child=child or "", joints=joints)
+            own[(frame, *joints)] = told
         more = topic.has_rate and self._spanned(topic, data, mark)
         if not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES):
             self._close(topic.name)
@@ -153,14 +185,23 @@ class HeaderSamples:
 
     def keep_waiting(self, seconds: float) -> bool:
         """Whether to wait for silent topics, until ``seconds`` after the last subscription."""
-        silent = self._open.keys() - self._heard.keys()
-        return bool(silent) and time.monotonic() - self._began < seconds
+        return bool(self.silent()) and time.monotonic() - self._began < seconds
+
+    def silent(self) -> Set[str]:
+        """The topics on which nothing has come."""
+        runs = {CLOCK} if self._clock and self._clock.between else set()
+        return self._open.keys() - self._heard.keys() - runs
 
     def heard(self) -> tuple[Heard, ...]:
         """What was heard by topic; several of a topic that several nodes publish."""
         rates = {topic: span.rate() for topic, span in self._spans.items()}
-        heard = (it for own in self._heard.values() for it in own.values())
-        return tuple(sorted(it._replace(rate=rates.get(it.topic, 0.0)) for it in heard))
+        heard = [it for own in self._heard.values() for it in own.values()]
+        told = [it._replace(rate=rates.get(it.topic, 0.0)) for it in heard]
+        if CLOCK in self._open:
+            clock = self._clock or Pace()
+            stands = not (clock.between or clock.back)
+            told.append(Heard(CLOCK, "", math.inf if stands else 0.0, back=round(clock.back, 1)))
+        return tuple(sorted(told))
 
     def caveats(self) -> Iterator[Caveat]:
         """Where there were more topics than are listened to."""

@@ -21,14 +21,14 @@ GRACE_SECONDS = 1.0
 
 class GraphSession(NamedTuple):
     """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
-    what is seen so far."""
+    what is seen so far: a text, or a snapshot."""
 
     ros: ros.Session
     node: Any
     request: Request
     stop: threading.Event
     started: float
-    tell: Callable[[str], None]
+    tell: Callable[[bytes], None]
 
     def now(self) -> float:
         """Seconds since the observation began."""

@@ -10,7 +10,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 
@@ -28,6 +28,7 @@ from multibot_rewrite.producers.ros.look import (
 )
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
+from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
@@ -38,6 +39,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     QUIET,
     Caveat,
+    Edge,
     End,
     Environment,
     System,
@@ -61,7 +63,7 @@ LONGEST_SETTLE_SECONDS = 1.0
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Observe as ``order`` says; returns the exit code."""
     request = from_text(order)
-    tell = lambda text: send(SO_FAR + text.encode())  # noqa: E731
+    tell = lambda said: send(SO_FAR + said)  # noqa: E731
     with _open_session(request, stop, tell) as session:
         if request.watch:
             for snapshot in watch(session):
@@ -77,7 +79,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
 
 @contextmanager
 def _open_session(
-    request: Request, stop: threading.Event, tell: Callable[[str], None]
+    request: Request, stop: threading.Event, tell: Callable[[bytes], None]
 ) -> Iterator[GraphSession]:
     with ros.opened() as opened:
         node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
@@ -88,16 +90,18 @@ def take_snapshot(session: GraphSession) -> System:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
     ears = Ears(session)
-    why, clock = _wait_until_settled(session, cache, ears)
+    why, clock, last = _wait_until_settled(session, cache, ears)
     seconds = session.now()
     names, endpoints = complete_view(session, cache)
     # Who names what is expected does not wait for anything that may be late.
     late = () if why == EXPECTED else clock.starved()
-    more = [*late, *(assemble.cut_short() if session.over() else ())]
+    more = [*late, *(assemble.cut_short(names, endpoints) if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
         receive(session, POLL_SECONDS)
-    return _snapshot(session, names, endpoints, ears, (why, seconds), more)
+    if ears.keep_waiting():
+        more += assemble.not_heard(ears.silent())
+    return _snapshot(session, names, endpoints, ears, (why, seconds, last), more)
 
 
 def watch(session: GraphSession) -> Iterator[System]:
@@ -127,7 +131,7 @@ def watch(session: GraphSession) -> Iterator[System]:
             names, endpoints = view(session, cache)
             ears.tf.update(endpoints, session.request.substitutes)
             why = QUIET if quiet else CHANGING
-            seen = _snapshot(session, names, endpoints, ears, (why, session.now()))
+            seen = _snapshot(session, names, endpoints, ears, (why, session.now(), ()))
             other = answers.update(seen, quiet, session.now())
             if new or other:
                 yield with_answers(seen, answers.states)
@@ -140,9 +144,10 @@ def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
 
 def _wait_until_settled(
     session: GraphSession, cache: queries.TopicCache, ears: Ears
-) -> tuple[str, assemble.ObservationClock]:
-    """Wait until the graph is settled; returns why it is, empty if the observation was stopped, and
-    the time since the last change: what is late on a busy machine has had the time before.
+) -> tuple[str, assemble.ObservationClock, Sequence[str]]:
+    """Wait until the graph is settled; returns why it is, empty if the observation was stopped, the
+    time since the last change: what is late on a busy machine has had the time before, and the names
+    that came or went with that change.
 
     The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
     """
@@ -159,7 +164,7 @@ def _wait_until_settled(
         # While it changes the moment of the last change is wanted.
         if changed.all == now:
             last_change = clock
-            session.tell(assemble.so_far(seen[0]))
+            session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         known = _all_are_known(session)
@@ -172,14 +177,16 @@ def _wait_until_settled(
         met, starved = request.is_met(seen[1]), any(unchanged.starved())
         why = assemble.why_settled(now, changed, met, timeout, quiet, starved=starved)
         if why:
-            return why, unchanged
+            return why, unchanged, times.last
         still = SHORT_IDLE_SECONDS if known else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != seen:
-            queried = seen
-            ears.update(view(session, cache)[1])
+            queried, known_ends = seen, view(session, cache)
+            ears.update(known_ends[1])
+            if request.shows:
+                session.tell(to_json(_snapshot(session, *known_ends, ears, (CHANGING, now, ()))))
         spent = time.thread_time() - began
-    return "", clock
+    return "", clock, ()
 
 
 def _all_are_known(session: GraphSession) -> bool:
@@ -193,11 +200,14 @@ def _all_are_known(session: GraphSession) -> bool:
 
 
 class _ChangeTimes:
-    """When the graph last changed, all of it and what is expected of it."""
+    """When the graph last changed, all of it and what is expected of it; ``last`` are the names that
+    came or went then."""
 
     def __init__(self) -> None:
         self._before: tuple[object, object] = (None, None)
         self._changed = assemble.LastChange(0.0, 0.0)
+        self._seen: frozenset[str] = frozenset()
+        self.last: tuple[str, ...] = ()
 
     def update(
         self, now: float, view: tuple[list[str], list[End]], request: Request
@@ -209,6 +219,9 @@ class _ChangeTimes:
             *(old if was == is_ else now for old, was, is_ in times)
         )
         self._before = parts
+        there = frozenset((*view[0], *(it.name for it in view[1])))
+        if there != self._seen:
+            self._seen, self.last = there, tuple(sorted(there ^ self._seen))
         return self._changed
 
 
@@ -222,7 +235,7 @@ def _snapshot(
     names: list[str],
     endpoints: list[End],
     ears: Ears,
-    settled: tuple[str, float],
+    settled: tuple[str, float, Sequence[str]],
     more: Iterable[Caveat] = (),
 ) -> System:
     processes = assemble.processes_by_node(endpoints)
@@ -230,10 +243,10 @@ def _snapshot(
     nodes = assemble.nodes_with_process(names, processes, enclaves)
     placed = tuple(assemble.endpoints_with_process(endpoints, processes))
     asked = environment.settings(os.environ)
-    why, seconds = settled
+    why, seconds, last = settled
     caveats = [
         *environment.setting_caveats(os.environ),
-        *environment.view_caveats(nodes, placed, asked, why, session.request.expected),
+        *environment.view_caveats(nodes, placed, asked, why, session.request.expected, last),
         *ears.tf.caveats(),
         *ears.headers.caveats(),
         *more,
@@ -253,10 +266,14 @@ def _snapshot(
     return System(
         tuple(nodes),
         placed,
-        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several(), ears.tf.last)),
+        tuple(_frames(ears.tf, placed)),
         around,
         ears.headers.heard(),
     )
+
+
+def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
+    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates())
 
 
 if __name__ == "__main__":

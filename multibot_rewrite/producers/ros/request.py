@@ -28,6 +28,7 @@ class Request(NamedTuple):
     transforms are also read from the messages that a rehearsal has without tf2_msgs. With
     ``headers`` one message a sensor topic is received, for its frame; not when watching. With
     ``asks`` nodes of a watched graph are asked for their states, each for these parameters besides.
+    With ``shows`` what is seen is sent once while it is waited whether more comes.
     """
 
     timeout: float
@@ -37,6 +38,7 @@ class Request(NamedTuple):
     substitutes: bool = False
     headers: bool = False
     asks: Mapping[str, Collection[str]] | None = None
+    shows: bool = False
 
     def expects(self, end: End) -> bool:
         """Whether an end is of what is waited for."""

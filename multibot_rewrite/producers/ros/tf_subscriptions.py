@@ -9,6 +9,7 @@ from typing import Any
 
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, numbers_of
+from multibot_rewrite.producers.ros.pace import Pace
 from multibot_rewrite.producers.ros.voices import Mark, Voices
 from multibot_rewrite.system.records import PUBLISHES, Caveat, End
 
@@ -32,6 +33,7 @@ class TfSubscriptions:
         self._received: dict[ReceivedTransform, float] = {}
         self._voices: dict[ReceivedTransform, Voices] = {}
         self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
+        self._paces: dict[ReceivedTransform, Pace] = {}
         self._began = time.monotonic()
 
     def update(self, endpoints: Iterable[End], substitutes: bool) -> None:
@@ -70,6 +72,9 @@ class TfSubscriptions:
             parent, child = transform.header.frame_id, transform.child_frame_id
             edge = ReceivedTransform(topic, latched, parent, child)
             self._received[edge] = now
+            if not latched:
+                pace = self._paces.get(edge, Pace())
+                self._paces[edge] = pace.after(transform.header.stamp)
             self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
             now_at, before = numbers_of(transform.transform), self.last.get(edge)
             # What several latched publishers have each in another way is nowhere.
@@ -81,6 +86,12 @@ class TfSubscriptions:
         limit = time.monotonic() - FORGET_SECONDS
         return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
 
+    def rates(self) -> dict[ReceivedTransform, float]:
+        """How often each came that one publisher sends, where that is known."""
+        several = self.of_several()
+        found = {it: pace.rate() for it, pace in self._paces.items() if it not in several}
+        return {it: rate for it, rate in found.items() if rate}
+
     def of_several(self) -> frozenset[ReceivedTransform]:
         """The transforms that more than one publisher sends."""
         return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
@@ -88,9 +99,12 @@ class TfSubscriptions:
     def keep_waiting(self, first: float, last: float) -> bool:
         """Whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""
         passed = time.monotonic() - self._began
+        return bool(self._open) and passed < (last if self.silent() else first)
+
+    def silent(self) -> list[str]:
+        """The topics on which nothing has come."""
         received = {(it.topic, it.latched) for it in self._received}
-        silent = any((name, latched) not in received for name, _, latched in self._open)
-        return bool(self._open) and passed < (last if silent else first)
+        return [name for name, _, latched in self._open if (name, latched) not in received]
 
     def caveats(self) -> Iterator[Caveat]:
         """The topics that it could not subscribe to."""

@@ -17,10 +17,13 @@ _HEADER = 4
 # CDR_BE and CDR_LE; other encapsulations have other alignment.
 _ENDS = {b"\x00\x00": ">", b"\x00\x01": "<"}
 _STAMP = 8
+# A robot with more has the same names in the rest.
+MOST_JOINTS = 200
 
 
 class _Header(NamedTuple):
     frame_id: str
+    stamp: float
 
 
 class _Vector(NamedTuple):
@@ -48,7 +51,7 @@ class _Stamped(NamedTuple):
 
 
 class TfMessage(NamedTuple):
-    """A TFMessage without its times; fields as in tf2_msgs."""
+    """A TFMessage; fields as in tf2_msgs, stamps in seconds."""
 
     transforms: tuple[_Stamped, ...]
 
@@ -85,6 +88,20 @@ def read_child_frame(data: bytes) -> str | None:
     return found[1] if found else None
 
 
+def read_joint_names(data: bytes) -> tuple[str, ...]:
+    """The names in a JointState or JointTrajectory, which come after its header; none as above."""
+    mark = _ENDS.get(data[:2])
+    if mark is None:
+        return ()
+    try:
+        reader = _Reader(data[_HEADER:], mark)
+        reader.skip(_STAMP)
+        reader.text()
+        return tuple(reader.text() for _ in range(min(reader.number(), MOST_JOINTS)))
+    except (struct.error, UnicodeDecodeError, IndexError):
+        return ()
+
+
 def _header_texts(data: bytes, many: int) -> list[str]:
     """The first texts after the stamp; none as above."""
     mark = _ENDS.get(data[:2])
@@ -108,12 +125,11 @@ def read_stamp(data: bytes) -> float | None:
 
 
 def _stamped(reader: _Reader) -> _Stamped:
-    reader.align(4)
-    reader.skip(_STAMP)
+    stamp = reader.number() + reader.number() / 1e9
     parent, child = reader.text(), reader.text()
     reader.align(8)
     transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
-    return _Stamped(_Header(parent), child, transform)
+    return _Stamped(_Header(parent, stamp), child, transform)
 
 
 class _Reader:

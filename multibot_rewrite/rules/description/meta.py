@@ -24,7 +24,7 @@ unused_suppression = declare(
     "MB002",
     "unused-suppression",
     WARNING,
-    what="A `urdf-lint: ignore` comment names a code that it does not suppress: there is no "
+    what="A `urdf-lint: ignore` comment names a code that it does not suppress. There is no "
     "finding with that code on its line, in the element below it, or (ignore-file) in the file.",
     why="The problem was fixed or has moved, and the comment would hide the next one of that kind.",
     fix="Delete the code or the comment (--fix does), or put the comment alone on the line above "

@@ -32,11 +32,11 @@ from multibot_rewrite.rules.subject import Subject
     "MB901",
     "name-of-unknown-use",
     WARNING,
-    what="A value, key, parameter or port that is not known to hold names has the name of a "
-    "link, joint, light, frame or topic of the robot. Or it has /tf, while each robot has "
-    "its own tf topic. Of a file it is a note where it is not sure which robot it is for.",
-    why="It stays as it is when the file is written for several robots. If it is a name, a plugin or "
-    "node looks for a link, frame or joint that no longer has that name, or two robots use the same "
+    what="A value, key, parameter or port is not known to hold names. But it has the name of a "
+    "link, joint, light, frame or topic of the robot. Or it has /tf, while each robot has its own "
+    "tf topic. Of a file it is a note where it is not sure which robot it is for.",
+    why="It stays as it is when the file is written for several robots. If it is a name, a plugin "
+    "or node looks for a link, frame or joint that no longer has it. Or two robots use the same "
     "topic.",
     fix="Say whether it is a name: for a description in a vocabulary file, for a parameter in "
     "a file under `nodes:` of the fleet file. In other files rename it by hand for each "
@@ -76,8 +76,8 @@ unknown_plugin = rule(
     "MB902",
     "unknown-plugin",
     NOTE,
-    what="A plugin or a type of sensor is not in the vocabulary, or its section does not say what it "
-    "opens: topics, services, files, network addresses.",
+    what="A plugin or a type of sensor is not in the vocabulary. Or its section does not say what "
+    "it opens: topics, services, files, network addresses.",
     why="Its parameters for links, joints, frames or topics stay the same for every robot, "
     "unless other plugins have parameters of these names. Its own topics may collide, too.",
     fix="Add a section for it to a vocabulary file, with a line for each topic and service; where it "
@@ -92,9 +92,9 @@ unknown_hardware_class = rule(
     NOTE,
     what="A ros2_control hardware class is not in the vocabulary, or its section does not say what it "
     "opens.",
-    why="One of its parameters may be a name, or a prefix that the driver puts in front of names:"
-    " it stays as it is for every robot. And its code may open topics that are the same for "
-    "all.",
+    why="One of its parameters may be a name, or a prefix that the driver puts in front of names. "
+    "Such a parameter is not changed: it is the same for every robot. And its code may open topics "
+    "that are the same for all.",
     fix="Add a section for it to a vocabulary file; where it opens nothing, `opens: nothing`.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"
@@ -112,8 +112,8 @@ parameter_of_ros_1 = rule(
     "parameter-of-ros-1",
     NOTE,
     what="A Gazebo Classic plugin of ROS 2 has parameters that only its ROS 1 version reads.",
-    why="A plugin with a <ros> is one of ROS 2, which takes its topics from there: a topic, frame or "
-    "joint in such a parameter has no effect, with one robot or several.",
+    why="A plugin with a <ros> is one of ROS 2, which takes its topics from there. A topic, frame "
+    "or joint in such a parameter has no effect, with one robot or several.",
     fix="Delete it, or say it with <ros> and the parameters of the ROS 2 plugin.",
     bad="<gazebo>\n"
     '  <plugin name="move" filename="libgazebo_ros_planar_move.so">\n'
@@ -152,8 +152,8 @@ included_model = rule(
     "included-model",
     NOTE,
     what="A model of an SDF, or a <gazebo>, includes a model of another file.",
-    why="That file is not read with this one: its sensors and plugins have the same topics, nodes and "
-    "frames for all robots, unless they are made of the model's name.",
+    why="That file is not read with this one. Its sensors and plugins have the same topics, nodes "
+    "and frames for all robots, unless they are made of the model's name.",
     fix="Rewrite its model.sdf for each robot, and write the model in place of its <include>.",
     bad='<?xml version="1.0"?><sdf version="1.9"><model name="rover">\n'
     '  <link name="base"/>\n'

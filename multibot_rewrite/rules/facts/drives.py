@@ -117,15 +117,22 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
     for plugin, section in subject.inventory.served:
         kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
         names = {tag for it in kinds for tag in (*it.left, *it.right)}
+        model = _model_of(plugin) if names else None
         for element in plugin.iterchildren(*names) if names else ():
-            joint = subject.robot.joint.get(text_of(element))
+            name = text_of(element)
+            of_model = model.wheels.get(name) if model else None
+            joint = of_model[0] if of_model else subject.robot.joint.get(name)
             if joint is not None:
                 yield element, joint
 
 
-def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
+def _model_of(plugin: _Element) -> ModelWheels | None:
     above = plugin.getparent()
-    model = model_wheels(above) if above is not None and above.tag == "model" else None
+    return model_wheels(above) if above is not None and above.tag == "model" else None
+
+
+def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
+    model = _model_of(plugin)
     for tags in kinds:
         left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -13,6 +14,9 @@ from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.subject import Subject
 
+if TYPE_CHECKING:
+    from multibot_rewrite.description.sources.trace import Origin
+
 Starts = Mapping[_Element, int]
 _ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 # What is the same text for every caller.
@@ -20,6 +24,9 @@ _CONSTANT = lazy_compile(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
 _EXPRESSION = lazy_compile(rb"\$\{([^}]*)\}")
 _LITERAL = lazy_compile(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
 _NAME = lazy_compile(rb"[A-Za-z_]\w*")
+_OF_ARGUMENT = lazy_compile(
+    rb"<xacro:property\s+name=[\"'](\w+)[\"']\s+value=[\"'][^<\"']*\$\(arg "
+)
 
 
 def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
@@ -55,6 +62,23 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     return raw is not None and b"$" not in raw
 
 
+def is_argument(sources: Mapping[str, bytes], origin: Origin, attribute: str) -> bool:
+    """Is a value in part what a caller of xacro gives: $(arg ...), or a property that is made of it?"""
+    raw = _raw(sources[origin.file], origin.start, attribute) or b""
+    for call in origin.calls:
+        if b"$(arg" in raw:
+            return True
+        given = _attributes(sources[call.file], call.start)
+        raw = b" ".join(given.get(name, b"${%s}" % name) for name in _names_in(raw))
+    made = {it for text in sources.values() for it in _OF_ARGUMENT.findall(text)}
+    return b"$(arg" in raw or not made.isdisjoint(_names_in(raw))
+
+
+def _names_in(raw: bytes) -> list[bytes]:
+    words = [_LITERAL.sub(b"", it) for it in _EXPRESSION.findall(raw)]
+    return [name for word in words for name in _NAME.findall(word)]
+
+
 def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
     if attribute:
         raw = _attributes(source, start).get(attribute.encode())
@@ -68,8 +92,7 @@ def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
     """What a macro's call passes for the names in ``raw``; None if it does not pass one of them."""
     if b"$(" in raw:
         return None
-    words = [_LITERAL.sub(b"", it) for it in _EXPRESSION.findall(raw)]
-    names = [name for word in words for name in _NAME.findall(word)]
+    names = _names_in(raw)
     if not names or any(name not in call for name in names):
         return None
     return _CONSTANT.sub(b"", b" ".join(call[name] for name in names))

@@ -12,7 +12,7 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.nearest import did_you_mean, nearest
+from multibot_rewrite.base.nearest import SLIP, did_you_mean, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
@@ -112,8 +112,9 @@ def not_converted(file: NamedFile) -> Iterator[Remark]:
 def _misspelt(
     node: yaml.Node, ros: str, gz: str, known: Mapping[str, list[str]]
 ) -> Iterator[Remark]:
-    """Types in other capitals, and gz types of a package that there is not."""
-    alike = next((it for it in known if it.lower() == ros.lower() and it != ros), "")
+    """Types that are nearly one, and gz types of a package that there is not."""
+    cased = (it for it in known if it.lower() == ros.lower())
+    alike = "" if ros in known else next(cased, nearest(ros, known, SLIP))
     if alike:
         yield remark_at(node, f"there is no type {ros!r}", f"did you mean {alike!r}?")
     bare = _bare(gz)

@@ -36,8 +36,8 @@ def _chain(second: str) -> str:
     "MB896",
     "filter-chain",
     WARNING,
-    what="A filter of a chain of laser_filters is not loaded: a number before it is missing, it has no "
-    "number, no name or no type, or another filter has its name. The last three are errors.",
+    what="A filter of a chain of laser_filters is not loaded. A number before it is missing, it "
+    "has no number, no name or no type, or another filter has its name. The last three are errors.",
     why="The chain takes filter1, filter2 and so on up to the first number that is not there; the rest "
     "does nothing. Of a filter without name or type nothing is loaded: the node sends no scan.",
     fix="Number the filters from 1 without a gap; give each a name of its own and a type.",

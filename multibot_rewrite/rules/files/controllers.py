@@ -147,7 +147,7 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
     WARNING,
     what="A section has the parameters of a controller, and no controller manager declares it. In "
     "a build it is a note unless it is called nearly as a declared controller that has no "
-    "section. Of a file alone only that is reported.",
+    "section, or is the only one for such a controller. Of a file alone only that is reported.",
     why="Nothing reads the section: the controller that is meant runs with its defaults, or fails.",
     fix="Give the section the controller's name, or declare the controller below controller_manager.",
     bad=a_controller("arm_controller", "arm_controler"),
@@ -160,8 +160,12 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
     given, known = beside(file)
     declared = {it.name: it for it in given if it.manager}
     bare = [name for name, it in declared.items() if not it.values]
-    for it in _undeclared((it for it in given if is_in(file, it.place)), known):
-        near = nearest(it.name, bare)
+    loose = [*_undeclared((it for it in given if is_in(file, it.place)), known)]
+    for it in loose:
+        alike = [one for one in loose if one.known == it.known]
+        same = [name for name in bare if declared[name].known == it.known]
+        # The one section of a kind, and the one controller of that kind that has none.
+        near = nearest(it.name, bare) or (same[0] if len(alike) == len(same) == 1 else "")
         if not declared or not (near or file.is_certain):
             continue
         place = declared[near or next(iter(declared))].place

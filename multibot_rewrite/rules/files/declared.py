@@ -13,6 +13,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import (
     DEMANDED,
     READ,
@@ -115,16 +116,17 @@ def wrong_types(file: NamedFile) -> Iterator[Remark]:
             if type_:
                 given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
-                level = (
-                    ERROR
-                    if all(
-                        _wrong_type(it, of_release(known, release))
-                        for release in RELEASES
-                        if of_release(known, release)
-                    )
-                    else ""
-                )
+                level = ERROR if _is_refused(file, section, it, known) else ""
                 yield remark_at(it.node, message, _other_type(type_, given, it), level)
+
+
+def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[Declared]) -> bool:
+    """Does every release refuse the value, and is the node's package none of the repository's own?"""
+    package, around = section.node.package if section.node else "", sources_around(file.file)
+    if package and around and package in packages_below((around,)):
+        return False
+    facts = (of_release(known, release) for release in RELEASES)
+    return all(_wrong_type(it, found) for found in facts if found)
 
 
 def _wrong_type(it: Given, known: Sequence[Declared]) -> str:

@@ -132,8 +132,8 @@ def value_of(section: Section, name: str) -> Value | None:
     WARNING,
     what="A parameter has no effect, or fails, with the value of another parameter of its node. "
     "Examples are an initial pose without set_initial_pose and the config of an input that is not "
-    "there. Others are frames of an EKF that have to differ, a transform from a frame to itself, and "
-    "a world_frame that is neither map_frame nor odom_frame.",
+    "there. Others are two equal frames of an EKF that must differ, and a world_frame that is "
+    "neither map_frame nor odom_frame. A transform from a frame to itself is another.",
     why="The node says little or nothing: amcl waits for a pose, an EKF fuses nothing or sends no "
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
@@ -151,11 +151,17 @@ def contradictions(file: NamedFile) -> Iterator[Remark]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            level = ERROR if it.check in _STOPS and not it.releases else level
+            level = ERROR if _stops(it) else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
     for section in sections(file):
         node = load_nodes(file.context.distro).get(section.node.name) if section.node else None
         yield from _to_itself(section, node) if node else ()
+
+
+def _stops(it: Demand) -> bool:
+    """Does a node not come up, whatever another file says?"""
+    known = it.check != "period" or it.words[0] in it.section.whole
+    return it.check in _STOPS and not it.releases and known
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Remark]:

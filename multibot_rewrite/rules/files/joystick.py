@@ -30,6 +30,8 @@ _FIELDS = {
     "geometry_msgs/msg/Twist": ("linear", "angular"),
     "geometry_msgs/msg/TwistStamped": ("header", "twist"),
 }
+_NAMES = (word for _, name, starts in _TYPES.values() for word in (name, *starts))
+_WORDS = frozenset(("type", "interface_type", *_NAMES))
 _Values = Mapping[str, Given]
 
 
@@ -71,6 +73,8 @@ def broken_commands(file: NamedFile) -> Iterator[Remark]:
             if dot and name != "qos_overrides":
                 commands.setdefault(name, {})[rest] = it
         for name, values in commands.items():
+            if values.keys().isdisjoint(_WORDS):
+                continue  # another node may have that name: teleop_twist_joy has blocks, too
             first = next(iter(values.values()))
             for words, hint in _faults(values):
                 yield remark_at(first.key, f"{section.title}: command {name!r} {words}", hint)

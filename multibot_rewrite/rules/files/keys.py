@@ -50,8 +50,8 @@ def repeated_key(file: NamedFile) -> Iterator[Remark]:
     "repeated-section",
     WARNING,
     what="A file has two sections for one node.",
-    why="rcl merges the two. PyYAML keeps only the last, and with it every launch file that reads "
-    "parameters in Python (RewrittenYaml of Nav2, composable nodes): parameters vanish without a "
+    why="rcl merges the two. PyYAML keeps only the last one. So does every launch file that reads "
+    "parameters in Python (RewrittenYaml of Nav2, composable nodes). Parameters vanish without a "
     "message.",
     fix="Merge the two into one section.",
     bad=f"{_ONE}amcl:\n  ros__parameters:\n    alpha2: 0.1\n",

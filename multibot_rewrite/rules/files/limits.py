@@ -63,8 +63,8 @@ def _limits(velocity: str) -> str:
     "MB898",
     "limits-beyond-the-joint",
     WARNING,
-    what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in the "
-    "package's description, or limits a joint that the robot of the SRDF beside it has not.",
+    what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in "
+    "the package's description. Or it limits a joint that the robot does not have.",
     why="MoveIt takes the limits of the file in place of the URDF's. It plans what the hardware or "
     "ros2_control does not take: the controller is behind, and aborts the trajectory. Limits of "
     "another joint have no effect.",
@@ -150,8 +150,8 @@ def _solver(group: str) -> str:
     "group-not-in-srdf",
     WARNING,
     what="A file names a planning group that no SRDF of its folder has.",
-    why="MoveIt asks for the solver, planners and limits of a group by its name in the SRDF: the group "
-    "that is there has none ('No kinematics solver instantiated'), and servo_node does not start.",
+    why="MoveIt asks for the solver, planners and limits of a group by its name in the SRDF. The "
+    "group there has none ('No kinematics solver instantiated'), and servo_node does not start.",
     fix="Name a group of the SRDF.",
     bad=_solver("manipulator"),
     good=_solver("arm"),

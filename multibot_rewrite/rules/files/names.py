@@ -170,10 +170,10 @@ def _missing_owner(file: NamedFile, site: Site) -> str:
     ERROR,
     what="Most joints, links, frames and groups that a file of MoveIt, or an SRDF, names are not in "
     "the description that it is built for.",
-    why="move_group takes no limits, solvers or controllers from such a file, and of such an SRDF it "
-    "leaves out what it does not find: groups are empty, and nothing can be planned.",
-    fix="Name the file of this robot, or give its xacro the arguments that the file was written for; "
-    "often one of the two got a prefix that the other did not get.",
+    why="move_group takes no limits, solvers or controllers from such a file. It leaves out of "
+    "such an SRDF what it does not find: groups are empty, and nothing can be planned.",
+    fix="Name the file of this robot, or give its xacro the arguments that the file was written "
+    "for. Often only one of the two has a prefix.",
     bad="""\
 joint_limits:
   left_wheel_joint: {max_velocity: 1.0}

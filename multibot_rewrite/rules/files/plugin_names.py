@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import MANAGER, RawSection, controller_types
@@ -82,7 +82,8 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     if alike:
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
     if name in known.older:
-        return "which ROS 2 has under another name", f"write {known.older[name]}", ERROR
+        level = WARNING if name in known.ended else ERROR
+        return "which ROS 2 has under another name", f"write {known.older[name]}", level
     same = next((it for it in known.classes if canonical(it) == canonical(name)), "")
     if same:
         others = ", ".join(releases_with(known.classes[same]))
@@ -90,13 +91,21 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     other = next((it for it, of in plugin_bases().items() if name in of.classes), "")
     if other:
         return f"which is a {other}, not a {base}", "name a class of that kind", ERROR
-    near = nearest(canonical(name), {canonical(it): it for it in there}, MISTYPED)
     package, _, last = canonical(name).partition("::")
     if package in packages():
-        return "which its package does not have", _near(name, there), ERROR if near else WARNING
+        # Whoever writes a class of his own may put it into the namespace of a package.
+        slip = _slip(last, [it for it in map(canonical, there) if it.startswith(f"{package}::")])
+        hint = f"did you mean {slip}?" if slip else "see the plugins of its package"
+        return "which its package does not have", hint, ERROR if slip else NOTE
     slip = nearest(package, packages(), MISTYPED)
     alike = next((it for it in there if canonical(it) == f"{slip}::{last}"), "")
     return ("which no known package has", f"did you mean {alike}?", "") if alike else ("", "", "")
+
+
+def _slip(last: str, known: Sequence[str]) -> str:
+    """The class whose own name differs by a letter or two."""
+    by_last = {it.rpartition("::")[2]: it for it in known}
+    return by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
 
 
 def _near(name: str, there: Sequence[str]) -> str:
@@ -119,7 +128,7 @@ def _critics(it: Demand) -> Iterator[Remark]:
         short = scope == _DWB and f"{word}{_CRITIC}" in names
         if plain and word not in names and not short:
             shown = [n.removesuffix(_CRITIC) for n in names] if scope == _DWB else [*names]
-            near = nearest(word, shown)
+            near = slip_of(word, shown)
             message = f"{it.section.title}: no critic of {scope} is called {word!r}"
             if near:
                 yield remark_at(it.given.node, message, f"did you mean {near}?", ERROR)
@@ -152,10 +161,12 @@ def without_plugin(file: NamedFile) -> Iterator[Remark]:
 
 
 def _without(it: Demand, word: str, below: str) -> Remark:
-    what, level = ("plugin", ERROR) if it.check == "classes" else ("parameters", WARNING)
+    what = "plugin" if it.check == "classes" else "parameters"
     message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
     name = below + "plugin" if what == "plugin" else below.rstrip(".")
-    return remark_at(it.given.node, message, f"add {name}, or take {word} off the list", level)
+    # Another parameter file, or the launch file, may have it.
+    hint = f"add {name}, or take {word} off the list"
+    return remark_at(it.given.node, message, hint, WARNING)
 
 
 def _is_given_beside(file: NamedFile, name: str) -> bool:
@@ -187,7 +198,8 @@ def _without_type(file: NamedFile) -> Iterator[Remark]:
             free = free and all(it.value != "plugin" for it, _ in pairs(body))
             if free and key.value not in types and key.value not in typed:
                 message = f"{section.path}: controller {key.value} has no type"
-                yield remark_at(key, message, f"add {key.value}.type: PACKAGE/CLASS", ERROR)
+                # A spawner may be told the type, too.
+                yield remark_at(key, message, f"add {key.value}.type: PACKAGE/CLASS", WARNING)
 
 
 def renamed_nodes(file: NamedFile) -> Iterator[Remark]:

@@ -31,8 +31,8 @@ _GONE_SINCE = "lyrical+"
     "deprecated-in-release",
     NOTE,
     what="A parameter or controller type is deprecated in the release, or gone.",
-    why="The node warns at each start, and a later release removes it: a controller of that type is "
-    "then not loaded, and the parameter has no effect.",
+    why="The node warns at each start, and a later release removes it. A controller of that type "
+    "is then not loaded, and the parameter has no effect.",
     fix="Do what the hint says. A JointGroup controller becomes a "
     "forward_command_controller/ForwardCommandController with interface_name: position, velocity or "
     "effort.",

@@ -37,8 +37,8 @@ _NOT_A_NAME = re.compile(
     what="A name holds the name of a robot of the fleet, so the file is for that robot only. In values "
     "of unknown use, also of a description, a name counts that begins or ends with it: "
     "/robot2/scan, robot1_odom. It is a warning in a config of RViz.",
-    why="Every robot gets the file: all others would use the names of this robot, and in its own file "
-    "the name would be there twice, as in /robot1/robot1/scan.",
+    why="Every robot gets the file, so all others would use the names of this robot. In its own "
+    "file the name would be there twice, as in /robot1/robot1/scan.",
     fix="Remove the robot's name from every name; the build adds it for each robot.",
     bad=a_section("amcl", "scan_topic: /robot2/scan"),
     good=a_section("amcl", "scan_topic: /scan"),

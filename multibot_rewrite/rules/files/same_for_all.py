@@ -64,10 +64,10 @@ def _same(key: str, text: str) -> str:
     "MB881",
     "value-not-renamed",
     WARNING,
-    what="A value that may hold names is not rewritten: a pattern or expression (also the filters of "
-    "RViz's TF), a description file in a display, or a namespace of topics in a layout that renames "
-    "each topic.",
-    why="Topics and frames get the robot's name, but the value still has the old ones: a pattern "
+    what="A value that may hold names is not rewritten. It is a pattern or expression, or a "
+    "description file in a display. Or it is a namespace of topics in a layout that renames each "
+    "topic.",
+    why="Topics and frames get the robot's name, but the value still has the old ones. A pattern "
     "matches nothing, or the names of all robots, and a display is empty.",
     fix="Check that it works for each robot: a pattern that matches in any namespace, Description "
     "Source Topic, or a layout with namespaces.",
@@ -121,9 +121,10 @@ def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | 
     "MB882",
     "robot-twice-in-value",
     ERROR,
-    what="A name holds its robot twice, as in robot1/robot1/scan, or a parameter or a display of RViz "
-    "adds a prefix to frames that have the robot's name already. A warning where all robots use the "
-    "same frames, where a launch file sets the prefix, and in RViz, where the rewrite takes it out.",
+    what="A name holds its robot twice, as in robot1/robot1/scan. Or a parameter or a display of "
+    "RViz adds a prefix to frames that have the robot's name already. A warning where all robots "
+    "use the same frames, where a launch file sets the prefix, and in RViz, where the rewrite "
+    "takes it out.",
     why="No other node uses that name: topics have no publisher. robot_state_publisher sends "
     "robot1/robot1/base_link, and all others look for robot1/base_link: no transform is found.",
     fix="Remove the robot name from the source. Write an empty frame_prefix, tf_prefix or TF Prefix, "

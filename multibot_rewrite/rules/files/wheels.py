@@ -69,9 +69,9 @@ def _sizes_of(separation: str) -> str:
     "MB856",
     "controller-wheels",
     WARNING,
-    what="The wheels of a diff_drive_controller are not as its parameters say: their separation or "
-    "radius is another in the package's description, left and right are swapped, their axes point in "
-    "opposite directions, or they do not roll.",
+    what="The wheels of a diff_drive_controller are not as its parameters say. Their separation or "
+    "radius differs from the package's description, left and right are swapped, their axes are "
+    "opposed, or they do not roll.",
     why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
     fix="Write the sizes of the description, or correct its joints.",
     bad=_sizes_of("0.8"),

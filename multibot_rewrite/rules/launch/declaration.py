@@ -15,7 +15,7 @@ _Check = TypeVar("_Check", bound=Callable[..., Any])
 _HEAD = """\
 from pathlib import Path
 from launch import LaunchDescription
-from launch.actions import LogInfo, OpaqueFunction
+from launch.actions import IncludeLaunchDescription, LogInfo, OpaqueFunction
 from launch_ros.actions import Node
 HERE = Path(__file__).parent
 def generate_launch_description():

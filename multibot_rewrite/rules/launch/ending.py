@@ -26,9 +26,9 @@ _NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
 @launch_rule(
     "MG729",
     "program-ends-at-once",
-    what="A program that a launch file starts ends at once: a robot_state_publisher without a "
-    "description or with the path of one, a node with a name that ROS refuses, a spawner with a "
-    "pose that is no number.",
+    what="A program that a launch file starts ends at once. That is a robot_state_publisher "
+    "without a description or with its path, a node name that ROS refuses, or a spawner with an "
+    "unreadable pose.",
     why="The launch goes on without it: there is no tf of the robot, or no robot in the simulator.",
     fix="Give robot_description the text, such as `Command(['xacro ', path])`; write names with "
     "letters, digits and underscores, and a pose with numbers.",

@@ -65,13 +65,14 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
 @launch_rule(
     "MG702",
     "robots-in-each-other",
-    what="Two robots start in each other: a launch file spawns one where another stands, or there is "
-    "less room between the start poses of a fleet file than the shapes need. A warning where robots "
-    "run in a simulator, no launch file of theirs spawns them, and none has a start pose.",
+    what="Two robots start in each other. A launch file spawns one where another stands, or the "
+    "start poses of a fleet file have less room between them than the shapes need. A warning where "
+    "robots run in a simulator, no launch file of theirs spawns them, and none has a start pose.",
     why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
     "entangled.",
-    fix="Give each a place of its own: `-x` and `-y` of its spawner; `pose` of a robot, or `step` of "
-    "all robots of a fleet file. Robots that are not simulated have `simulator: none` there.",
+    fix="Give each a place of its own: `-x` and `-y` of its spawner. In a fleet file it is `pose` "
+    "of a robot, or `step` of all robots. Robots that are not simulated have `simulator: none` "
+    "there.",
     bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "1")),
     good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
     line=1,
@@ -129,8 +130,8 @@ def _names(model: InSimulator) -> Iterator[str]:
 @launch_rule(
     "MG704",
     "command-not-bridged",
-    what="A model in Gazebo gets no commands: no bridge of the launch file passes anything on to a "
-    "topic that its plugin reads, and one does for another model of the launch file.",
+    what="A model in Gazebo gets no commands. No bridge of the launch file passes anything on to a "
+    "topic that its plugin reads, but one does for another model.",
     why="Nothing that is sent in ROS moves the robot.",
     fix="Add the row, with the direction to Gazebo.",
     bad=launch_of(

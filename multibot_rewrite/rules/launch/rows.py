@@ -56,8 +56,8 @@ def out_of_gazebo(launched: Launched) -> set[str]:
 @launch_rule(
     "MG705",
     "bridge-to-another-robot",
-    what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo, or with "
-    "one that has no robot's name although the rows of the other robots have theirs.",
+    what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo. Or "
+    "it uses a topic without a robot's name, although the rows of the other robots have theirs.",
     why="A robot obeys the commands of another one, or it is unknown whose data they are.",
     fix="Name the same robot on both sides of the row.",
     bad=launch_of(

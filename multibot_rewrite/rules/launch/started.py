@@ -161,15 +161,14 @@ def _is_known(launched: Launched) -> bool:
 )
 def no_description(launched: Launched) -> Iterator[Finding]:
     """Where all nodes are known, or a description has another topic."""
-    topics = [e.name for e in launched.system.ends if e.name.endswith("robot_description")]
     sent = [
         e.name for e in launched.system.ends
-        if e.role == "publishes" and e.name.rpartition("/")[2] == "robot_description"
+        if e.role == "publishes" and e.name.endswith("robot_description")
     ]  # fmt: skip
     for it in launched.models.lost:
         words = dict(zip(it.arguments, it.arguments[1:], strict=False))
         topic = expand(words["-topic"], it.namespace, "") if "-topic" in words else ""
-        if not topic or topic in topics:
+        if not topic or topic in sent:
             continue
         if sent or _is_known(launched):
             near = nearest(topic, sent)
@@ -244,7 +243,7 @@ def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
     "MG726",
     "not-activated",
     what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
-    "file starts one, or a manager lists a node that the launch file does not start.",
+    "file starts one. Or a manager lists a node that the launch file does not start.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
     fix="Write the same names in `node_names` and at the nodes.",
     bad=launch_of(

@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import isclose, pi
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.launch.declaration import (
     FIRST,
@@ -36,6 +37,7 @@ _PUBLISHER = (
 )
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
+_DIGITS = "0123456789"
 _TF = "tf2_ros", "static_transform_publisher"
 _FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
 # More than a turn: nobody writes so many radians.
@@ -45,9 +47,9 @@ _TURN = 2 * pi
 @launch_rule(
     "MG711",
     "static-transform-implausible",
-    what="The words of a static_transform_publisher make no transform, or not the one that is meant: a "
-    "frame is its own parent, an angle in degrees, a quaternion that is no rotation, words "
-    "in the place of numbers.",
+    what="The words of a static_transform_publisher make no transform, or a wrong one. A frame is "
+    "its own parent, an angle is in degrees, a quaternion is no rotation, or a word stands in "
+    "place of a number.",
     why="tf2 refuses the transform, or the robot and its sensors stand turned.",
     fix="Write angles in radians, a quaternion of length one, and two different frames; use the flags "
     "(`--x`, `--yaw`, `--frame-id`) so that no order matters.",
@@ -146,7 +148,7 @@ matches_nothing = RULE_WITHOUT_NAME._replace(
     beside={"robot1.urdf": "<robot name='r'/>\n"},
 )  # fmt: skip
 def not_there(launched: Launched) -> Iterator[Finding]:
-    """Parameter files, files that a parameter names, and those after ``-file`` and ``-d``."""
+    """Parameter files, files that a parameter names, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
     for note in launched.graph.notes:
         if note.parameters and note.file and not _is_ours(note.file):
@@ -154,17 +156,45 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         if note.parameters and note.file:
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH)
-    for it in launched.nodes:
-        for path in _files(it):
-            key = (it.place.file, it.place.line, path)
-            if not os.path.exists(path) and key not in told:
-                told.add(key)
-                yield at(
-                    not_there,
-                    it.place,
-                    f"{it.full_name} is given {path}, which is not there",
-                    _PATH,
-                )
+    named = [(it.full_name, it.place, path) for it in launched.nodes for path in _files(it)]
+    for node in launched.graph.nodes:
+        named += [(node.name or node.executable, node.place, path) for path in _named_files(node)]
+    for who, place, path in named:
+        key = (place.file, place.line, path)
+        if not os.path.exists(path) and key not in told:
+            told.add(key)
+            yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
+
+
+_INCLUDE = 'IncludeLaunchDescription(str(HERE / "child.launch.py"), launch_arguments=[("{}", "2")])'
+_CHILD = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("start_x", default_value="0")])
+"""
+
+
+@launch_rule(
+    "MG715",
+    "argument-not-read",
+    what="A launch file includes another one with an argument that this one neither declares nor "
+    "reads. Where it declares one that is called nearly so it is an error, else a warning.",
+    why="launch hands it on and says nothing: the other file goes on with its default.",
+    fix="Write the name that the other file declares, or leave the argument out.",
+    bad=launch_of(_INCLUDE.format("strat_x")),
+    good=launch_of(_INCLUDE.format("start_x")),
+    beside={"child.launch.py": _CHILD},
+)
+def argument_not_read(launched: Launched) -> Iterator[Finding]:
+    """By what the other file has as a text."""
+    for place, file, name, near in launched.graph.unread:
+        hint = f"did you mean {near}?" if near else "leave it out, or write one that it declares"
+        level = ERROR if near else WARNING
+        message = f"{file} does not read the argument {name}"
+        yield at(argument_not_read, place, message, hint, level=level)
 
 
 _PATH = "correct the path, or install the file"
@@ -178,8 +208,13 @@ def _is_ours(path: str) -> bool:
 
 def _files(it: RunningNode) -> Iterator[str]:
     values = (str(it.values[name].value) for name in _NAMED if name in it.values)
-    words = (word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file"))
-    for path in (*values, *words):
+    yield from (path for path in values if os.path.isabs(path) and _is_ours(path))
+
+
+def _named_files(it: LaunchedNode) -> Iterator[str]:
+    """The files that the words of a program name."""
+    words = [word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file")]
+    for path in (*words, *world_files(it)):
         if os.path.isabs(path) and _is_ours(path):
             yield path
 
@@ -187,9 +222,10 @@ def _files(it: RunningNode) -> Iterator[str]:
 @launch_rule(
     "MG714",
     "program-misspelt",
-    what="A launch file starts a program that its package has not, and that is like one that it has.",
-    why="launch ends there: the executable is not found.",
-    fix="Write the name of the program.",
+    what="A launch file starts a program that its package has not, and that is like one that it has; "
+    "or the package is not there, and one with the program is called nearly so.",
+    why="launch ends there: the executable, or the package, is not found.",
+    fix="Write the name of the program, or of its package.",
     bad=launch_of(
         node_of(
             "robot_state_publisher",
@@ -212,10 +248,27 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
         every = known.get(it.package, ())
         if not it.executable or "::" in it.executable or it.executable in every:
             continue
+        if other := _package_meant(it, known):
+            message = f"there is no package {it.package} here with {it.executable}"
+            yield at(misspelt, it.place, message, f"did you mean {other}?")
+            continue
         near = nearest(it.executable, sorted(every), SLIP)
         if near and _differ(it.executable, near):
             message = f"package {it.package} has no program {it.executable}"
             yield at(misspelt, it.place, message, f"did you mean {near}?")
+
+
+def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> str:
+    """The package that has the program, where the name is nearly that of it and of none around."""
+    near = "" if it.package in known else nearest(it.package, sorted(known), SLIP)
+    if (
+        not near
+        or it.executable not in known[near]
+        or near.strip(_DIGITS) == it.package.strip(_DIGITS)
+    ):
+        return ""
+    around = sources_around(it.place.file)
+    return "" if around and it.package in packages_below((around,)) else near
 
 
 def _programs(release: str) -> dict[str, set[str]]:

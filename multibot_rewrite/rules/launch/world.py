@@ -38,9 +38,9 @@ _SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(H
 @launch_rule(
     "MG706",
     "world-without-system",
-    what="The world that a launch file starts Gazebo with names its systems, and one that the robots "
-    "need is not among them: UserCommands for spawning, Physics for what drives, Sensors or Imu for a "
-    "sensor.",
+    what="A launch file starts Gazebo with a world that names its systems, and one that the robots "
+    "need is missing. That is UserCommands for spawning, Physics for what drives, Sensors or Imu "
+    "for a sensor.",
     why="Gazebo loads what the world names and nothing else: nothing is spawned, nothing moves, or a "
     "sensor sends nothing.",
     fix="Add the `<plugin>` to the world, or name no plugin there: then Gazebo loads physics, user "

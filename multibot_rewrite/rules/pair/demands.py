@@ -25,8 +25,8 @@ _BRIDGES = ("bridge", "parameter_bridge")
     "sender-not-planned",
     ERROR,
     drawn="cross-talk",
-    what="A node publishes a topic that others alone may publish, by `senders` of the plan; several do"
-    " that has `one_sender`; or more than planned were recorded.",
+    what="A node publishes a topic that only others may publish, by `senders` of the plan. Or "
+    "several publish a topic that has `one_sender`, or more than planned were recorded.",
     why="All are obeyed in turn: a robot that gets velocities from two nodes shakes, or drives where it"
     " should not. A tool may not do it either.",
     fix="Stop the node, or remap what it publishes; put a twist_mux before the topic. If it is right,"

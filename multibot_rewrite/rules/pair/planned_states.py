@@ -51,8 +51,8 @@ def state_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     what="A parameter of a running node has another value than the plan, or than the file that"
     " `multibot build` wrote for it. A value of a file that is no frame of a robot is a warning: it may"
     " have been tuned. Asked for by `--state`.",
-    why="The node was started without its file, with that of another robot, or changed by hand: its"
-    " frames and topics are not those of its robot.",
+    why="The node was started without its file, with that of another robot, or changed by hand. "
+    "Its frames and topics are not those of its robot.",
     fix="Start the node with its file (`--params-file`, `parameters=[...]`); what a launch file gives"
     " behind it wins. If the value is right, change it in the file or in `states` of the plan.",
     bad="""\

@@ -11,19 +11,20 @@ from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.pair.causes import caused, plugin_of
 from multibot_rewrite.rules.system.matching import STAMPED, types_differ
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import End
+from multibot_rewrite.system.records import SUBSCRIBES, End
 
 
 @found_by_plan(types_differ, nodes=False)
 def type_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Each end of a planned name whose type is none that the plan has for it."""
+    """Each end of a planned name whose type is none that the plan has; a tool reads what is there."""
     planned = _types(plan)
     said = set()
     for end in seen.system.ends:
         known = plan.by_key.get((end.node, end.kind, end.role, end.name))
         by_name = planned.get((end.kind, end.name), frozenset())
         wanted = {known.type, *known.also} if known and known.type else by_name
-        differs = end.type and wanted and end.type not in wanted
+        looks = end.role == SUBSCRIBES and seen.is_tool(end.node)
+        differs = end.type and wanted and end.type not in wanted and not looks
         if differs and (end.node, end.name, end.type) not in said:
             said.add((end.node, end.name, end.type))
             yield _not_as_planned(plan, seen, end, wanted)

@@ -225,8 +225,8 @@ def _unknown_child(
         yield Fault("misspelt", child, None, message, hint)
     elif child.tag in schema.tags:
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
-        tags = sorted({home.rpartition("_")[2] for home in homes})
-        hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}"
+        tags = sorted({home.rpartition("_")[2] for home in homes} - {str(element.tag)})
+        hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}" if tags else "delete it"
         yield Fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
         yield Fault("not-read", child, None, message)

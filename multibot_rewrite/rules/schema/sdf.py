@@ -19,6 +19,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
 from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
@@ -47,7 +48,6 @@ ANGLES = frozenset({"min_angle", "max_angle"})
 # What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
 _CLASSICS = "gazebo_ros_"
-_SYSTEMS = ("ignition-gazebo", "gz-sim")
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
@@ -74,11 +74,14 @@ def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
     version = version_of_release(release)
     tops = root.iterchildren("model", "world")
     found = tuple(fault for it in tops for fault in _element(it, str(it.tag), version))
-    # libsdformat 9, with which Gazebo Classic reads, has no ranges: a friction of -1 is endless there.
-    old = version <= CLASSIC and not any(
-        system in it.get("filename", "") for it in root.iter("plugin") for system in _SYSTEMS
-    )
-    return tuple(it._replace(level=NOTE) if old and it.kind == "range" else it for it in found)
+    # libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector.
+    old = may_be_classics(root, release)
+    return tuple(map(_mild, found)) if old else found
+
+
+def _mild(fault: Fault) -> Fault:
+    mild = {"range": NOTE, "value": WARNING, "word": WARNING}.get(fault.kind, fault.level)
+    return fault._replace(level=mild)
 
 
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:

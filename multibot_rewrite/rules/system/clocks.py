@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from fnmatch import translate
+from math import inf
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -101,6 +102,44 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
         cause = "a clock bridge for each robot, two simulators, or a bag with --clock: keep one"
         message = f"{who} publish {CLOCK}"
         yield two_clocks.finding(message, cause, node=nodes[0], names=(CLOCK,))
+
+
+@system_rule(
+    "MG504",
+    "clock-stands-or-goes-back",
+    ERROR,
+    absence=True,
+    what="The one who publishes `/clock` sends nothing, or always the same time; or its time goes back,"
+    " which is a warning.",
+    why="Nodes on simulated time stand still: no timer fires. Where time goes back, tf and filters"
+    " throw away all that they have.",
+    fix="Start or unpause the simulator (`-r` of gz sim); play a bag with `--clock`, and not in a loop"
+    " (`--loop`) beside nodes that localize.",
+    bad="""\
+running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /clock goes back 12.5 s
+""",
+    good="""\
+running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
+running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
+running: /clock runs
+""",
+)
+def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
+    """As it was heard; of two clocks that is another finding."""
+    clocks, nodes = _clocks(seen), [it for own in _on_simulated_time(seen).values() for it in own]
+    for it in (one for one in seen.system.heard if one.topic == CLOCK and len(clocks) == 1):
+        about = {"node": clocks[0], "names": (CLOCK,)}
+        if it.back:
+            message = f"the time on {CLOCK} went back by {it.back:g} s; {clocks[0]} sends it"
+            cause = "is a bag played in a loop, or was the simulation reset?"
+            yield clock_stands_or_goes_back.finding(message, cause, level=WARNING, **about)
+        elif it.age == inf and nodes:
+            message = (
+                f"the time on {CLOCK} stands: {clocks[0]} sends none, and {nodes[0]} waits for it"
+            )
+            yield clock_stands_or_goes_back.finding(message, "is the simulation paused?", **about)
 
 
 @system_rule(

@@ -67,7 +67,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule(
     "MG308",
-    "command-to-nobody",
+    "command-without-reader",
     ERROR,
     absence=True,
     drawn="leak",

@@ -72,7 +72,7 @@ def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
     """All of a node, and all transforms of a robot, are one finding."""
     for likes in alike(made_of(seen)):
         for values in (_parameters(seen), _types(seen), _qualities(seen)):
-            yield from _told(seen, _odd(values, likes))
+            yield from _told(_odd(values, likes), len(likes) == _TWO)
         yield from _moved_parts(seen, _odd(_parts(seen), likes))
         yield from _lost_parts(seen, likes)
 
@@ -107,18 +107,20 @@ def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _T
             yield robot, there[robot], next(it for it in there.values() if it.plain == usual)
 
 
-def _told(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
+def _told(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Iterator[Finding]:
+    """Of two robots it is about both: either may be the one that is wrong."""
     by_node: dict[tuple[str, str, str], list[tuple[_Told, _Told]]] = defaultdict(list)
     for robot, own, other in odd:
         by_node[robot, own.node, other.node].append((own, other))
     for (robot, node, like), pairs in by_node.items():
         listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
-        beside = {other.name for own, other in pairs} - {own.name for own, _ in pairs}
-        at = f" ({shorten(sorted(beside), SEVERAL)})" if beside else ""
+        names = tuple(own.name for own, _ in pairs)
+        beside = sorted({other.name for _, other in pairs}.difference(names))
+        at = f" ({shorten(beside, SEVERAL)})" if beside else ""
         yield differs_from_its_likes.finding(
             f"has {shorten([*listed], SEVERAL)} as {like}{at}",
             "make them equal, if the two are to be equal",
-            robot=robot, node=node, names=tuple(own.name for own, _ in pairs),
+            robot=robot, node=node, names=(*names, *beside) if of_two else names,
         )  # fmt: skip
 
 

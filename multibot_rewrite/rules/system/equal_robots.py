@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, at_work, nodes_of
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.records import TOPIC, Edge
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
@@ -24,8 +25,8 @@ ENOUGH = 10
     "MG326",
     "less-than-another-robot",
     WARNING,
-    what="On a robot's topic came no message, or three times fewer than on the same topic of another"
-    " robot, while a bag was recorded or the system watched.",
+    what="On a robot's topic came no message, or three times fewer than on the same topic of "
+    "another robot. This was while a bag was recorded or the system watched.",
     why="Its node runs and sends nothing, has no time, or its messages were lost in the network.",
     fix="Look at the node's log: a sensor without a connection, a plugin without its link. Compare CPU"
     " and network of the robots, and the QoS of the recorder: best effort loses messages.",
@@ -43,6 +44,7 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     """Of the robots that have the topic, the one with the most messages is the measure."""
     yield from _silent(seen)
     yield from _slow(seen)
+    yield from _slow_transforms(seen)
     for there in _of_each(seen).values():
         best = max(there.values(), key=lambda it: seen.known.messages[it])
         most = seen.known.messages[best]
@@ -85,6 +87,28 @@ def _slow(seen: Index) -> Iterator[Finding]:
                 yield less_than_another_robot.finding(
                     f"{message} Hz", "see its log, and the processor time that it has",
                     robot=robot, node=node, names=(name,),
+                )  # fmt: skip
+
+
+def _slow_transforms(seen: Index) -> Iterator[Finding]:
+    """Odometry and localization, which go on without a pause: joints and what is seen need not."""
+    there: dict[tuple[str, str], dict[str, Edge]] = defaultdict(dict)
+    for it in (edge for tree in seen.trees for edge in tree.edges if edge.rate):
+        robot, parent = (
+            seen.frame_robot(it.child) or seen.robot(it.topic),
+            seen.plain_frame(it.parent),
+        )
+        if robot and parent in SENT_FRAMES:
+            there[parent, seen.plain_frame(it.child)][robot] = it
+    for own in there.values():
+        best = max(own.values(), key=lambda it: it.rate)
+        for robot, it in own.items():
+            if it.rate * RATIO <= best.rate:
+                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                yield less_than_another_robot.finding(
+                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    "see the node that sends it, and the processor time that it has",
+                    robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip
 
 

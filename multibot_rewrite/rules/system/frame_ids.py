@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
+from functools import cache, partial
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
@@ -13,6 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, robots_of
+from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import TOPIC, Edge
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
@@ -43,8 +44,8 @@ class _Message(NamedTuple):
     what="`header.frame_id` of what a robot measures, or `child_frame_id` of its odometry, is a frame"
     " of another robot.",
     why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
-    fix="Set the frame of the sender (`frame_id`, `base_frame`, or `gz_frame_id` in the description) to"
-    " its own robot's; a launch file may have the other robot's name.",
+    fix="Set the frame of the sender to its own robot's: `frame_id`, `base_frame`, or "
+    "`gz_frame_id` in the description. A launch file may have the other robot's name.",
     bad="""\
 running: transform robot1/base_link -> robot1/lidar_link on /tf
 running: transform robot2/base_link -> robot2/lidar_link on /tf
@@ -90,8 +91,8 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
     " none of its frames it is a warning.",
     why="tf cannot say where the sensor is: RViz shows nothing, costmaps and filters drop every message"
     " (`frame does not exist`).",
-    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has it;"
-    " or send a transform for it.",
+    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has "
+    "it. Or send a transform for it.",
     bad="""\
 running: transform robot1/base_link -> robot1/lidar_link on /tf
 running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
@@ -129,6 +130,62 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             node=senders[0],
             names=(frame,),
         )
+
+
+@system_rule(
+    "MG419",
+    "joints-of-another-robot",
+    ERROR,
+    what="A message of one robot's joint states, or a trajectory that is sent to it, names joints of"
+    " another robot.",
+    why="robot_state_publisher and MoveIt leave out joints that they do not know: the robot's own parts"
+    " do not move in tf, or the arm does not move.",
+    fix="Give the sender the joints of its own robot: a parameter file (`joints`) or a description of"
+    " the other robot is in use.",
+    bad="""\
+running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
+running: /robot2/joint_state_broadcaster publishes /robot2/joint_states sensor_msgs/msg/JointState
+running: joints robot1_wheel on /robot1/joint_states
+running: joints robot1_wheel on /robot2/joint_states
+""",
+    good="""\
+running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
+running: /robot2/joint_state_broadcaster publishes /robot2/joint_states sensor_msgs/msg/JointState
+running: joints robot1_wheel on /robot1/joint_states
+running: joints robot2_wheel on /robot2/joint_states
+""",
+    line=2,
+)
+def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
+    """By the robots' names in those of joints; what is of all robots may have those of any."""
+    whose = cache(partial(_robot_of_joint, seen))
+    for it in (one for one in seen.system.heard if one.joints):
+        ends = seen.by_name.get((TOPIC, it.topic))
+        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+        others = {name: whose(name) for name in it.joints}
+        foreign = [name for name, other in others.items() if other not in ("", robot)]
+        if robot and senders and foreign:
+            yield joints_of_another_robot.finding(
+                f"the joints on {it.topic} are {shorten(foreign, SEVERAL)}, of {others[foreign[0]]};"
+                f" sent by {_who(senders)}",
+                f"give {_who(senders)} the joints of {robot}",
+                robot=robot, node=senders[0], names=(it.topic,),
+            )  # fmt: skip
+
+
+def _robot_of_joint(seen: Index, joint: str) -> str:
+    """The robot whose name a joint has, as its frames have it, or as its own messages do."""
+    if found := seen.frame_robot(joint):
+        return found
+    named = (
+        it
+        for it in seen.robots
+        for mark in SEPARATORS
+        if joint.startswith(f"{it}{mark}") or joint.endswith(f"{mark}{it}")
+    )
+    own = {seen.robot(it.topic) for it in seen.system.heard if joint in it.joints}
+    return next((it for it in named if it in own), "")
 
 
 def _nameless(seen: Index) -> Iterator[Finding]:

@@ -40,8 +40,9 @@ class _Body(NamedTuple):
     " map with the robot's odometry.",
     why="Nothing knows where the robot is: RViz shows nothing in the frame `map`, costmaps and planners"
     " wait.",
-    fix="Send a start pose (RViz: 2D Pose Estimate, or `set_initial_pose: true`); see that the node is"
-    " active, has a map and a scan, and that its `odom_frame_id` is the frame of the odometry.",
+    fix="Send a start pose (RViz: 2D Pose Estimate, or `set_initial_pose: true`). See that the "
+    "node is active and has a map and a scan. Its `odom_frame_id` must be the frame of the "
+    "odometry.",
     bad="""\
 running: /robot1/amcl subscribes /robot1/initialpose geometry_msgs/msg/PoseWithCovarianceStamped
 running: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage

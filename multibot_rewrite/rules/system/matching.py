@@ -123,7 +123,7 @@ def _difference(
 
 @system_rule(
     "MG307",
-    "qos-never-meets",
+    "qos-incompatible",
     ERROR,
     what="A subscriber asks for a QoS that a publisher of the topic does not offer: reliability,"
     " durability, deadline, liveliness or lease. Where it hears other publishers it is a warning, but"

@@ -200,8 +200,8 @@ def _missed_topic(
     ERROR,
     absence=True,
     what="A node calls a service or action that no node serves, while nearly the same name is "
-    "served: with or without the robot's namespace, or misspelled. Or a lifecycle manager "
-    "lists a node that does not run. In a namespace without any node, and where the type "
+    "served. It lacks the robot's namespace, has it without need, or is misspelled. Or a lifecycle "
+    "manager lists a node that does not run. In a namespace without any node, and where the type "
     "alone is the same, it is a warning.",
     why="The client waits for ever: no goal arrives, no node is activated.",
     fix="Write the name as the server has it, or start the client in the robot's namespace.",

@@ -22,8 +22,8 @@ _TOLERANCE = 10e-3
     "MG416",
     "transform-refused",
     ERROR,
-    what="A transform is sent that tf2 drops: a quaternion of zeros or not of length 1, a number that"
-    " is none (NaN), a frame that is its own parent, a frame without a name.",
+    what="A transform is sent that tf2 drops. Its quaternion is zero or not of length 1, a number "
+    "is NaN, a frame has no name, or a frame is its own parent.",
     why="No listener has it: everything below that frame is lost (`Ignoring transform` in each log).",
     fix="Send `w: 1` where there is no rotation; see the sensor or the covariance that brings NaN; set"
     " both frames of the sender.",

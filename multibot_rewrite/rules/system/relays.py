@@ -26,8 +26,8 @@ _BRIDGE = re.compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
     "relayed-to-another-robot",
     ERROR,
     meant=(PUBLISHES,),
-    what="A node of no robot reads commands, or what a body measures, of one robot and"
-    " publishes them as those of another: a relay or bridge.",
+    what="A node of no robot, such as a relay or bridge, reads data of one robot and publishes it "
+    "as data of another. The data are commands, or what the robot measures.",
     why="Who drives the one robot moves the other, or one is localized with the scan of the other.",
     fix="Correct the robot's name in the topics of the relay. Where one robot is meant to do what the"
     " other does, write the relay into the plan.",

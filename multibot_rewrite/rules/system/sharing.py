@@ -17,9 +17,9 @@ from multibot_rewrite.system.tool_nodes import last_word
 def own_namespace(seen: Index, name: str, robot: str) -> str:
     """What to do about a name that the robots share: how each gets its own."""
     return (
-        f"each robot needs its own: a relative name in the node's code or parameters, or the rule"
-        f" {name}:={name.strip('/')} (--ros-args -r, remappings= in the launch file) for a node in"
-        f" the namespace of {robot}"
+        "each robot needs its own: write a relative name in the node's code or parameters;"
+        f" or start it in the namespace of {robot} with the rule {name}:={name.strip('/')}"
+        " (--ros-args -r, remappings= in the launch file)"
     )
 
 
@@ -29,8 +29,8 @@ def own_namespace(seen: Index, name: str, robot: str) -> str:
     ERROR,
     drawn="leak",
     meant=(PUBLISHES, SUBSCRIBES),
-    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description"
-    " on the same topic, or read what one body measures from it. Or a robot's node uses a "
+    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description "
+    "on the same topic. Or they read what one robot measures from it. Or a robot's node uses a "
     "topic that is of no robot and not shared by the plan.",
     why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
     " follows two plans.",
@@ -209,8 +209,8 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
     meant=(PUBLISHES,),
     what="Two nodes publish the odometry of one robot, its description, or the data of one sensor"
     " (scan, image, IMU, points, GPS) on the same topic. For all but odometry it is a warning.",
-    why="Who reads it gets both by turns: the odometry of two filters jumps from one to the other, a"
-    " scan from the front to the rear, a controller takes the description that comes last.",
+    why="Its readers get both by turns. The odometry of two filters jumps from one to the other, a "
+    "scan from the front to the rear. A controller takes the description that comes last.",
     fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters,"
     " `scan:=scan_rear` for the second lidar.",
     bad="""\

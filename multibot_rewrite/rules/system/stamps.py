@@ -27,13 +27,13 @@ _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
     "MG417",
     "stamp-of-another-time",
     ERROR,
-    what="Messages of a sensor or odometry are stamped seconds ago, in the future, or with the time of"
-    " another clock (simulated time on a real robot, or the other way round). Stamps of 0 are a"
-    " warning.",
+    what="Messages of a sensor or odometry are stamped seconds ago, in the future, or with the "
+    "time of another clock. That is simulated time on a real robot, or the reverse. Stamps of 0 "
+    "are a warning.",
     why="tf has no transform for that time: costmaps, SLAM and filters drop every message"
     " (`extrapolation into the past`, `earlier than all the data in the transform cache`).",
-    fix="Synchronize the clocks of the machines (chrony); set `use_sim_time` of the sender as that of"
-    " the others; let a driver stamp with the time of the host.",
+    fix="Synchronize the clocks of the machines (chrony). Set `use_sim_time` of the sender as that "
+    "of the others. Let a driver stamp with the time of the host.",
     bad="""\
 running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
 running: frame_id laser on /robot1/scan 12.5 s old

@@ -77,8 +77,8 @@ def _manager(seen: Index, node: str) -> str:
     "MG512",
     "interface-commanded-twice",
     ERROR,
-    what="Active controllers of two controller managers of one robot command the same interface (asked"
-    " for by `--state`), or launch files start two controllers of one manager that do.",
+    what="Active controllers of two controller managers of one robot command the same interface "
+    "(asked for by `--state`). Or launch files start two controllers of one manager that do.",
     why="Both drive the joint: it jerks between two set points. One manager refuses the second.",
     fix="Run one controller manager for each hardware; a simulator starts its own. Spawn the "
     "second controller with --inactive.",

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -215,24 +215,40 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 
 
 def _misspelled(seen: Index) -> Iterator[Finding]:
-    """A parent that nothing sends, and that is called nearly as a frame is which is sent."""
+    """A parent that nothing sends, and that is called nearly as a frame is which is sent; a frame that
+    is sent and has nothing below it, while a root is called nearly so."""
     for tree in seen.trees:
-        children = {it.child for it in tree.edges}
+        children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
         for it in tree.edges:
             usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
-            if it.parent in children or usual:
-                continue
-            near = nearest(it.parent, sorted(children - {it.child}), MISTYPED)
-            # Names that differ in their numbers alone are two things.
-            slip = near and near not in it.parent and it.parent not in near
-            if slip and not {*it.parent} ^ {*near} <= {*"0123456789"}:
-                robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
-                yield tf_tree_in_pieces.finding(
-                    f"{in_pieces(robot, tree.topic, sorted({it.parent, root_of(near, _above(tree))}))}:"
-                    f" {it.child} is sent below {it.parent}, and nothing sends {it.parent}",
-                    f"did you mean {near}?",
-                    robot=robot, names=(it.child, it.parent),
-                )  # fmt: skip
+            near = (
+                "" if it.parent in children or usual else _meant(it.parent, children - {it.child})
+            )
+            if near:
+                why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
+                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, _above(tree))), why)
+            leaf = it.child not in parents and not is_of_description(seen, it)
+            near = _meant(it.child, parents - children - {it.parent}) if leaf else ""
+            if near:
+                why = f"{it.child} is sent below {it.parent}, and has nothing below it"
+                yield _slipped(seen, tree, it, near, (root_of(it.child, _above(tree)), near), why)
+
+
+def _meant(name: str, others: Collection[str]) -> str:
+    """The frame that is called nearly so; names that differ in their numbers alone are two things."""
+    near = nearest(name, sorted(others), MISTYPED)
+    slip = near and near not in name and name not in near
+    letters = ([it for it in word if not it.isdigit()] for word in (name, near))
+    return near if slip and next(letters) != next(letters) else ""
+
+
+def _slipped(
+    seen: Index, tree: Tree, it: Edge, near: str, roots: Sequence[str], why: str
+) -> Finding:
+    robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
+    message = f"{in_pieces(robot, tree.topic, sorted(roots))}: {why}"
+    names = (it.child, it.parent)
+    return tf_tree_in_pieces.finding(message, f"did you mean {near}?", robot=robot, names=names)
 
 
 def _above(tree: Tree) -> dict[str, str]:

@@ -94,8 +94,9 @@ def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str
     " `base_link` of both.",
     why="Every listener sees one robot that jumps between the places of all: Nav2 drives by the"
     " odometry of another robot, RViz flickers.",
-    fix="Either give each robot its own tf topic: `-r /tf:=tf -r /tf_static:=tf_static` for all nodes"
-    " in its namespace; or its own frames: `urdf-postfix`, and the frames in its nodes' parameters.",
+    fix="Give each robot its own tf topic, with `-r /tf:=tf -r /tf_static:=tf_static` for all "
+    "nodes in its namespace. Or give it its own frames, with `urdf-postfix` and the frames in its "
+    "nodes' parameters.",
     bad="""\
 running: transform odom -> base_link on /tf by /robot1/driver, /robot2/driver
 """,
@@ -176,8 +177,9 @@ def _either(tree: Tree, robots: Sequence[str]) -> str:
     ERROR,
     what="Transforms on a tf topic go round in a circle: a frame is above itself.",
     why="tf2 finds no transform between its frames, or takes for ever.",
-    fix="Find the node that sends one of them the wrong way round (`frame_id` and `child_frame_id`, or"
-    " `map_frame` and `odom_frame` swapped), or that sends frames of another robot.",
+    fix="Find the node that sends one of them the wrong way round: `frame_id` and "
+    "`child_frame_id`, or `map_frame` and `odom_frame`, are swapped. Or find the one that sends "
+    "frames of another robot.",
     bad="""\
 running: transform map -> odom on /tf
 running: transform odom -> base_link on /tf
@@ -316,8 +318,9 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     "robots-name-twice",
     ERROR,
     robot_wide=True,
-    what="A frame has the robot's name twice: `robot1/robot1/base_link`; or in `build` a topic or "
-    "service: an argument of the xacro puts it before the name, and the robot's namespace before that.",
+    what="A frame has the robot's name twice, as in `robot1/robot1/base_link`; in `build` also a "
+    "topic or service. An argument of the xacro puts it before the name, and the robot's namespace "
+    "before that.",
     why="No other node uses that name: every lookup fails, and commands reach no node.",
     fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
     " where the description has the robot's name already. Write '' for the argument of the xacro: "

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import shorten, unique
@@ -25,7 +25,8 @@ _MISSES = (topic_names_miss, server_names_miss)
     "nothing-known-sends",
     NOTE,
     absence=True,
-    what="Nodes read topics, or call services, that no known node sends or serves.",
+    what="Nodes read topics, or call services, that no known node sends or serves. It is an error where"
+    " a node of the same system does for another robot.",
     why="If nothing else does, these nodes wait for ever.",
     fix="Nothing, if a driver that the fleet does not name sends them; else name its node or stack.",
     bad="running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan as scan\n",
@@ -40,11 +41,29 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     left = _without_missed(seen, left) if left else left
     for robot in unique(seen.robot(it.node) for it in left):
         names = unique(sorted(it.name for it in left if seen.robot(it.node) == robot))
-        listed = shorten(names, _LISTED)
+        yield from _told(seen, robot, names)
+
+
+def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
+    """That another robot has it from a node of the same system is not for a driver outside of it."""
+    elsewhere = {seen.plain(it): it for it in _given(seen) if seen.robot(it) not in ("", robot)}
+    lacked = [it for it in names if robot and seen.plain(it) in elsewhere]
+    rest = [it for it in names if it not in lacked]
+    if lacked:
+        others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
+        message = f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}"
+        hint = "start what sends it for the other robot"
+        yield nothing_known_sends.finding(message, hint, level=ERROR, robot=robot, names=lacked)
+    if rest:
         hint = "name a stack or nodes that do, if no driver of its own does"
-        yield nothing_known_sends.finding(
-            f"no known node sends {listed}", hint, robot=robot, names=names
-        )
+        message = f"no known node sends {shorten(rest, _LISTED)}"
+        yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
+
+
+def _given(seen: Index) -> Iterator[str]:
+    for (_, name), ends in seen.by_name.items():
+        if ends.publishers or ends.servers:
+            yield name
 
 
 def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:

@@ -174,6 +174,17 @@ def test_libsdformat_makes_the_same_of_it(rover: Path) -> None:
     assert other == one
 
 
+def test_what_sdformat_merges_is_merged(rover: Path) -> None:
+    """sdformat parser.cc, readXml: links, models, joints, frames, grippers, plugins."""
+    parts = '<gripper name="g"/><plugin name="p" filename="f"/><model name="n"/><static>1</static>'
+    base = rover.parent.parent / "base" / "model.sdf"
+    base.write_text(BASE.format(parts))
+    text = with_includes(rover.read_bytes(), str(rover)).decode()
+    merged = text.partition("<include>")[0]
+    assert all(f'name="{it}"' in merged for it in ("g", "p", "n", "rotor", "spin", "top"))
+    assert "<static>" not in merged
+
+
 def printed(file: Path, home: str) -> list[str]:
     run = [IGN, "sdf", "-p", str(file)]
     env = {**os.environ, "SDF_PATH": home}

@@ -43,7 +43,7 @@ wrong = [
 ]
 print(wrong)
 """
-FEW, MANY = 2, 60
+FEW, MANY = 2, 20
 
 
 @pytest.fixture

@@ -423,10 +423,11 @@ def test_libsdformat_sees_the_same(sdf_tool: Tool, models: dict[str, Path], tmp_
 
 @pytest.mark.deep
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
-def test_libsdformat_sees_the_same_in_all(
+def test_libsdformat_sees_the_same_in_many(
     sdf_tool: Tool, models: dict[str, Path], options: Options, tmp_path: Path
 ) -> None:
-    judge(sdf_tool, trials(models, options), tmp_path)
+    """It is a process five times a model."""
+    judge(sdf_tool, trials(models, options)[OPTIONS.index(options) :: 8], tmp_path)
 
 
 @cache
@@ -442,7 +443,7 @@ def valid_cases() -> list[Trial]:
 
 @pytest.mark.deep
 def test_libsdformat_sees_the_same_in_the_cases(sdf_tool: Tool, tmp_path: Path) -> None:
-    judge(sdf_tool, valid_cases(), tmp_path)
+    judge(sdf_tool, valid_cases()[::3], tmp_path)
 
 
 @pytest.mark.slow

@@ -239,12 +239,6 @@ def test_some_with_options(pairs: dict[str, Pair], options: Options) -> None:
     judge(dict([*pairs.items()][::SOME]), options)
 
 
-@pytest.mark.deep
-@pytest.mark.parametrize("options", OPTIONS, ids=str)
-def test_all_with_options(pairs: dict[str, Pair], options: Options) -> None:
-    judge(pairs, options)
-
-
 # ---------------------------------------------------------------- the judge sees a wrong name
 
 SRDF = b"""<?xml version="1.0"?>

@@ -124,3 +124,19 @@ def test_what_cannot_be_shown_is_said() -> None:
     both = text.format("a", "b") + text.format("b", "a")
     with pytest.raises(InputError, match="the pose of 'a' depends on itself"):
         load(f'<sdf><model name="m">{both}</model></sdf>')
+
+
+def test_a_shape_is_drawn_where_it_has_its_sizes() -> None:
+    for tag, size, kinds in (
+        ("sphere", "<radius>2</radius>", ["sphere"]),
+        ("sphere", "", []),
+        ("cylinder", "<radius>2</radius>", []),
+        ("capsule", "<radius>2</radius><length>1</length>", ["cylinder"]),
+        ("box", "<size>1 2</size>", []),
+        ("plane", "<radius>2</radius>", []),
+    ):
+        visual = f'<visual name="v"><geometry><{tag}>{size}</{tag}></geometry></visual>'
+        made = load(
+            f'<sdf version="1.9"><model name="m"><link name="a">{visual}</link></model></sdf>'
+        )
+        assert [it.kind for shapes in made.links.values() for it in shapes] == kinds, (tag, size)

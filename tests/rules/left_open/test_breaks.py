@@ -84,7 +84,7 @@ BREAKS = [
     ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MG303", 2, "/scan"),
     ("nav2.yaml", "topic: /scan", "topic: /front", "MG303", 12, "/scan"),
     ("nav2.yaml", "type: scan, topic: scan", "type: scan, topic: lidar", "MG303", 22, "/scan"),
-    ("nav2.yaml", "topic: cmd_vel_smoothed", "topic: cmd_vel_smoth", "MG303", 25, ""),
+    ("nav2.yaml", "topic: cmd_vel_smoothed", "topic: cmd_vel_smoth", "MG303", 26, ""),
     (
         "nav2.yaml",
         "base_link, odom_topic: odometry/filtered",
@@ -101,7 +101,7 @@ BREAKS = [
         16,
         "",
     ),
-    ("nav2.yaml", "{odom_topic: odometry/filtered}", "{odom_topic: odm}", "MG303", 27, ""),
+    ("nav2.yaml", "{odom_topic: odometry/filtered}", "{odom_topic: odm}", "MG303", 28, ""),
     ("rover.urdf", "<topic>scan</topic>", "<topic>front/scan</topic>", "MG303", 2, "/front/scan"),
     # A source in the list without a topic of its own: it reads what it is called.
     (

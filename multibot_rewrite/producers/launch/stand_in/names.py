@@ -58,6 +58,9 @@ READ: Mapping[str, str] = {
     "launch_yaml.launch_description_sources": "YAMLLaunchDescriptionSource",
     "lifecycle_msgs": "",
     "lifecycle_msgs.msg": "Transition",
+    "nav2_common": "",
+    "nav2_common.launch": "HasNodeParams LaunchConfigAsBool ParseMultiRobotPose ReplaceString "
+    "RewrittenYaml",
     "ament_index_python": _AMENT,
     "ament_index_python.packages": _AMENT,
     "ament_index_python.resources": "get_resource has_resource",

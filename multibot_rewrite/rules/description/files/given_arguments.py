@@ -29,8 +29,8 @@ _BODY = """\
     "read, by $(arg NAME), is known. Of several files that urdf-lint looks at together, one "
     "has to know it. If none does, it is reported at those that have an argument of a similar"
     " name.",
-    why="xacro ignores it without a word: the description is as if it were not given, and a prefix or "
-    "a namespace that was meant for one robot is missing from all its names.",
+    why="xacro ignores it without a message. If it was a prefix or a namespace for one robot, that "
+    "is missing from all names of the description.",
     fix="Correct the name; the message says what may be meant. Where the file should take it, declare "
     'it: <xacro:arg name="NAME" default=""/>.',
     bad=_HEAD + _BODY.format("tf_prefx", "tf_prefx"),

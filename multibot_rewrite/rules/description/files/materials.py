@@ -12,6 +12,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.rules.facts.certain import lacking
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.faults import urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
@@ -24,7 +25,7 @@ Look = tuple[tuple[float, ...] | str, str]
     "MB131",
     "undefined-material",
     WARNING,
-    what="A visual refers to a material that neither the robot nor an earlier visual defines, or a "
+    what="A visual uses a material that neither the robot nor an earlier visual defines. Or a "
     "material of the robot has neither a color nor a texture.",
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",
@@ -57,7 +58,8 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
             defined[name] = None
             continue
         hint = guesses.hint(name, filter(None, defined))
-        yield Problem(look, f"material {name!r} is not defined", "name", hint)
+        message = f"material {name!r} is not defined"
+        yield from lacking(subject, [Problem(look, message, "name", hint, level=WARNING)])
 
 
 def _materials(elements: Elements) -> Sequence[etree._Element]:

@@ -126,10 +126,10 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     "MB106",
     "already-rewritten",
     WARNING,
-    what="The description is already rewritten for one of the robots: a name begins or ends with the "
-    "robot's, in any layout and with any separator, or there is text that a rewrite inserted. Where "
-    "the robot is called like a part (left, arm, base), more than half of the links, joints, "
-    "namespaces or topics have to be so: left_wheel alone is by chance.",
+    what="The description is already rewritten for one of the robots. A name begins or ends with "
+    "the robot's name, in any layout and with any separator, or there is text that a rewrite "
+    "inserted. A robot may be called like a part (left, arm, base). Then more than half of the "
+    "links, joints, namespaces or topics must have its name: left_wheel alone is by chance.",
     why="urdf-postfix rejects it: a second rewrite would make base_link/robot1/robot1. If several "
     "robots use it, all of them have the frames and topics of that one robot.",
     fix="Lint and rewrite the source file, or give the robot another name; undo the rewrite with "

@@ -31,9 +31,9 @@ from multibot_rewrite.rules.subject import Subject
     "interface of ros2_control.",
     why="Readers skip what they do not know, without a word: the link has no mass, the joint no limit, "
     "the plugin or node its default. A library or class is not found, an interface is claimed by none.",
-    fix="Correct the name. Parameters of a node come from the generate_parameter_library files of the "
-    "package where its sources are there, else from installed NoDL documents and the sources of the "
-    "release.",
+    fix="Correct the name. Names of parameters come from the generate_parameter_library files of "
+    "the node's package, if its sources are there. Otherwise they come from installed NoDL "
+    "documents and the sources of the release.",
     bad='<link name="a"><inertail/></link>',
     good='<link name="a"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
     formats=(URDF, SRDF, PARAMS, MOVEIT),
@@ -50,8 +50,8 @@ not_read = rule(
     "MB111",
     "not-read",
     NOTE,
-    what="An element, attribute, parameter or text that nothing reads: of a URDF, below <gazebo>, "
-    "or of a known plugin; of a node whose package declares all of its parameters. Below "
+    what="An element, attribute, parameter or text that nothing reads. It is in a URDF, below "
+    "<gazebo>, in a known plugin, or in a node whose package declares all of its parameters. Below "
     "<ros2_control> it is an error where it is no component.",
     why="It has no effect: <gravity> works in a <gazebo reference> block and not in a link, <alwaysOn> "
     "in a sensor and not in its plugin. ros2_control's parser throws 'invalid tag name', and the "
@@ -67,9 +67,9 @@ not_read = rule(
     "MB112",
     "misplaced",
     WARNING,
-    what="An element of URDF or SDF, or a parameter of a plugin, in a place where no parser "
-    "looks for it: an <origin> of a link, friction in a <gazebo> without reference, a <remapping> "
-    "beside <ros>.",
+    what="An element of URDF or SDF, or a parameter of a plugin, in a place where no parser looks "
+    "for it. Examples are an <origin> of a link, friction in a <gazebo> without reference and a "
+    "<remapping> beside <ros>.",
     why="Readers look for children by name in one place only. It has no effect.",
     fix="Move it to the place that the hint names.",
     bad='<link name="a"><mass value="1"/></link>',
@@ -141,8 +141,8 @@ of_another_release = rule(
     NOTE,
     what="An element below <gazebo> is newer than the SDF that Gazebo of this release reads, or "
     "a plugin reads the parameter in another release only.",
-    why="It has no effect in this release, as if the line were not there: a sensor with <frame_id> "
-    "publishes in the frame that it has without.",
+    why="It has no effect in this release. For example, a sensor with <frame_id> publishes in its "
+    "default frame.",
     fix="Leave it out, or name the release that the description is for: --distro.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a">\n'
@@ -160,8 +160,8 @@ of_another_simulator = rule(
     "MB163",
     "parameter-of-other-simulator",
     WARNING,
-    what="A plugin has a parameter that only its counterpart reads: that of Gazebo Classic for "
-    "one of Gazebo, that of ROS 1 for one of ROS 2, or the reverse.",
+    what="A plugin has a parameter that only its counterpart reads. A plugin of Gazebo has one of "
+    "Gazebo Classic, a plugin of ROS 2 one of ROS 1, or the reverse.",
     why="It has no effect: what a file was migrated for is at its default. Classic's wheel_diameter "
     "is no wheel_radius; commandTopic of ROS 1 leaves the robot of ROS 2 at cmd_vel.",
     fix="Use the parameter of this simulator and ROS, if it has one.",

@@ -110,10 +110,10 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="A prefix that nothing declares (gz:type), -- in a comment, an XML declaration behind blank "
     "lines, or a default namespace (xmlns=).",
-    why="urdfdom, sdformat and ros2_control read XML with TinyXML-2, which takes it: a prefix is part "
-    "of the name. xacro, launch files and spawn_entity.py of Gazebo Classic read it with Python's "
-    "parsers: they refuse the first three, and find no <link> in a default namespace. In a xacro file "
-    "it is an error.",
+    why="urdfdom, sdformat and ros2_control read XML with TinyXML-2, which takes it: a prefix is "
+    "part of the name. xacro, launch files and spawn_entity.py of Gazebo Classic read it with "
+    "Python's parsers. These reject the first three, and find no <link> in a default namespace. In "
+    "a xacro file it is an error.",
     fix='Declare the prefix on the root element, as xmlns:gz="http://gazebosim.org/schema"; write == '
     "for --; delete what is before <?xml, and the default namespace.",
     bad='<link name="a"/>\n<!-- old -- and wrong -->\n<link name="b"/>',

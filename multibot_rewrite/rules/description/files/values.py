@@ -34,19 +34,19 @@ def _imu(inside: str) -> str:
     "MB120",
     "unreadable-value",
     ERROR,
-    what="A value is not what its place asks for. Examples are no number, too many or too few of "
-    "them, a unit or a decimal comma, nan, a space or line break after a number. Others are a"
-    " word that is neither true nor false, and a parameter of another type than its node "
-    "declares. It is a warning where a part is read, in a colour of a URDF and in parameters "
-    "that another release takes.",
+    what="A value is not what its place asks for. Examples are a word in place of a number, too "
+    "many or too few numbers, a unit, a decimal comma and nan. A space or line break after a "
+    "number is one, too. Others are a word that is neither true nor false, and a parameter of "
+    "another type than its node declares. It is a warning where a part is read, in a colour of a "
+    "URDF and in parameters that another release takes.",
     why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
     "collisions if it is in a link. Below <gazebo> the model is not loaded. A plugin reads "
     "0,5 as 0, and anything but true, false, 1 and 0 as false. ros2_control hardware and "
     "rclcpp throw: the node does not come up, or its controller is not loaded. MoveIt ignores"
     " a joint in a state.",
-    fix="Write plain numbers with a decimal point, separated by spaces, in metres, radians and "
-    "kilograms, as many as the place has; true or false; colours from 0 to 1. A double of a node "
-    "needs a point.",
+    fix="Write plain numbers with a decimal point, separated by spaces, as many as the place has. "
+    "Units are metres, radians and kilograms, colours are from 0 to 1. A switch is true or false. "
+    "A double of a node needs a point.",
     bad='<link name="a"><visual><geometry><sphere radius="0,5"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><sphere radius="5e-1"/></geometry></visual></link>',
     formats=(URDF, SRDF, PARAMS, MOVEIT),
@@ -89,10 +89,10 @@ unknown_word = rule(
     "a size of 0 or less. Or a value below <gazebo> is outside of the range of SDF, a "
     "parameter of a plugin or node outside of what its code checks. It is a warning for "
     "parameters, and in shapes and limits before URDF 1.2.",
-    why="From URDF 1.2 on urdfdom rejects the file for a limit and drops the shapes of the link; "
-    "sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
-    "the model ('greater than the maximum allowed value'), a plugin divides by it, and "
-    "generate_parameter_library rejects it: the controller is not loaded.",
+    why="From URDF 1.2 on urdfdom rejects the file for a limit and drops the shapes of the link. "
+    "Sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
+    "the model ('greater than the maximum allowed value'), or a plugin divides by the value. Where "
+    "generate_parameter_library rejects it, the controller is not loaded.",
     fix="Write a number that its reader takes, in metres, kilograms and radians.",
     bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
@@ -110,11 +110,11 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
     "MB170",
     "angle-in-degrees",
     WARNING,
-    what="An angle is more than a turn: of a lidar's scan or a <pose> below <gazebo>, of a plugin,"
-    " or a round number in the rpy of an <origin>. Or a limit of a revolute joint looks like "
-    "degrees.",
-    why="URDF, SDF and plugins have radians: a scan from -180 to 180 goes round 57 times, a joint "
-    "turns many times before it reaches such a limit, and a steering limit of 30 limits nothing.",
+    what="An angle is more than a turn: in a lidar's scan, a <pose> below <gazebo> or a plugin. Or "
+    "an rpy of an <origin> has a round number of degrees. Or a limit of a revolute joint looks "
+    "like degrees.",
+    why="URDF, SDF and plugins use radians. A scan from -180 to 180 goes round 57 times, and a "
+    "joint turns many times before it reaches its limit. A steering limit of 30 limits nothing.",
     fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',
     bad=_imu("<pose>0 0 0 0 0 90</pose>"),
     good=_imu("<pose>0 0 0 0 0 1.5708</pose>"),

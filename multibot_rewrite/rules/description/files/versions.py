@@ -135,8 +135,8 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
     "MB129",
     "ignored-limit",
     NOTE,
-    what="A <limit> has an acceleration, deceleration or jerk that is not read: the file is not of "
-    "URDF 1.2, or the release reads no URDF 1.2.",
+    what="A <limit> has an acceleration, deceleration or jerk that is not read. The file is not of "
+    "URDF 1.2, or the release does not read URDF 1.2.",
     why="urdfdom 6 warns ('Ignoring jerk attribute') and older ones say nothing: the joint has no such "
     "limit.",
     fix='Write version="1.2" in <robot>; joint_limits.yaml has such limits for MoveIt.',

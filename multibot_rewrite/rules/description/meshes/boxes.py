@@ -58,8 +58,8 @@ def _on_disk(it: Lookup) -> str:
     "MB714",
     "mesh-units",
     WARNING,
-    what="A mesh is larger than a house: an STL or OBJ file without a scale that makes metres of it, "
-    "or a Collada file with a wrong unit.",
+    what="A mesh is larger than a house. An STL or OBJ file has no scale that makes metres of it, "
+    "or a Collada file has a wrong unit.",
     why="STL and OBJ have no units, and every program takes metres; of Collada, every program takes "
     "what the file says. RViz shows the robot as a dot inside of the mesh, and as a collision the "
     "robot hits everything in the world.",

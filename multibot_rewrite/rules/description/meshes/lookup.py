@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterator
 from functools import cache
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
@@ -112,7 +112,8 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     "MB701",
     "mesh-missing",
     ERROR,
-    what="A mesh or texture file does not exist, though its package does.",
+    what="A mesh or texture file does not exist, though its package does. It is a warning where the "
+    "whole folder is missing, which the build may make, and for a relative path.",
     why="RViz shows the link without a shape and marks the robot as faulty. Gazebo spawns it "
     "without that visual or collision, so a wheel falls through the ground.",
     fix="Correct the path, or add the file to the package and to its install rules.",
@@ -131,9 +132,13 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
     for first, *others in lost.values():
         near = _nearest(first)
-        hint = f"did you mean {near!r}?" if near else f"looked in {first.folders[0]}"
+        looked = f"correct the path, or add the file; looked in {first.folders[0]}"
+        hint = f"did you mean {near!r}?" if near else looked
         more = f", nor do {len(others)} more in its folder" if others else ""
-        yield problem(first.used, f"{first.used.name!r} does not exist{more}", hint)
+        message = f"{first.used.name!r} does not exist{more}"
+        # A whole folder may be made or loaded by the build; who reads a relative path knows from where.
+        sure = first.used.scheme and not _missing_folder(first)
+        yield problem(first.used, message, hint)._replace(level="" if sure else WARNING)
 
 
 def _missing_folder(it: Lookup) -> tuple[str, ...]:

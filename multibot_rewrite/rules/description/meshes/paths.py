@@ -30,7 +30,7 @@ def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
     "path-of-one-machine",
     WARNING,
     what="A mesh is named by an absolute path of one machine.",
-    why="On every other machine, in CI and in a container the file does not exist: the link has no "
+    why="On every other machine, in CI and in a container the file does not exist. The link has no "
     "shape in RViz and none in Gazebo.",
     fix="Use package://NAME/..., or file://$(find NAME)/... in xacro.",
     bad=MESH % "file:///home/me/ws/src/arm/meshes/base.stl",
@@ -157,9 +157,10 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB712",
     "find-left-over",
-    ERROR,
+    WARNING,
     what="The path of a mesh holds $(find ...), which only xacro understands.",
-    why="In a plain URDF nothing replaces it: no program finds the file.",
+    why="In a plain URDF nothing replaces it: no program finds the file. xacro does, if a launch file "
+    "passes the file to it all the same.",
     fix="Name the file .xacro and expand it, or use package://NAME/....",
     bad=MESH % "file://$(find arm)/meshes/base.stl",
     good=MESH % "package://arm/meshes/base.stl",
@@ -220,8 +221,8 @@ def _ending(it: Used) -> str:
     "mesh-format-partly",
     NOTE,
     what="A mesh has a format that some of RViz, Gazebo Classic and gz cannot read.",
-    why="In those programs the link has no shape: Gazebo Classic loads STL, COLLADA and OBJ, gz "
-    "also glTF and FBX from Garden on, RViz what assimp reads.",
+    why="In those programs the link has no shape. Gazebo Classic loads STL, COLLADA and OBJ. From "
+    "Garden on gz also loads glTF and FBX, and RViz loads what assimp reads.",
     fix="Convert it if the robot is to be shown in those programs too.",
     bad=MESH % "package://arm/meshes/base.glb",
     good=MESH % "package://arm/meshes/base.dae",

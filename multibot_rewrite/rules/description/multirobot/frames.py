@@ -25,8 +25,8 @@ from multibot_rewrite.rules.subject import Subject
     "robot-name-in-frame",
     WARNING,
     what="A frame is the name of a link with a robot's name in front, which the link does not have.",
-    why="The frame exists only with that frame_prefix: the second robot's data gets the first "
-    "one's frame and appears on it, and a rewrite cannot know what was intended.",
+    why="The frame exists only with that frame_prefix. The second robot's data gets the first "
+    "one's frame and appears on it. A rewrite cannot know what was intended.",
     fix="Use the link's own name and let frame_prefix or urdf-postfix add the robot's name, or "
     "make the name in front a xacro argument.",
     bad='<link name="laser"/>\n'
@@ -91,7 +91,7 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     NOTE,
     what="A system of gz-sim sends odometry without its frames, whose defaults start with the name of "
     "the model.",
-    why="It sends robot1/odom -> robot1/base_link, robot_state_publisher sends base_link: once "
+    why="It sends robot1/odom -> robot1/base_link, robot_state_publisher sends base_link. Once "
     "bridged, the odometry is a tree of its own, and no lookup from odom to the robot succeeds.",
     fix="Set both frames to those of the robot; urdf-postfix inserts them.",
     bad='<link name="base"/>\n'
@@ -172,9 +172,9 @@ def _words(claim: Claim) -> str:
     "tf-not-remapped",
     NOTE,
     what="A plugin publishes on /tf, and no remap rule moves it to the robot's own tf topic.",
-    why="tf2's broadcaster publishes on the absolute topic /tf, which a namespace does not move: "
-    "with a tf topic for each robot this plugin's transforms are missing there, and those of all "
-    "robots are mixed on /tf.",
+    why="tf2's broadcaster publishes on the absolute topic /tf, which a namespace does not move. "
+    "With a tf topic for each robot this plugin's transforms are missing there, and on /tf those "
+    "of all robots are mixed.",
     fix="Add <remapping>/tf:=tf</remapping> to its <ros> block; urdf-postfix inserts it where each "
     "robot has its tf topic. Not needed where all robots share /tf and have different frames.",
     bad="<gazebo>\n"

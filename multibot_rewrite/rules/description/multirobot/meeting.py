@@ -126,8 +126,8 @@ lost_rule = rule(
     "lost-remap-rule",
     WARNING,
     what="A remap rule of a plugin would match no name after the rewrite that it matched before.",
-    why="rcl compares the left side with the full name of a topic: where both get the robot's name "
-    "in other places the rule does nothing, and the topic has the name of the plugin's code.",
+    why="rcl compares the left side with the full name of a topic. Where both get the robot's name "
+    "in different places, the rule does nothing. The topic keeps the name of the plugin's code.",
     fix="Write the topic and the left side of its rule the same way, best without a slash in front.",
     bad="<gazebo>\n"
     '  <plugin name="imu" filename="libhector_gazebo_ros_imu.so">\n'
@@ -192,8 +192,9 @@ camera_info_elsewhere = rule(
     "camera-info-elsewhere",
     WARNING,
     what="The camera_info of a camera would no longer stand beside its image.",
-    why="RViz and image_transport replace the last segment of an image's topic to find its camera_info "
-    "(image_common camera_common.cpp): they find none, as no robot sends under that name.",
+    why="RViz and image_transport replace the last segment of an image's topic to find its "
+    "camera_info (image_common camera_common.cpp). They find none, as no robot sends under that "
+    "name.",
     fix="Start what shows the image with the rule of the hint, or use --topics namespace.",
     bad=_CAMERA.format("<topic>cam/image</topic>"),
     good=_CAMERA.format(""),

@@ -93,8 +93,8 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     "robots-share-a-name",
     ERROR,
     what="Two different names in the file become the same name for two of the robots.",
-    why="Both robots then publish one tf frame or subscribe to one topic of that name: each is "
-    "moved by the other, and no namespace shows it.",
+    why="Both robots then publish one tf frame or subscribe to one topic of that name. Each is "
+    "moved by the other's commands, and no namespace separates them.",
     fix="Rename a robot or choose another separator.",
     bad='<link name="arm"/><link name="arm_left"/>',
     good='<link name="arm"/><link name="tool"/>',
@@ -118,7 +118,7 @@ prefix_only = rule(
     "prefix-only",
     WARNING,
     what="A parameter of hardware or of a node, or the link_prefix of an IKFast solver, is put in "
-    "front of names, but the robot's name goes at the end of names.",
+    "front of names. But the robot's name goes at the end of names.",
     why="The driver or node makes names of joints, sensors, gpios or frames from that prefix. A "
     "postfix cannot be added to them, so the second robot's are the same as the first one's.",
     fix="Put the robot's name in front: affix prefix.",
@@ -219,8 +219,8 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     what="A remap rule of a control plugin has an absolute target, or the robots' topics differ "
     "only by such rules.",
     why="On Humble gazebo_ros2_control and ign_ros2_control apply their remap rules to the whole "
-    "Gazebo process: the first robot's rule also moves the second robot's topic, to the first one's "
-    "name. Since Jazzy the controller manager of each robot has its own rules.",
+    "Gazebo process. The first robot's rule also moves the second robot's topic, to the first "
+    "one's name. Since Jazzy the controller manager of each robot has its own rules.",
     fix="Use a relative target, which ends in each robot's own namespace; separate the robots by "
     "namespaces.",
     bad="<gazebo>\n"
@@ -248,7 +248,7 @@ fixed_to_own_frame = rule(
     "fixed-to-own-frame",
     WARNING,
     what="An SRDF fixes the robot to a frame that is renamed for each robot.",
-    why="Each move_group then plans in its own frame, which no node publishes: the robots do not "
+    why="Each move_group then plans in its own frame, which no node publishes. The robots do not "
     "know each other's pose, and lookups from the world fail.",
     fix="Add the frame to the shared frames.",
     bad='<robot name="r">\n'

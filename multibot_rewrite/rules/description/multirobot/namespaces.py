@@ -27,8 +27,8 @@ from multibot_rewrite.rules.subject import Subject
     "hard-coded-namespace",
     NOTE,
     what="A plugin's namespace is fixed in the description.",
-    why="All copies of the robot put their nodes and topics in it: in Gazebo Classic of ROS 2 the "
-    "second node with the same name is rejected (gazebo_ros node.hpp), in ROS 1 both respond on "
+    why="All copies of the robot put their nodes and topics in it. Gazebo Classic for ROS 2 "
+    "rejects the second node with the same name (gazebo_ros node.hpp). In ROS 1 both respond on "
     "one topic.",
     fix="Make it a xacro argument, or let urdf-postfix put each robot's name in front; "
     "spawn_entity.py -robot_namespace overrides it.",
@@ -57,9 +57,8 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     "no-namespace",
     NOTE,
     what="Plugins with ROS nodes have no namespace.",
-    why="The second robot's nodes have the same full names and topics: Gazebo Classic of ROS 2 "
-    "creates no node for the second plugin, and parameters and services respond for one robot "
-    "only.",
+    why="The second robot's nodes have the same full names and topics. Gazebo Classic for ROS 2 "
+    "creates no node for the second plugin. Parameters and services respond for one robot only.",
     fix="Spawn each robot with -robot_namespace, or give the plugins a <namespace>: a xacro argument, "
     "or urdf-postfix. ros_gz_sim's create has no such option, in no release (ros_gz#925 is open).",
     bad="<gazebo>\n"
@@ -93,8 +92,8 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     "one-robot-description",
     NOTE,
     what="A plugin reads the robot description from an absolute name.",
-    why="Every copy reads the first robot's description: its controllers then claim joints that "
-    "the second robot does not have if it was renamed, and wait for a node outside their "
+    why="Every copy reads the first robot's description. If the second robot was renamed, its "
+    "controllers claim joints that it does not have. They also wait for a node outside their "
     "namespace.",
     fix="Use a name relative to the plugin's namespace: robot_description, robot_state_publisher.",
     bad="<gazebo>\n"
@@ -133,8 +132,8 @@ _MODEL = """\
     WARNING,
     what="A model has a namespace that the release's Gazebo does not read.",
     why="sdformat reads <model namespace> and <include><namespace> from version 17 on. Fortress, "
-    "Harmonic, Ionic and Jetty, which Humble to Lyrical have, print a warning and go on without it: "
-    "the topics of all copies are the same.",
+    "Harmonic, Ionic and Jetty, which Humble to Lyrical have, print a warning and go on without "
+    "it. The topics of all copies are the same.",
     fix="Set the topics of the plugins, or let urdf-postfix put each robot's name into them; for a "
     "Gazebo built from main say --distro rolling.",
     bad=_MODEL.format(' namespace="robot"'),

@@ -84,8 +84,8 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     "prefix-unused",
     WARNING,
     what="A macro or file takes a prefix and does not use it.",
-    why="Two copies are expected to differ, but the second one has the same names again, and "
-    "urdfdom rejects the robot because its links are not unique.",
+    why="Two copies should differ, but the second one has the same names again. urdfdom rejects "
+    "the robot because its links are not unique.",
     fix="Put it in front of the names, or remove the parameter.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro>\n'

@@ -33,7 +33,7 @@ DEVICE = lazy_compile(
     NOTE,
     what="A control plugin has a fixed file of controller parameters.",
     why="Every robot's controller manager reads it. Its keys match only nodes with the names in "
-    "it: in another namespace, without /**, no controller has a type, and its joints are the first "
+    "it. In another namespace, without /**, no controller has a type. Its joints are the first "
     "robot's.",
     fix="Write the keys as /**/controller_manager; where joints are renamed, give each robot its "
     "own file through a xacro argument.",
@@ -135,8 +135,8 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     "world-system-in-robot",
     WARNING,
     what="The robot loads a gz system that acts on the whole world.",
-    why="gz-sim loads it again with every copy: two Sensors systems crash it (gz-sensors issue "
-    "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
+    why="gz-sim loads it again with every copy. Two Sensors systems crash it (gz-sensors issue "
+    "497). Two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
     fix="Load it in the world's SDF, once, and remove it from the robot; `urdf-postfix --world-systems "
     "leave` takes it out of each robot.",
     bad="<gazebo>\n"

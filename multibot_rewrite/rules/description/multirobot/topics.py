@@ -88,8 +88,8 @@ def _target(claim: Claim) -> str:
     "gz-topic-shared",
     NOTE,
     what="A sensor or system of gz-sim has a topic that is the same for every copy of the robot.",
-    why="gz topics are global in their partition and a ROS namespace does not move them: one "
-    "command drives both robots, both lidars publish on one topic and ros_gz_bridge cannot "
+    why="gz topics are global in their partition, and a ROS namespace does not move them. One "
+    "command drives both robots, both lidars publish on one topic, and ros_gz_bridge cannot "
     "separate them.",
     fix="Leave the element out: then gz puts the model's name into the topic. Or give each "
     "robot its own topic with a xacro argument or urdf-postfix.",

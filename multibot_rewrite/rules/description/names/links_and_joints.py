@@ -21,8 +21,8 @@ WORLD = "world"
     "empty-name",
     ERROR,
     what="A link or joint has an empty name.",
-    why="urdfdom rejects a joint to a link without a name, sdformat rejects the empty name of a "
-    "joint, and tf2 accepts no transform with an empty frame.",
+    why="urdfdom rejects a joint to a link without a name, and sdformat rejects the empty name of "
+    "a joint. tf2 accepts no transform with an empty frame.",
     fix="Give it a name; in xacro check which argument or property is empty.",
     bad='<link name=""/>',
     good='<link name="a"/>',
@@ -113,7 +113,7 @@ def _is_reserved(name: str) -> bool:
     "MB307",
     "world-link",
     WARNING,
-    what="A link called world is more than the point to which the robot is fixed: it is not the "
+    what="A link called world is more than the point to which the robot is fixed. It is not the "
     "root, or it has mass or shapes.",
     why="A root link called world is the simulation's own world: sdformat ignores its mass and "
     "shapes. Elsewhere the name is reserved, and a world that moves with the robot breaks every tf "
@@ -148,7 +148,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
     "link-and-joint-alike",
     WARNING,
     what="A link and a joint have the same name, and both become parts of the simulated model.",
-    why="In SDF a link and a joint must not share a name: sdformat reports 'name collision' and "
+    why="In SDF a link and a joint must not share a name. sdformat reports 'name collision' and "
     "rejects the model, so Gazebo does not spawn it.",
     fix="Rename the joint, usually to NAME_joint.",
     bad='<link name="a"/>\n'
@@ -221,9 +221,8 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
     "invalid-usd-name",
     WARNING,
     what="A name is not a valid USD identifier (checked with the target usd).",
-    why="The names of USD prims have letters, digits and underscores, without a leading digit: "
-    "converters to USD replace the rest, and a program that looks for the URDF name in the stage "
-    "finds nothing.",
+    why="The names of USD prims have letters, digits and underscores, without a leading digit. "
+    "Converters to USD replace the rest, and a program that looks for the URDF name finds nothing.",
     fix="Use underscores in place of other characters.",
     bad='<link name="left/wheel"/>',
     good='<link name="left_wheel"/>',

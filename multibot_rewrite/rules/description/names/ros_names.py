@@ -31,9 +31,9 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
     WARNING,
     what="A frame starts with a slash, in a description or a file beside it. In a file it is a note "
     "where the node takes the slash off in this release; then it is written without it.",
-    why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
-    "link's name as it is, so a link with a leading slash is a frame that cannot be looked up. Some "
-    "nodes took the slash off up to Kilted and no longer do.",
+    why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\". robot_state_publisher sends "
+    "a link's name as it is, so a link with a leading slash cannot be looked up. Some nodes took "
+    "the slash off up to Kilted and no longer do.",
     fix="Delete the slash.",
     bad='<link name="lidar"/>\n'
     "<gazebo>\n"
@@ -83,7 +83,8 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     NOTE,
     what="The name of a joint, sensor or gpio in <ros2_control> contains a slash.",
     why="Its interfaces are called NAME/INTERFACE, and the controller manager splits that at the "
-    "first slash: arm/j1/position is taken as one of the controller 'arm' if there is one.",
+    "first slash. If there is a controller 'arm', arm/j1/position is taken as one of its "
+    "interfaces.",
     fix="Use an underscore, in the URDF and in the controllers' parameters; or give no controller "
     "the name before the slash.",
     bad='<ros2_control name="c" type="system">\n'
@@ -114,8 +115,9 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     NOTE,
     what="The robot's name is not a valid ROS name: empty, or with spaces, hyphens, dots or a "
     "leading digit.",
-    why="Spawners use it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
-    "ROS rejects these when they are bridged, and also a namespace or node name made from it.",
+    why="Spawners use it for the model, and Gazebo puts it into topics like /model/NAME/odometry. "
+    "ROS rejects these when they are bridged. It also rejects a namespace or node name made from "
+    "it.",
     fix="Use letters, digits and underscores.",
     bad='<robot name="my-robot"><link name="a"/></robot>',
     good='<robot name="my_robot"><link name="a"/></robot>',
@@ -138,8 +140,9 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     what="A topic, service, namespace or node name, of a plugin or in a file beside the description, "
     "is not a valid ROS name. Without ros_topic_name the topic of a bridge is the gz topic, where a "
     "part may be a number.",
-    why="rcl throws InvalidTopicNameError, or the node is not created: the plugin does not load, "
-    "or publishes nothing; rcl rejects a file with such a section, and a topic is not bridged.",
+    why="rcl throws InvalidTopicNameError, or the node is not created. The plugin does not load, "
+    "or publishes nothing. rcl also rejects a file with such a section, and a topic is not "
+    "bridged.",
     fix="Use letters, digits, underscores and slashes, without a leading digit.",
     bad="<gazebo>\n"
     '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
@@ -187,8 +190,9 @@ def _name_fault(name: str, section: str) -> str:
     "MB313",
     "odd-interface-name",
     WARNING,
-    what="A <ros2_control> component or interface has an empty name, a component's has white space, or "
-    "an interface's has it beside a name of ros2_control (position, velocity, effort, acceleration).",
+    what="A <ros2_control> component or interface has an empty name, or a component's name has "
+    "white space. Or an interface's name has white space beside position, velocity, effort or "
+    "acceleration.",
     why="Controllers ask for NAME/INTERFACE exactly: the parser strips white space around a name "
     "but not inside it, and an empty name cannot be requested. Interfaces of a driver's own may have "
     "it on purpose, as the registers of Dynamixel's: 'Present Position'.",

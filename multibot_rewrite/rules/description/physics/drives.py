@@ -38,8 +38,8 @@ ENDLESS = 20 * pi
     what="The wheel separation of a drive is not the distance of its wheels, or its wheel radius "
     "or diameter is not that of its wheels. Where several wheels of a side skid in a turn the "
     "separation may be up to twice the distance.",
-    why="The plugin computes the speed of each wheel from them: the robot drives or turns faster "
-    "or slower than its commands say, and its odometry is wrong by the same factor, so maps bend.",
+    why="The plugin computes the speed of each wheel from them. The robot drives or turns faster "
+    "or slower than its commands say. Its odometry is wrong by the same factor, so maps bend.",
     fix="Write the distance of the wheels, and the size of the wheel's collision shape, in metres.",
     bad=a_rover(LEFT, RIGHT, separation="0.8"),
     good=a_rover(),
@@ -75,9 +75,9 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
     "wheels-turn-wrong",
     WARNING,
     what="The left wheel of a drive is on the right, seen in the direction in which a positive "
-    "speed turns the wheels: the joints are swapped, or the axes of both point the wrong way. Or "
-    "the axes of the left and the right wheel point in opposite directions, or the two do not roll: an "
-    "upright axis, a cylinder that lies flat, wheels at two heights.",
+    "speed turns the wheels. The joints are swapped, or the axes of both point the wrong way. Or "
+    "the axes of the left and the right wheel point in opposite directions. Or the two do not "
+    "roll: an upright axis, a cylinder that lies flat, wheels at two heights.",
     why="A command to turn left turns the robot right, and its odometry says left. With "
     "opposite axes it turns on the spot on a command to drive straight. Localization is "
     "lost at once.",
@@ -97,6 +97,8 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
             hint = "swap left and right, or turn the axes of both joints around"
             yield Problem(left.named, f"left wheel {names}", "", hint)
         for left, right in drive.pairs:
+            if "fixed" in (left.joint.type, right.joint.type):
+                continue  # MB624
             for words in rolling_faults(drive.robot, left, right):
                 yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):
@@ -129,9 +131,12 @@ def _fault_of(joint: Joint) -> str:
     if joint.type in ("fixed", "prismatic"):
         return f"is {joint.type}: it cannot turn"
     limit = joint.parts.get("limit")
-    if joint.type != "revolute" or limit is None:
+    if joint.type != "revolute":
         return ""
-    lower, upper = number(limit.get("lower", "0")), number(limit.get("upper", "0"))
+    if limit is not None:
+        lower, upper = number(limit.get("lower", "0")), number(limit.get("upper", "0"))
+    else:  # of an SDF
+        lower, upper = (number_at(joint.element, f"axis/limit/{it}") for it in ("lower", "upper"))
     if lower is None or upper is None or upper - lower >= ENDLESS:
         return ""
     return f"turns from {lower:g} to {upper:g} radians only"

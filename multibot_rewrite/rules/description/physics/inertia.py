@@ -10,7 +10,6 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Inertial, Link, Robot
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.problem import Problem
@@ -28,6 +27,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     sizes_of,
 )
 from multibot_rewrite.rules.facts.sensors import number_at
+from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.subject import Subject
 
 # Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
@@ -37,6 +37,8 @@ LARGER, FAR_LARGER, SMALLER, SMALL_SHAPE = 4.0, 50.0, 0.01, 0.01
 # Of 1,523 links of public robots with simple shapes, 147 are LARGER, most of them frames of sensors
 # with the inertia of an example; one that moves and has a mass counts.
 FRAME = 0.05
+# In kg/m3: more than osmium. Shapes of lighter links may be marks.
+DENSEST, MASSIVE = 25_000.0, 5.0
 
 
 @rule(
@@ -45,7 +47,7 @@ FRAME = 0.05
     WARNING,
     what="The inertia of a link that moves on its own is 0.",
     why="MuJoCo rejects the file ('mass and inertia of moving bodies must be larger than "
-    "mjMINVAL'); sdformat accepts it, and the physics engine divides a torque by 0.",
+    "mjMINVAL'). sdformat accepts it, and the physics engine divides a torque by 0.",
     fix="Use the inertia of a box or a cylinder with that mass and size.",
     bad=moving_link(an_inertial(inertia=diagonal("0", "0", "0"))),
     good=moving_link(an_inertial()),
@@ -70,9 +72,9 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     "MB606",
     "impossible-inertia",
     ERROR,
-    what="The inertia of a link is physically impossible: about some axis it is negative, or one "
+    what="The inertia of a link is physically impossible. It is negative about some axis, or one "
     "principal moment is larger than the sum of the two others. It is a warning where simulators "
-    "merge the link with others.",
+    "merge the link with others, and where Gazebo Classic may read it.",
     why="sdformat rejects the file ('has invalid inertia'), of merged links for their sum. And so"
     " does MuJoCo ('inertia must have positive eigenvalues', 'inertia must satisfy A + B >= "
     "C').",
@@ -84,22 +86,24 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 )
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
+    classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link, inertial, moments, merged in impossible(subject.robot):
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
         place = part_of(inertial, "inertia")
-        yield Problem(place, message, level=WARNING if merged else "")
+        yield Problem(place, message, level=WARNING if merged or classics else "")
     if subject.document.root.tag == "sdf":
         yield from _of_models(subject)
 
 
 def _of_models(subject: Subject) -> Iterator[Problem]:
     """The links of an SDF, which are not merged: sdformat refuses a mass of 0 as well."""
+    classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link in subject.elements.every("link"):
         inertial = link.find("inertial")
         if inertial is None or inertial.get("auto", "").lower() in ("true", "1"):
             continue
         mass, inertia = number_at(inertial, "mass"), inertial.find("inertia")
-        level = NOTE if _is_unread(subject, link) else ERROR
+        level = (NOTE if _is_static(link) else WARNING) if classics else ERROR
         if mass is not None and mass <= 0:
             message = f"mass of link {link.get('name')!r} is {mass:g}"
             yield Problem(inertial, f"{message}, and has to be above 0", None, level=level)
@@ -114,11 +118,11 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
             yield Problem(inertia, words, None, level=level)
 
 
-def _is_unread(subject: Subject, link: _Element) -> bool:
-    """Is the mass of a link nothing to Gazebo Classic: that of a static model (Link.cc)?"""
+def _is_static(link: _Element) -> bool:
+    """Is it of a static model, whose masses are nothing to Gazebo Classic (Link.cc)?"""
     model = link.getparent()
     static = "" if model is None else (model.findtext("static") or "").strip()
-    return subject.settings.distro == OF_OLD and static in ("1", "true")
+    return static in ("1", "true")
 
 
 # With what sdformat takes where one is left out.
@@ -133,7 +137,8 @@ def _moment(inertia: _Element, name: str) -> float | None:
     "MB608",
     "inertia-scale",
     WARNING,
-    what="An inertia does not fit the link's mass and size.",
+    what="An inertia does not fit the link's mass and size, or the mass is more than any metal of that "
+    "size has.",
     why="The simulator uses it as it is: such a link hardly turns, or spins at a touch.",
     fix="Use kg for the mass and kg m2 for the inertia; 1 kg mm2 is 1e-6 kg m2.",
     bad=one_link(an_inertial(inertia=diagonal("1000", "1000", "1000"))),
@@ -144,7 +149,14 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
     """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
     for link, inertial in inertials(subject.robot):
         mass, moments = inertial.mass, inertial.moments
-        if mass is None or moments is None or not LIGHT <= mass < HEAVY:
+        if mass is None or moments is None or mass < LIGHT:
+            continue
+        size = _size(link.element) if mass >= MASSIVE else 0.0
+        if size > SMALL_SHAPE and mass > DENSEST * size**3 * 4 / 3 * pi:
+            message = f"mass of link {link.name!r}: no metal weighs {mass:g} kg within {size:.3g} m"
+            yield Problem(part_of(inertial, "mass"), message, None, "is it in kilograms?")
+            continue
+        if mass >= HEAVY:
             continue
         largest = max(moments[0], moments[3], moments[5])
         if largest < NOTHING:
@@ -156,7 +168,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         if radius > LONG or radius < SHORT:
             yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
             continue
-        size = _size(link.element)
+        size = size or _size(link.element)
         if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
             message += f", its shapes reach {size:.3g} m from the origin"
             counts = mass >= FRAME and moves(subject.robot, link.name)

@@ -30,10 +30,10 @@ TINY_MASS = 1e-6
     WARNING,
     what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
     "robot have.",
-    why="Gazebo leaves out the link and everything below it (sdformat: 'is not modeled in sdf'; "
-    "its joint and child joints are 'ignored'), with their sensors; MuJoCo rejects the file. "
-    "Where the fleet file says that the robot is simulated, it is an error if a sensor, a plugin or "
-    "ros2_control relies on what is left out, or if nothing is left.",
+    why="Gazebo leaves out the link and everything below it, with their sensors. sdformat says 'is "
+    "not modeled in sdf', and that its joint and child joints are 'ignored'. MuJoCo rejects the "
+    "file. It is an error where the fleet file says that the robot is simulated and nothing is "
+    "left. So it is if a sensor, a plugin or ros2_control needs what is left out.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
     bad=moving_link(),
     good=moving_link(an_inertial()),

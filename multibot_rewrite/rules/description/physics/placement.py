@@ -169,8 +169,8 @@ def _weighs(xyz: str) -> str:
     "centre-of-mass-outside",
     WARNING,
     what="The centre of mass of a link is far outside of it.",
-    why="Gazebo applies its weight there: the robot tips over, swings or shakes when it is "
-    "spawned, and an arm's controller sees torques that the real one does not have.",
+    why="Gazebo applies its weight there. The robot tips over, swings or shakes when it is "
+    "spawned, and an arm's controller sees torques that the real arm does not have.",
     fix="Write the centre in metres, in the frame of the link; CAD programs may export "
     "millimetres or the frame of the whole robot.",
     bad=one_link(_placed("collision", "0 0 0"), _weighs("0 0 3")),

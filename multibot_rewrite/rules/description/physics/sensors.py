@@ -98,7 +98,7 @@ def _is_straight(pose: Pose | None) -> bool:
     WARNING,
     what="A simulated camera is at an optical frame, and is not turned back.",
     why="Simulated cameras look along x of their link, which in an optical frame points to the "
-    "right: the image shows what is beside the robot, and tf says that it is in front.",
+    "right. The image shows what is beside the robot, and tf says that it is in front.",
     fix="Put the sensor at the camera's link, and name the optical frame as the frame of its messages.",
     bad=_camera_at("camera_optical_frame", _TURNED),
     good=_camera_at("camera", _TURNED),
@@ -251,8 +251,8 @@ def _housed(near: str) -> str:
     "lidar-in-its-housing",
     WARNING,
     what="The rays of a Gazebo Classic lidar start inside the collision shape of its link.",
-    why="Its rays hit collision shapes from within, the link's own as well: every range is that to the "
-    "housing, and the robot sees obstacles all around.",
+    why="Its rays hit collision shapes from within, those of its own link, too. Every range is "
+    "that to the housing, and the robot sees obstacles all around.",
     fix="Make the shortest range larger than the housing, or delete the <collision>.",
     bad=_housed("0.02"),
     good=_housed("0.12"),

@@ -20,6 +20,7 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
 )
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.facts.memo import driven_joints
 from multibot_rewrite.rules.subject import Subject
 
@@ -55,7 +56,7 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="A joint in a <ros2_control> is fixed.",
     why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
-    "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
+    "sense in ros2_control'). Gazebo removes fixed joints before it looks for them.",
     fix="Remove the joint, or give it a type that moves.",
     bad=FIXED + a_system('<joint name="j"/>'),
     good=ARM + a_system('<joint name="j"/>'),
@@ -66,7 +67,8 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     for it in _components(subject.document.root):
         joint = subject.robot.joint.get(it.get("name", ""))
         if joint is not None and joint.type == "fixed":
-            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
+            message = f"joint {joint.name!r} is fixed"
+            yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
 
 @rule(
@@ -96,7 +98,8 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     "MB226",
     "commanded-mimic",
     WARNING,
-    what="A joint that mimics another one has a command interface in <ros2_control>.",
+    what="A joint that mimics another one has a command interface in <ros2_control>. It is a note in "
+    "Humble.",
     why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
     'cannot have command interfaces\'), unless the joint has mimic="false".',
     fix='Delete the command interface; set mimic="false" if the hardware drives both.',
@@ -117,7 +120,8 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
-            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
+            hint = 'delete the interface, or set mimic="false"'
+            yield Problem(it, message, "name", hint, level=NOTE if since_jazzy(subject) else "")
 
 
 @rule(
@@ -170,9 +174,12 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
-        message = f"nothing drives {len(left)} joints that move: {names}"
+        message = f"nothing drives the joint{'s' * (len(left) > 1)} {names}"
         yield Problem(
-            left[0].element, message, "name", "passive joints need a published state as well"
+            left[0].element,
+            message,
+            "name",
+            "add to <ros2_control> what moves; publish the state of a passive joint",
         )
 
 

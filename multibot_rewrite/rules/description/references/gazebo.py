@@ -53,8 +53,8 @@ SINGLE = {
     "link-and-joint",
     WARNING,
     what="A <gazebo reference> is the name of both a link and a joint.",
-    why="Both get the block where they can use it, and libsdformat rejects a model in which a link "
-    "and a joint share a name: Gazebo does not spawn the robot.",
+    why="Both get the block where they can use it. libsdformat rejects a model in which a link and "
+    "a joint share a name, so Gazebo does not spawn the robot.",
     fix="Rename the joint.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'

@@ -25,6 +25,7 @@ from multibot_rewrite.rules.description.references.shared import (
     name_of,
     owners,
 )
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 
@@ -48,7 +49,8 @@ def repeated_interface(subject: Subject) -> Iterator[Problem]:
             key = str(it.tag), name_of(it)
             if key in seen and key[1]:
                 where = f"{owner.tag} {name_of(owner)!r}"
-                yield Problem(it, f"{where} has {it.tag} {key[1]!r} twice", "name", "delete one")
+                message = f"{where} has {it.tag} {key[1]!r} twice"
+                yield Problem(it, message, "name", "delete one", level=since_jazzy(subject))
             seen.add(key)
 
 
@@ -78,7 +80,8 @@ def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
     for (there, _), ((owner, name), *others) in both.items():
         more = f" and {len(others)} more" if others else ""
         message = f"{name}{more} is in <ros2_control> {name_of(there)!r} as well"
-        yield Problem(owner, message, "name", "leave it to one system")
+        hint = "leave it to one system"
+        yield Problem(owner, message, "name", hint, level=since_jazzy(subject))
 
 
 def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:

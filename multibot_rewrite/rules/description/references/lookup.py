@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.audit import uses_xacro
@@ -18,6 +20,7 @@ from multibot_rewrite.description.checks.references import (
 )
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.rules.facts.certain import lacking, since_jazzy
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -65,12 +68,23 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
     scope, _, name = part.text.rpartition("::")
     if scope and scope == inventory.document.root.get("name"):
         return any(name in inventory.declared.get(kind, ()) for kind in part.kinds)
+    if inventory.document.root.tag == "sdf" and _is_of_included(claim.element):
+        return True
     if claim.site.section != "element ros2_control":
         return False
     system = next(claim.element.iterancestors("ros2_control"), None)
     return system is not None and text_at(system, "hardware/plugin").startswith(WEBOTS)
 
 
+def _is_of_included(element: _Element) -> bool:
+    """Is it in an <include>, or in a model that another one is merged into?"""
+    if next(element.iterancestors("include"), None) is not None:
+        return True
+    return any(it.find("include[@merge]") is not None for it in element.iterancestors("model"))
+
+
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
-    return iter(references(subject).loose.get(code, ()))
+    for it in lacking(subject, references(subject).loose.get(code, ())):
+        of_system = next(it.element.iterancestors("ros2_control"), None) is not None
+        yield it._replace(level=it.level or since_jazzy(subject)) if of_system else it

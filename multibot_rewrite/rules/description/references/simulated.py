@@ -26,6 +26,7 @@ from multibot_rewrite.rules.description.references.shared import (
     hardware_system,
     name_of,
 )
+from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.facts.simulators import (
     GAZEBO,
     SIMULATORS,
@@ -115,7 +116,9 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             home = os.path.dirname(os.path.dirname(path))
             is_here = subject.origins and os.path.isabs(path) and is_folder(home)
             if is_here and not is_there(path) and not in_sources(path):
-                yield Problem(it, f"there is no file {path}", "", "correct the path")
+                # A whole folder may be made by the build.
+                level = "" if is_folder(os.path.dirname(path)) else WARNING
+                yield Problem(it, f"there is no file {path}", "", "correct the path", level=level)
 
 
 def _is_told(subject: Subject, plugin: _Element) -> bool:
@@ -155,7 +158,7 @@ def nothing_to_control(subject: Subject) -> Iterator[Problem]:
         for simulator in () if subject.document.root.tag == "sdf" else found:
             message = f"{library_of(plugin)} is not active: the description has no <ros2_control>"
             hint = f"add one with the class {simulator.hardware[0]} and the joints"
-            yield Problem(plugin, message, "filename", hint)
+            yield Problem(plugin, message, "filename", hint, level=level_of_absence(subject))
 
 
 @rule(

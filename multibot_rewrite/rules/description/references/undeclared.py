@@ -22,9 +22,9 @@ undeclared_link = rule(
     "MB202",
     "undeclared-link",
     ERROR,
-    what="A name that has to be a link is not declared. It is that of a joint's parent or child, "
-    "of a <gazebo reference>, of a parameter of a plugin or hardware class, of a sensor or "
-    "gripper, or a model. It is an error in a joint.",
+    what="A name that has to be a link is not declared. It is in a joint's parent or child, a "
+    "<gazebo reference>, a sensor, a gripper, a model, or a parameter of a plugin. It is an error "
+    "in a joint.",
     why="urdfdom rejects the file ('parent link ... not found'): no robot_state_publisher, no tf."
     " Gazebo silently drops the block, with its friction, sensors and plugins. A plugin looks"
     " the link up and does not run: gazebo_ros_p3d reports 'body_name: ... does not exist'.",
@@ -39,8 +39,9 @@ undeclared_joint = rule(
     "MB211",
     "undeclared-joint",
     ERROR,
-    what="A name that has to be a joint is not declared: of a <mimic>, in <ros2_control>, in a "
-    "<transmission>, of a parameter of a plugin or hardware class. It is an error in the first two.",
+    what="A name that has to be a joint is not declared. It is in a <mimic>, <ros2_control> or "
+    "<transmission>, or in a parameter of a plugin or hardware class. It is an error in the first "
+    "two.",
     why="robot_state_publisher never sends the transform of a joint that mimics it, and "
     "joint_state_publisher stops with a KeyError. From Jazzy on the controller manager rejects the "
     "description ('Joint ... not found in URDF'). A plugin leaves the joint out or does not run, and "
@@ -71,8 +72,8 @@ undeclared_sdf_name = rule(
     ERROR,
     what="A name in an attribute has white space before or after it that the declared name does "
     "not have.",
-    why="Parsers do not strip attributes: urdfdom looks for 'base ' with the space, does not find "
-    "it and rejects the file; ros2_control does not find the joint.",
+    why="Parsers do not strip attributes. urdfdom looks for 'base ' with the space, does not find "
+    "it and rejects the file. ros2_control does not find the joint.",
     fix="Delete the white space.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'

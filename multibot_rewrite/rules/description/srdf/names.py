@@ -60,7 +60,7 @@ other_robot = srdf_rule(
     ERROR,
     what="A group, chain, end effector or virtual joint names a link that the URDF does not have.",
     why="srdfdom leaves the link, chain, end effector or virtual joint out ('is not known to the "
-    "URDF'): the group is too small, or does not exist.",
+    "URDF'). The group is too small, or does not exist.",
     fix="Correct the name.",
     bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
     good='<group name="arm"><joint name="j"/><link name="b"/></group>',
@@ -130,7 +130,7 @@ def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
     "virtual-joint-not-at-root",
     WARNING,
     what="The child of a virtual joint is not the root link of the URDF.",
-    why="MoveIt ignores the joint ('does not match the URDF frame'): the robot is at the origin of "
+    why="MoveIt ignores the joint ('does not match the URDF frame'). The robot is at the origin of "
     "its model frame, which is the root link and not the intended frame.",
     fix="Use the root link.",
     bad=ARM + VIRTUAL.format("fixed", "b"),

@@ -94,7 +94,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
     "pair-without-shape",
     NOTE,
     what="Collision pairs name links that have no collision geometry.",
-    why="MoveIt has nothing to check there, so the lines have no effect: often the geometry was "
+    why="MoveIt has nothing to check there, so the lines have no effect. Often the geometry was "
     "forgotten, or the lines were made for another version of the URDF.",
     fix="Give the links a <collision>, or delete the lines.",
     bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',

@@ -44,8 +44,9 @@ def of_moveit(
 
 def level_of(subject: Subject) -> str:
     """How bad a name is that the URDF does not have, where it is no error: Pinocchio leaves a joint
-    of a state out and reads no group."""
-    return WARNING if is_pinocchios(subject.document.root) else ""
+    of a state out and reads no group; a URDF that was found may be another variant of the robot."""
+    is_named = subject.settings.urdf and not is_pinocchios(subject.document.root)
+    return "" if is_named else WARNING
 
 
 def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:

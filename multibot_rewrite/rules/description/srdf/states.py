@@ -153,7 +153,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
     "empty-group",
     WARNING,
     what="A group has no joint.",
-    why="MoveIt does not add it ('must have at least one valid joint'): there is no planning for "
+    why="MoveIt does not add it ('must have at least one valid joint'). There is no planning for "
     "it, and its states and end effectors are lost.",
     fix="Add a joint, link, chain or group, or delete it.",
     bad='<group name="arm"/>',

@@ -32,7 +32,7 @@ FAR = 50.0
     ERROR,
     what="The axis of a joint that moves is 0 0 0, or its <axis> has no xyz.",
     why="sdformat rejects the file ('The norm of the xyz vector cannot be zero'), and so does "
-    "MuJoCo; KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
+    "MuJoCo. KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
     fix='Write the axis: <axis xyz="0 0 1"/>; without <axis> it is 1 0 0.',
     bad=one_joint("revolute", '<axis xyz="0 0 0"/>', LIMIT),
     good=one_joint("revolute", '<axis xyz="0 0 1"/>', LIMIT),
@@ -51,8 +51,8 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
     "axis-length",
     WARNING,
     what="The axis of a joint does not have length 1. It is a note for a joint that turns.",
-    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it; MoveIt and yourdfpy "
-    "move a prismatic joint further by that factor: the planner's robot is not the one in tf. A "
+    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it. MoveIt and yourdfpy "
+    "move a prismatic joint further by that factor, so the planner's robot is not the one in tf. A "
     "program that does not normalize it turns a joint by another angle.",
     fix="Divide the axis by its length.",
     bad=one_joint("prismatic", '<axis xyz="0 0 2"/>', LIMIT),
@@ -99,7 +99,9 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
         useless = [it for it in ("limit", "mimic", "safety_controller") if it in joint.parts]
         if useless:
             tags = ", ".join(f"<{it}>" for it in useless)
-            yield Problem(joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {tags}")
+            message = f"fixed joint {joint.name!r} ignores its {tags}"
+            hint = f"delete {tags}, or correct the type of the joint"
+            yield Problem(joint.parts[useless[0]], message, None, hint)
 
 
 @rule(

@@ -248,8 +248,8 @@ Range = tuple[float, float]
     what="The soft limits of a <safety_controller> leave the joint no range; or one of them is "
     "outside of the joint's limits, which is a note.",
     why="A missing soft limit is 0. MoveIt, ros2_control and joint_state_publisher use the range "
-    "that is inside both kinds of limits: MoveIt cannot plan for a joint that can only be at 0, "
-    "and a soft limit outside has no effect.",
+    "that is inside both kinds of limits. MoveIt cannot plan for a joint that can only be at 0. A "
+    "soft limit outside has no effect.",
     fix="Write soft_lower_limit and soft_upper_limit inside of lower and upper, or delete the element.",
     bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
     good=one_joint(

@@ -27,8 +27,8 @@ from multibot_rewrite.rules.subject import Subject
     "mimic-loop",
     ERROR,
     what="Joints mimic each other in a loop, or a joint mimics itself.",
-    why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other') "
-    "and joint_state_publisher stops ('Found an infinite recursive mimic chain'); current sdformat "
+    why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other'). "
+    "joint_state_publisher stops ('Found an infinite recursive mimic chain'). Current sdformat "
     "rejects a joint that mimics itself.",
     fix="Delete the <mimic> of the joint that is driven.",
     bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
@@ -52,7 +52,7 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     NOTE,
     what="A joint mimics a joint that mimics another one.",
     why="MoveIt and joint_state_publisher follow the chain. robot_state_publisher goes through the "
-    "mimics once, by name: it sends no transform for one whose leader comes later in the alphabet, "
+    "mimics once, by name. It sends no transform for one whose leader comes later in the alphabet, "
     "unless joint_states has the leader.",
     fix="Use the first joint of the chain, and multiply the multipliers.",
     bad=two_joints('<mimic joint="j"/>')

@@ -36,8 +36,8 @@ CONTROLLER = "gz-sim-joint-position-controller-system"
     WARNING,
     what="A joint that mimics another one leaves its own limits before the other one reaches its "
     "limits.",
-    why="The simulator and MoveIt stop it at its limit: the two fingers no longer move together, "
-    "a closed chain is pulled apart, and MoveIt rejects the state as out of bounds.",
+    why="The simulator and MoveIt stop it at its limit. The two fingers no longer move together, a "
+    "closed chain is pulled apart, and MoveIt rejects the state as out of bounds.",
     fix="Give it the limits of the leader, times the multiplier and plus the offset, or correct "
     "these two.",
     bad=two_joints('<mimic joint="j" multiplier="2"/>'),
@@ -90,7 +90,7 @@ def _starting(value: str) -> str:
     WARNING,
     what="A joint starts at a position outside of its limits: initial_value in <ros2_control>, or "
     "initial_position of a joint position controller.",
-    why="gz_ros2_control and mock_components set it as it is: the robot jumps to a limit when it "
+    why="gz_ros2_control and mock_components set it as it is. The robot jumps to a limit when it "
     "is spawned, and MoveIt refuses to plan from there ('start state out of bounds').",
     fix="Start it between the limits; revolute joints take radians.",
     bad=_starting("1.57"),

@@ -20,6 +20,7 @@ from multibot_rewrite.rules.description.structure.shared import (
     fixed_joint,
     one_joint,
 )
+from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.subject import Subject
 
 # With more than this many pairs of names a search for the nearest one takes too long.
@@ -32,7 +33,8 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     "MB501",
     "several-roots",
     ERROR,
-    what="More than one link has no parent: the robot is in several pieces.",
+    what="More than one link has no parent: the robot is in several pieces. It is a warning in a "
+    "xacro file, which may be a part of one.",
     why="urdfdom rejects the file ('Two root links found'): no robot_state_publisher, no tf.",
     fix="Add the joint that connects the pieces.",
     bad=TWO_LINKS,
@@ -45,6 +47,7 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     found = roots(robot)
     if len(found) < 2:
         return
+    level = level_of_absence(subject)
     seen: set[str] = set()
     sizes = [len(reached(robot, [it.name], seen)) for it in found]
     main = found[sizes.index(max(sizes))]
@@ -54,7 +57,8 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
         if link is main or nearest(link.name, search):
             continue
         message = f"link {link.name!r} has no parent joint, like the root {main.name!r}"
-        yield Problem(link.element, message, "name", "add a joint that connects it")
+        hint = "add a joint that connects it"
+        yield Problem(link.element, message, "name", hint, level=level)
 
 
 @rule(
@@ -184,8 +188,8 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     "joint-to-itself",
     ERROR,
     what="A joint's parent and child are the same link.",
-    why="For urdfdom the link has a parent and is not a root: if it should be the root, urdfdom "
-    "rejects the file ('No root link found'); any other link is left out of tf and Gazebo.",
+    why="For urdfdom the link has a parent and is not a root. If it should be the root, urdfdom "
+    "rejects the file ('No root link found'). Any other link is missing in tf and Gazebo.",
     fix="Correct the parent link.",
     bad=a_link("a") + fixed_joint("j", "a", "a"),
     good=one_joint("fixed"),

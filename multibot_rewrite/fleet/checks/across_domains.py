@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a fleet whose robots are in several ROS domains needs, and what does not cross them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.fleet.file.domains import Apart
+from multibot_rewrite.fleet.fleet import Fleet, planned
+from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts
+from multibot_rewrite.spelling.domain_bridge import services_apart
+from multibot_rewrite.system.domains import domain_of
+from multibot_rewrite.system.records import MAY, System
+
+_DRIVE = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>
+  </gazebo>
+</robot>
+"""
+_FLEET = """\
+simulator: gazebo
+description: robot.urdf
+domains: {robot1: 11, robot2: 12}
+robots: [{name: robot1}, {name: robot2}]
+"""
+NOT_ACROSS = declare(
+    "MF849",
+    "not-across-domains",
+    ERROR,
+    what="Something of a fleet is in another ROS domain than what it works with: a plugin of the "
+    "simulator, which has one process, a service or an action, or a node that the launch file itself "
+    "has to reach.",
+    why="Nodes of two domains never see each other, and domain_bridge brings topics alone.",
+    fix="Give both one domain, or leave out `domains:`. Start the robots that the line names with a "
+    "launch of their own: `ros2 launch fleet.launch.py robots:=robot1`.",
+    bad=_FLEET,
+    good=_FLEET.replace("domains: {robot1: 11, robot2: 12}", "# one domain"),
+    line=3,
+    formats=("fleet",),
+    beside={"robot.urdf": _DRIVE},
+)
+
+
+def not_across(fleet: Fleet) -> Iterator[Finding]:
+    """What the plan of a fleet has in the wrong domain."""
+    apart = fleet.apart
+    plan = planned(fleet) if apart.domains else System()
+    yield from _of_simulator(apart, plan)
+    called: dict[tuple[str, int, int], list[str]] = {}
+    for end, own, other in services_apart(plan):
+        called.setdefault((end.node, own, other), []).append(end.name)
+    for (node, own, other), names in called.items():
+        message = f"{node} of domain {own} calls {shorten(names)}, which domain {other} has"
+        hint = "run both in one domain: services and actions do not cross"
+        yield _told(apart, message, hint, WARNING)
+
+
+def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
+    """The nodes of plugins, which are in the simulator's process."""
+    numbers = domain_of(plan)
+    own = [it for it in plan.nodes if it.plugin.file and numbers[it.robot] != numbers[""]]
+    if own:
+        where = f"is a plugin of the simulator, in domain {numbers['']}, and its robot is in"
+        level = WARNING if all(it.sure == MAY for it in own) else ERROR
+        hint = "write simulator: none for real robots, or leave out domains"
+        others = dict.fromkeys(it.robot for it in own if it.robot != own[0].robot)
+        message = f"{own[0].name} {where} {numbers[own[0].robot]}"
+        yield _told(apart, message, hint, level)._replace(others=tuple(others))
+
+
+def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
+    """Robots whose nodes the launch file has to reach: its own node is in one domain."""
+    reached = [it for it in starts.robots if _is_reached(it)]
+    several = {starts.domains.get(it.name, 0) for it in starts.robots}
+    if reached and len(several) > 1:
+        names = shorten(it.name for it in reached)
+        message = f"the launch file loads or activates nodes of {names}, from one domain"
+        first = f"ros2 launch fleet.launch.py robots:={reached[0].name}"
+        yield _told(apart, message, f"start each robot by itself: {first}", WARNING)
+
+
+def _is_reached(robot: RobotStarts) -> bool:
+    return any(it.components or it.brought_up for it in robot.starts)
+
+
+def _told(apart: Apart, message: str, hint: str, level: str) -> Finding:
+    file, line = apart.place
+    return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line, column=1)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A ROS domain for each robot, and what crosses between them: ``domains``, ``crossing`` and
+``free_fleet`` of a fleet file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import did_you_mean
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
+from multibot_rewrite.system.domains import USUAL_DOMAIN
+from multibot_rewrite.system.records import Domain
+
+if TYPE_CHECKING:
+    from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+
+DOMAINS, CROSSING, FREE_FLEET, SHARED = "domains", "crossing", "free_fleet", "shared_nodes"
+_NEED_DOMAINS = (CROSSING, FREE_FLEET)
+
+
+class FreeFleet(NamedTuple):
+    """What a plan does not say of free_fleet: where Zenoh's router is, the map's name in the building,
+    the waypoint of each robot's charger (``{robot}`` is its name)."""
+
+    router: str
+    map: str
+    charger: str
+
+
+class Apart(NamedTuple):
+    """The domain of each robot by its namespace, and of nodes of all robots; topics of each robot that
+    go to the latter; what free_fleet gets, if it is asked for; where the file says it. All is empty for
+    one domain."""
+
+    domains: tuple[Domain, ...] = ()
+    crossing: tuple[str, ...] = ()
+    free_fleet: FreeFleet | None = None
+    place: tuple[str, int] = ("", 1)
+
+
+TOGETHER = Apart()
+
+
+def apart_of(read: FleetData, robots: Sequence[RobotSpec]) -> Apart:
+    """What a fleet file says; raises InputError with its line where that does not fit together."""
+    data = read.data
+    for key in (it for it in _NEED_DOMAINS if it in data and DOMAINS not in data):
+        raise _wrong(read, key, f"write {DOMAINS} as well, with the domain of each robot")
+    if DOMAINS not in data:
+        return TOGETHER
+    given = data[DOMAINS]
+    for what in _faults(data, given, robots):
+        raise _wrong(read, DOMAINS, what)
+    numbers = {it.namespace: given[it.name] for it in robots}
+    numbers[""] = given.get(SHARED, USUAL_DOMAIN)
+    return Apart(
+        tuple(Domain(*it) for it in numbers.items()),
+        tuple(listed(data.get(CROSSING, []))),
+        _free_fleet(data.get(FREE_FLEET)),
+        read.places[DOMAINS,],
+    )
+
+
+def _free_fleet(given: Mapping[str, str] | None) -> FreeFleet | None:
+    if given is None:
+        return None
+    return FreeFleet(given["router"], given["map"], given.get("charger", "{robot}_charger"))
+
+
+def _wrong(read: FleetData, key: str, what: str) -> InputError:
+    file, line = read.places.get((key,), (read.file, 1))
+    return InputError(f"{file}:{line}: {key}: {what}")
+
+
+def _faults(
+    data: Mapping[str, Any], given: Mapping[str, int], robots: Sequence[RobotSpec]
+) -> Iterator[str]:
+    lacking = [it.name for it in robots if it.name not in given]
+    unknown = [it for it in given if it != SHARED and it not in {own.name for own in robots}]
+    if lacking:
+        near = next(filter(None, (did_you_mean(lacking[0], [it]) for it in unknown)), "")
+        yield f"{lacking[0]} has none; give it one{f' ({near})' if near else ''}"
+    if "zenoh" in data:
+        yield "the configurations of zenoh are for one domain; leave out one of the two"

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What free_fleet needs of a plan: the Zenoh bridge of each robot, and the robots of its fleet adapter.
+
+Source: open-rmf/free_fleet 002505f. The adapter reads ``ROBOT/tf`` and ``ROBOT/battery_state``, calls
+``ROBOT/navigate_to_pose`` (nav2_robot_adapter.py), looks up map -> ``robot_frame`` with what is on that
+tf topic alone, and wants ``navigation_stack`` and ``initial_map`` of each robot (fleet_adapter.py). Its
+bridges are of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
+(DEFAULT_CONFIG.json5 at 0b277b7).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import TF_TOPICS
+from multibot_rewrite.fleet.file.domains import FREE_FLEET, FreeFleet
+from multibot_rewrite.system.domains import domain_of
+from multibot_rewrite.system.ownership import Whose, whose_by_plan
+from multibot_rewrite.system.records import ACTION, SERVES, Robot, System
+
+ROBOTS_FILE = "robots.yaml"
+_BATTERY, _NAVIGATE = "battery_state", "navigate_to_pose"
+_ODOM, _MAP = "odom", "map"
+_BASES = ("base_footprint", "base_link")
+
+
+def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]]:
+    """Each file by its path; raises UsageError for names that the adapter does not look for."""
+    numbers, whose = domain_of(plan), whose_by_plan(plan)
+    for robot in plan.robots:
+        if problem := _not_served(plan, robot):
+            raise UsageError(f"{FREE_FLEET}: {problem}")
+        yield f"{FREE_FLEET}/{robot.name}.json5", _bridge(robot, numbers[robot.name], setup)
+    yield f"{FREE_FLEET}/{ROBOTS_FILE}", _robots(plan, setup, whose).encode()
+
+
+def _not_served(plan: System, robot: Robot) -> str:
+    """Why the adapter would find nothing of a robot; empty where it does."""
+    if robot.tf_topic != f"/{robot.name}/{TF_TOPICS[0]}":
+        wanted = f"its adapter reads /{robot.name}/tf, and {robot.name} has {robot.tf_topic}"
+        return f"{wanted}; take layout tf-per-robot or both"
+    name = f"/{robot.name}/{_NAVIGATE}"
+    if not any((it.kind, it.role, it.name) == (ACTION, SERVES, name) for it in plan.ends):
+        return f"no node of {robot.name} serves {name}; name the stack that does, as nav2"
+    return ""
+
+
+def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
+    battery = f"/{robot.name}/{_BATTERY}"
+    config = {
+        "plugins": {
+            "ros2dds": {
+                "domain": domain,
+                "allow": {
+                    "publishers": [robot.tf_topic, battery],
+                    "subscribers": [],
+                    "service_servers": [],
+                    "service_clients": [],
+                    "action_servers": [f"/{robot.name}/{_NAVIGATE}"],
+                    "action_clients": [],
+                },
+                "pub_max_frequencies": [f"{battery}=1"],
+            }
+        },
+        "mode": "client",
+        "connect": {"endpoints": [setup.router]},
+        "listen": {"endpoints": []},
+    }
+    about = f"On {robot.name}: zenoh-bridge-ros2dds -c {robot.name}.json5"
+    return f"// {about}\n{json.dumps(config, indent=2)}\n".encode()
+
+
+def _robots(plan: System, setup: FreeFleet, whose: Whose) -> str:
+    rows = [
+        "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.",
+        "rmf_fleet:",
+        "  robots:",
+    ]
+    for it in plan.robots:
+        told = {
+            "charger": setup.charger.replace("{robot}", it.name),
+            "navigation_stack": 2,
+            "initial_map": setup.map,
+            "map_frame": _map_frame(plan, it, whose),
+            "robot_frame": _robot_frame(plan, it, whose),
+        }
+        rows.append(f"    {it.name}:")
+        rows += [f"      {key}: {json.dumps(value)}" for key, value in told.items()]
+    return "\n".join((*rows, ""))
+
+
+def _map_frame(plan: System, robot: Robot, whose: Whose) -> str:
+    own = (it for it in robot.other_frames if whose.plain_frame(it) == _MAP)
+    return _MAP if _MAP in plan.shared_frames else next(own, _MAP)
+
+
+def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:
+    """What odometry moves: a fixed frame is on tf_static, which the adapter does not read."""
+    nodes = {it.name for it in plan.nodes if it.robot == robot.name}
+    moved = (
+        it.child
+        for it in plan.edges
+        if not nodes.isdisjoint(it.publishers) and whose.plain_frame(it.parent) == _ODOM
+    )
+    plain = {whose.plain_frame(it): it for it in robot.frames}
+    base = next((plain[it] for it in _BASES if it in plain), _BASES[0])
+    return next(moved, base)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A launch file in Python as it is written: its actions, and values that are read without running it.
+
+A value is plain where names that are assigned once, paths in packages that are there, and defaults of
+launch arguments lead to it. All else is unknown: a launch file is a program.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import yaml
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.packages import package_folder
+from multibot_rewrite.fleet.proposal.searching import text_of
+
+# What is not plain.
+UNKNOWN = object()
+_NODES = ("Node", "LifecycleNode", "ComposableNode")
+_INCLUDE, _DECLARE = "IncludeLaunchDescription", "DeclareLaunchArgument"
+# Calls that have the value of their first argument, and the name of that argument.
+_SAME = {
+    "ParameterFile": "param_file", "RewrittenYaml": "source_file", "ParameterValue": "value",
+    "TextSubstitution": "text", "PythonLaunchDescriptionSource": "", "str": "", "Path": "",
+    "AnyLaunchDescriptionSource": "", "ReplaceString": "source_file",
+}  # fmt: skip
+_PACKAGES = ("get_package_share_directory", "FindPackageShare", "get_package_share_path")
+_JOINS = ("join", "PathJoinSubstitution")
+# Names that lead to a value by way of others.
+_DEEPEST = 12
+
+
+class LaunchText(NamedTuple):
+    """A launch file: its calls that start nodes or include files, what it assigns to names once, and
+    the arguments that it declares, with their defaults."""
+
+    file: str
+    nodes: tuple[ast.Call, ...]
+    includes: tuple[ast.Call, ...]
+    assigned: Mapping[str, ast.expr]
+    declared: Mapping[str, ast.expr]
+
+
+@lru_cache(maxsize=512)
+def launch_text(path: str) -> LaunchText:
+    """Read a launch file; one that Python cannot parse has nothing."""
+    try:
+        every = list(ast.walk(ast.parse(text_of(path))))
+    except (SyntaxError, ValueError, RecursionError):
+        every = []
+    calls = [it for it in every if isinstance(it, ast.Call)]
+    declared = ((word_of(argument(it, "name", 0)), it) for it in _called(calls, _DECLARE))
+    return LaunchText(
+        path,
+        tuple(_called(calls, *_NODES)),
+        tuple(_called(calls, _INCLUDE)),
+        _assigned(every),
+        {name: it for name, call in declared if (it := argument(call, "default_value", 1))},
+    )
+
+
+def argument(call: ast.Call, name: str, at: int = -1) -> ast.expr | None:
+    """An argument of a call by its name, or its place."""
+    named = next((it.value for it in call.keywords if it.arg == name), None)
+    return named or (call.args[at] if 0 <= at < len(call.args) else None)
+
+
+def word_of(it: ast.expr | None) -> str:
+    """The text of a constant; empty for anything else."""
+    return it.value if isinstance(it, ast.Constant) and isinstance(it.value, str) else ""
+
+
+def _name(call: ast.Call) -> str:
+    return getattr(call.func, "id", "") or getattr(call.func, "attr", "")
+
+
+def _called(calls: Sequence[ast.Call], *names: str) -> Iterator[ast.Call]:
+    return (it for it in calls if _name(it) in names)
+
+
+def _assigned(every: Sequence[ast.AST]) -> dict[str, ast.expr]:
+    """Names that have one value in the whole file."""
+    found: dict[str, ast.expr | None] = {}
+    for it in every:
+        for target in it.targets if isinstance(it, ast.Assign) else ():
+            if isinstance(target, ast.Name) and isinstance(it, ast.Assign):
+                found[target.id] = None if target.id in found else it.value
+    return {name: it for name, it in found.items() if it is not None}
+
+
+class Reading(NamedTuple):
+    """A launch file with the values of its arguments."""
+
+    text: LaunchText
+    given: Mapping[str, Any]
+
+    def value(self, it: ast.expr | None, depth: int = 0) -> Any:
+        """The plain value of an expression, or UNKNOWN; raises nothing."""
+        read = _READERS.get(type(it))
+        return UNKNOWN if read is None or depth > _DEEPEST else read(self, it, depth + 1)
+
+    def path(self, it: ast.expr | None) -> str:
+        """The plain text of an expression, of its pieces one after the other; empty for none."""
+        found = self.value(it)
+        pieces = found if isinstance(found, list) else [found]
+        return "".join(pieces) if all(isinstance(one, str) for one in pieces) else ""
+
+
+def _constant(_: Reading, it: Any, __: int) -> Any:
+    return it.value
+
+
+def _number(reading: Reading, it: Any, depth: int) -> Any:
+    found = reading.value(it.operand, depth)
+    negative = isinstance(it.op, ast.USub) and type(found) in (int, float)
+    return -found if negative else UNKNOWN
+
+
+def _of_name(reading: Reading, it: Any, depth: int) -> Any:
+    return reading.value(reading.text.assigned.get(it.id), depth)
+
+
+def _list(reading: Reading, it: Any, depth: int) -> Any:
+    found = [reading.value(one, depth) for one in it.elts]
+    return UNKNOWN if UNKNOWN in found else found
+
+
+def _sum(reading: Reading, it: Any, depth: int) -> Any:
+    both = reading.value(it.left, depth), reading.value(it.right, depth)
+    if not all(isinstance(one, str) for one in both) or not isinstance(it.op, ast.Add | ast.Div):
+        return UNKNOWN
+    return os.path.join(*both) if isinstance(it.op, ast.Div) else "".join(both)
+
+
+def _call(reading: Reading, it: Any, depth: int) -> Any:
+    name = _name(it)
+    if name == "LaunchConfiguration":
+        return _configured(reading, word_of(argument(it, "variable_name", 0)), depth)
+    if name in _PACKAGES:
+        return _folder(reading, reading.value(argument(it, "package", 0), depth))
+    if name in _JOINS:
+        pieces = (
+            it.args if name == "join" else getattr(argument(it, "substitutions", 0), "elts", [])
+        )
+        found = [reading.value(one, depth) for one in pieces]
+        texts = found and all(isinstance(one, str) for one in found)
+        return os.path.join(*found) if texts else UNKNOWN
+    return reading.value(argument(it, _SAME[name], 0), depth) if name in _SAME else UNKNOWN
+
+
+def _configured(reading: Reading, name: str, depth: int) -> Any:
+    """An argument as it was given, or its default; launch makes numbers and truth of the text."""
+    found = reading.given.get(name, UNKNOWN)
+    if found is UNKNOWN and name not in reading.given:
+        found = reading.value(reading.text.declared.get(name), depth)
+    try:
+        return yaml.safe_load(found) if isinstance(found, str) and found else found
+    except yaml.YAMLError:
+        return found
+
+
+def _folder(reading: Reading, package: Any) -> Any:
+    found = package_folder(package, reading.text.file, ()) if isinstance(package, str) else ""
+    return os.path.relpath(found) if found else UNKNOWN
+
+
+_READERS: Mapping[type, Callable[[Reading, Any, int], Any]] = {
+    ast.Constant: _constant, ast.UnaryOp: _number, ast.Name: _of_name, ast.List: _list,
+    ast.Tuple: _list, ast.BinOp: _sum, ast.Call: _call,
+}  # fmt: skip

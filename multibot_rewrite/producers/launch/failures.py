@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What goes wrong when a launch file is read: what is missing, and what fails on every machine."""
+
+from __future__ import annotations
+
+import os
+import re
+from traceback import extract_tb
+from types import FrameType
+
+from multibot_rewrite.producers.launch.package_files import ROOTS
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
+from multibot_rewrite.producers.launch.unknown_modules import is_unknown
+
+# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
+_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
+_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
+# ament_index_python and Python say it so; the share folder of a package that is stood in for
+# (source_packages.py).
+_NOT_FOUND = re.compile(
+    rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
+)
+_ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
+NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
+
+
+def failure(error: BaseException) -> str:
+    """What went wrong, in one line; for a package that is missing what to do."""
+    name = missing_package(error) or missing_module(error)
+    if name:
+        return not_installed(name)
+    if variable := _variable(error):
+        return f"the environment variable {variable} is not set here; set it as for ros2 launch"
+    if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
+        return f"it starts the program {error.filename!r} itself, which is not installed here"
+    if isinstance(error, SystemExit):
+        hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
+        return f"it ends itself (sys.exit({error.code!r})); {hint}"
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def _variable(error: BaseException) -> str:
+    """The environment variable that os.environ has not; empty for another fault."""
+    # launch has an error of its own around it.
+    error = error.__cause__ or error
+    frame = _frame(error)
+    of_os = frame is not None and frame.f_globals.get("__name__") == "os"
+    if of_os and isinstance(error, KeyError):
+        return str(error.args[0])
+    # os.getenv gives None, which is no part of a path.
+    lines = [it.line or "" for it in extract_tb(error.__traceback__)]
+    asked = _ASKED.findall(" ".join(lines)) if isinstance(error, TypeError) else []
+    return next((it for it in asked if it not in os.environ), "")
+
+
+def _is_program(name: str) -> bool:
+    return bool(name) and "/" not in name and "." not in name
+
+
+def not_installed(name: str) -> str:
+    """What is said of a package that is missing."""
+    return f"package {name!r} is not installed here; {ROOTS}"
+
+
+def missing_package(error: BaseException) -> str:
+    """The package of ROS that was not found; empty for another fault."""
+    found = _NOT_FOUND.search(str(error))
+    return (found[1] or found[2] or "") if found else ""
+
+
+def missing_module(error: BaseException) -> str:
+    """The Python package that was not found; empty for another fault."""
+    found = _NOT_FOUND.search(str(error))
+    return (found[3] or "") if found else ""
+
+
+def is_certain(error: BaseException, launch_file: str) -> bool:
+    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
+    or the launch file itself raises what names no file or device of a machine."""
+    if isinstance(error, FileNotFoundError):
+        folder = os.path.dirname(os.path.realpath(launch_file))
+        return str(error.filename or "").startswith(f"{folder}/")
+    frame = _frame(error)
+    own = frame is not None and frame.f_code.co_filename.endswith(".launch.py")
+    # What is taken of a module that is not there does not fail where it is.
+    known = frame is None or not any(map(is_unknown, (frame.f_globals | frame.f_locals).values()))
+    return own and known and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
+
+
+def _frame(error: BaseException) -> FrameType | None:
+    """Where it was raised."""
+    last = error.__traceback__
+    while last is not None and last.tb_next is not None:
+        last = last.tb_next
+    return last.tb_frame if last is not None else None

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Paths that a launch file names, as they are when the launch has been read: what it makes is gone."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+
+LIMIT = 1 << 24
+
+
+def is_made(path: str) -> bool:
+    """Is it a file of the launch itself?"""
+    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+
+
+def lasting(words: Iterable[str]) -> Iterator[str]:
+    """Words with paths that are there when the launch is over: the folder with links to sources is gone
+    then. Of a file that the launch makes its text is kept (``-string``)."""
+    before = ""
+    for word in words:
+        made = before == "-file" and is_made(word) and os.path.isfile(word)
+        if before:
+            yield "-string" if made else before
+        inside = word.startswith(tempfile.gettempdir() + os.sep) and not is_made(word)
+        before = read_text(word) if made else os.path.realpath(word) if inside else word
+    if before:
+        yield before
+
+
+def read_text(path: str) -> str:
+    """The text of a file, up to a limit."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        return file.read(LIMIT)
+
+
+def kept_file(path: str) -> str:
+    """The real path of a file that is there when the launch is over, else nothing."""
+    if "\n" in path:
+        return ""
+    return "" if is_made(path) or not os.path.isfile(path) else os.path.realpath(path)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A plan whose robots are in several ROS domains, and what was seen in each -> findings.
+
+Each domain is held against its part of the plan: who is in another one is never met. Robots are held
+against each other wherever they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Set
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.pair.nodes import missing_node, missing_robot, unplanned_node
+from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
+from multibot_rewrite.system.records import System
+
+_MISSING = frozenset((missing_node.code, missing_robot.code))
+
+
+def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
+    """What is other than planned in the domains that were looked at, and wrong there."""
+    found = [
+        _told(it, number, plan, seen)
+        for number, part in by_domain(plan).items()
+        if number in seen
+        for it in check(part, seen[number])
+        if not _is_planned_elsewhere(it, number, plan)
+    ]
+    found += _across(plan, seen, {name for it in found for name in it.names})
+    return sorted(found, key=lambda it: it.code)
+
+
+def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterator[Finding]:
+    """In what robots of several domains differ."""
+    together = check(plan._replace(domains=()), side_by_side(seen)) if len(seen) > 1 else ()
+    return (it for it in together if it.code in COMPARED and told.isdisjoint(it.names))
+
+
+def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
+    """The finding with its domain, and where what is missing runs instead."""
+    nodes = {own.name for own in plan.nodes if own.robot == it.robot}
+    wanted = nodes if it.code == missing_robot.code else {it.node}
+    elsewhere = [
+        other
+        for other, view in seen.items()
+        if it.code in _MISSING and other != number and wanted & {own.name for own in view.nodes}
+    ]
+    said = _of_bridge(it._replace(message=f"{it.message}, in domain {number}"), plan)
+    if not elsewhere:
+        return said
+    hint = f"it runs in domain {elsewhere[0]}: start it with ROS_DOMAIN_ID={number}"
+    return said._replace(hint=hint, file="", line=0)
+
+
+def _of_bridge(it: Finding, plan: System) -> Finding:
+    """Without a bridge that is missing on one side nothing crosses."""
+    own = {one.name for one in plan.nodes if one.stack == DOMAIN_BRIDGE}
+    if it.code != missing_node.code or it.node not in own:
+        return it
+    level = ERROR if it.level == WARNING else it.level
+    hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
+    return it._replace(level=level, hint=hint)
+
+
+def _is_planned_elsewhere(it: Finding, number: int, plan: System) -> bool:
+    """Is it a node that is planned, for another domain? It is told where it is missing."""
+    numbers = domain_of(plan)
+    own = {one.name: numbers[one.robot] for one in plan.nodes}
+    return it.code == unplanned_node.code and own.get(it.node, number) != number

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What crosses from one ROS domain to another: the nodes of domain_bridge in a plan, and its files.
+
+Source: ros2/domain_bridge c2523e1. Its process has a node ``NAME_DOMAIN`` in each domain, without
+namespace and without the process's rules (domain_bridge.cpp, get_node_for_domain). A file names topics
+alone, each once; services and actions do not cross (parse_domain_bridge_yaml_config.cpp). What is
+latched keeps the last ten messages unless the file says more (qos_options.hpp).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.system.domains import domain_of
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+    Node,
+    System,
+)
+
+# What such a node is from, and the folder of the files.
+DOMAIN_BRIDGE = "domain_bridge"
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+# Types of what is sent once and kept for who comes later, and the last part of such topics' names.
+_LATCHED_TYPES = frozenset({"nav_msgs/msg/OccupancyGrid"})
+_LATCHED_NAMES = ("tf_static", "robot_description")
+# As many as a listener to tf_static keeps (tf2_ros qos.hpp).
+_LATCHED_DEPTH = 100
+
+
+class Crossing(NamedTuple):
+    """A topic that goes from a robot's domain to that of all robots, or back."""
+
+    robot: str
+    name: str
+    type: str
+    out: bool
+
+
+def bridge_name(robot: str) -> str:
+    """What the bridge of a robot is called."""
+    return f"{robot.replace('/', '_')}_bridge"
+
+
+def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
+    """The plan with a bridge for each robot that has something to bring; ``given`` are topics of each
+    robot that go to the domain of all robots, besides what nodes of the plan need.
+
+    Raises UsageError for one that no robot has.
+    """
+    found = crossings(plan, given)
+    numbers, nodes, ends = domain_of(plan), [*plan.nodes], [*plan.ends]
+    for robot in dict.fromkeys(it.robot for it in found):
+        name, own = bridge_name(robot), [it for it in found if it.robot == robot]
+        here, there = f"/{name}_{numbers[robot]}", f"/{name}_{numbers['']}"
+        made = [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
+        nodes += [it._replace(stack=DOMAIN_BRIDGE) for it in made]
+        for it in own:
+            from_, to = (here, there) if it.out else (there, here)
+            ends.append(planned_end(from_, TOPIC, SUBSCRIBES, it.name, it.type, it.name))
+            ends.append(planned_end(to, TOPIC, PUBLISHES, it.name, it.type, it.name))
+    return plan._replace(nodes=tuple(nodes), ends=tuple(ends))
+
+
+def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
+    """What a node of one domain reads and none of its domain sends, and what is asked for."""
+    numbers = domain_of(plan)
+    found = [*_needed(plan, numbers), *_given(plan, numbers, given)]
+    return sorted(dict.fromkeys(found))
+
+
+def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
+    robot_of = {it.name: it.robot for it in plan.nodes}
+    ends: dict[tuple[str, str], dict[str, End]] = defaultdict(dict)
+    for it in plan.ends:
+        if it.kind == TOPIC and it.name not in SENT_BY_EVERY_NODE:
+            ends[it.name, it.role][robot_of[it.node]] = it
+    for (name, role), readers in ends.items():
+        senders = ends.get((name, PUBLISHES), {}) if role == SUBSCRIBES else {}
+        at = {numbers[it] for it in senders}
+        for reader, end in readers.items():
+            if at and numbers[reader] not in at:
+                pairs = ((reader, it) for it in senders if "" in (reader, it))
+                for one, other in pairs:
+                    yield Crossing(one or other, name, _type_of(end, senders[other]), not one)
+    if any(it.name == CLOCK and PUBLISHES in it.bridge for it in plan.topics):
+        apart = (it for it, number in numbers.items() if number != numbers[""])
+        yield from (Crossing(it, CLOCK, CLOCK_TYPE, False) for it in apart)
+
+
+def _type_of(*ends: End) -> str:
+    return next((it.type for it in ends if it.type), "")
+
+
+def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
+    robot_of = {it.name: it.robot for it in plan.nodes}
+    known: dict[str, dict[str, Crossing]] = defaultdict(dict)
+    for it in plan.ends:
+        robot = robot_of[it.node]
+        if it.kind == TOPIC and it.type and robot and numbers[robot] != numbers[""]:
+            for word in (it.name, it.code_name.removeprefix("~").strip("/")):
+                known[word].setdefault(robot, Crossing(robot, it.name, it.type, True))
+    for word in given:
+        own = known.get(word) or known.get(word.strip("/"))
+        if own is None:
+            names = [it for it in known if not it.startswith("/")]
+            near = did_you_mean_one_of(word, names) or "add the node that has it"
+            raise UsageError(f"crossing: no robot has a topic {word!r} by the plan; {near}")
+        yield from own.values()
+
+
+def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
+    """Services and actions that are called in one domain and served in another alone, with both."""
+    numbers = domain_of(plan)
+    at = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
+    served: dict[tuple[str, str], set[int]] = defaultdict(set)
+    for it in plan.ends if numbers else ():
+        if it.role == SERVES:
+            served[it.kind, it.name].add(at[it.node])
+    for it in plan.ends:
+        own = served.get((it.kind, it.name), ()) if it.role == CALLS else ()
+        if own and at[it.node] not in own:
+            yield it, at[it.node], min(own)
+
+
+def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
+    """By path: the file of each robot's bridge, as the plan has it."""
+    numbers = domain_of(plan)
+    for robot, number in numbers.items():
+        name = bridge_name(robot)
+        own = [it for it in plan.ends if it.node == f"/{name}_{number}"]
+        if robot and own:
+            yield bridge_path(robot), _file(name, number, numbers[""], own).encode()
+
+
+def bridge_path(robot: str) -> str:
+    """Where the file of a robot's bridge goes."""
+    return f"{DOMAIN_BRIDGE}/{bridge_name(robot)}.yaml"
+
+
+def _file(name: str, own: int, shared: int, ends: Iterable[End]) -> str:
+    rows = [f"name: {name}", f"from_domain: {own}", f"to_domain: {shared}", "topics:"]
+    for it in ends:
+        rows += [f"  {it.name}:", f"    type: {it.type}"]
+        if it.role == PUBLISHES:
+            rows += [f"    from_domain: {shared}", f"    to_domain: {own}"]
+        if it.type in _LATCHED_TYPES or it.name.rpartition("/")[2] in _LATCHED_NAMES:
+            qos = f"reliability: reliable, durability: transient_local, depth: {_LATCHED_DEPTH}"
+            rows.append(f"    qos: {{{qos}}}")
+    return "\n".join((*rows, ""))

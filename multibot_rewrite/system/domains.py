@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A plan whose robots are in several ROS domains -> the plan of each: nodes of two domains never meet,
+so what has one name in two of them is no clash. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Set
+
+from multibot_rewrite.system.merging import WORST_LAST
+from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import Environment, System
+
+# That of nodes of all robots, where a plan does not say another.
+USUAL_DOMAIN = 0
+
+
+def domain_of(plan: System) -> dict[str, int]:
+    """By robot, and for all robots (empty name): its domain; empty for a plan of one domain."""
+    if not plan.domains:
+        return {}
+    told = {it.robot: it.number for it in plan.domains}
+    shared = told.get("", USUAL_DOMAIN)
+    return {"": shared, **{it.name: told.get(it.name, shared) for it in plan.robots}}
+
+
+def by_domain(plan: System) -> dict[int, System]:
+    """The plan of each domain in which a node has to run, without what is open in the plan; empty for a
+    plan of one domain."""
+    numbers = domain_of(plan)
+    own = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
+    return {it: _part(plan, numbers, own, it) for it in sorted({*own.values()})}
+
+
+def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
+    nodes = {it for it, number in own.items() if number == at}
+    robots = tuple(it for it in plan.robots if numbers[it.name] == at)
+    ends = tuple(it for it in plan.ends if it.node in nodes)
+    return plan._replace(
+        nodes=tuple(it for it in plan.nodes if it.name in nodes),
+        ends=ends,
+        edges=tuple(it for it in plan.edges if nodes.issuperset(it.publishers)),
+        parameters=tuple(it for it in plan.parameters if it.node in nodes),
+        robots=robots,
+        topics=tuple(it for it in plan.topics if it.name in _named(plan, numbers, at)),
+        gaps=(),
+        domains=(),
+    )
+
+
+def _named(plan: System, numbers: Mapping[str, int], at: int) -> Set[str]:
+    """The topics of which the plan says more that are those of a robot of this domain, or of all."""
+    robot = whose_by_plan(plan).robot
+    return {it.name for it in plan.topics if numbers[robot(it.name)] == at}
+
+
+def side_by_side(seen: Mapping[int, System]) -> System:
+    """What was seen of all domains as one view, to be shown, and to hold robots against each other;
+    what is said of a view names its domain."""
+    views = tuple(seen.values())
+    first = views[0]
+    return first._replace(
+        nodes=tuple(it for one in views for it in one.nodes),
+        ends=tuple(it for one in views for it in one.ends),
+        edges=tuple(it for one in views for it in one.edges),
+        heard=tuple(it for one in views for it in one.heard),
+        parameters=tuple(it for one in views for it in one.parameters),
+        controllers=tuple(it for one in views for it in one.controllers),
+        environment=_around(seen),
+    )
+
+
+def _around(seen: Mapping[int, System]) -> Environment:
+    looks = [it.environment for it in seen.values()]
+    return looks[0]._replace(
+        participants=sum(it.participants for it in looks),
+        settled=max((it.settled for it in looks), key=WORST_LAST.index),
+        seconds=max(it.seconds for it in looks),
+        caveats=tuple(
+            it._replace(message=f"domain {number}: {it.message}")
+            for number, one in seen.items()
+            for it in one.environment.caveats
+        ),
+    )

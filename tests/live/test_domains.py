@@ -1,0 +1,154 @@
+"""A plan whose robots are in several ROS domains, held against what was seen in each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from plans import PlannedRobot, planned
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.spelling.domain_bridge import with_bridges
+from multibot_rewrite.spelling.plan import planned_end
+from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.system.domains import by_domain
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    TOPIC,
+    Domain,
+    End,
+    Environment,
+    Node,
+    System,
+)
+
+ODOM, MAP = "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid"
+NUMBERS = {"": 10, "robot1": 11, "robot2": 12}
+
+
+def plan() -> System:
+    """Two robots that read the map of all, and whose odometry a monitor of all reads."""
+    robots = [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in ("robot1", "robot2")]
+    ends = [
+        planned_end("/map_server", TOPIC, PUBLISHES, "/map", MAP, "/map"),
+        *(
+            end
+            for it in ("robot1", "robot2")
+            for end in (
+                planned_end(f"/{it}/drive", TOPIC, PUBLISHES, f"/{it}/odom", ODOM, "odom"),
+                planned_end(f"/{it}/drive", TOPIC, SUBSCRIBES, "/map", MAP, "/map"),
+            )
+        ),
+    ]
+    made = planned("both", robots, ("/map_server",), ("/map",), ("map",), tuple(ends))
+    domains = tuple(Domain(*it) for it in NUMBERS.items())
+    return with_bridges(made._replace(domains=domains), ["odom"])
+
+
+def as_planned() -> dict[int, System]:
+    """What is seen of each domain where all runs."""
+    found = {}
+    for number, part in by_domain(plan()).items():
+        nodes = tuple(Node(it.name, f"p{at}") for at, it in enumerate(part.nodes))
+        ends = tuple(it._replace(code_name="") for it in part.ends)
+        around = Environment(domain=number, rmw="rmw_fastrtps_cpp")
+        found[number] = System(nodes, ends, environment=around)
+    return found
+
+
+def without(seen: System, *nodes: str) -> System:
+    return seen._replace(
+        nodes=tuple(it for it in seen.nodes if it.name not in nodes),
+        ends=tuple(it for it in seen.ends if it.node not in nodes),
+    )
+
+
+def found_in(seen: dict[int, System]) -> list[Finding]:
+    return check_domains(plan(), seen)
+
+
+def test_all_as_planned_is_quiet() -> None:
+    assert found_in(as_planned()) == []
+
+
+def test_one_name_in_two_domains_is_no_clash() -> None:
+    """A tool and a topic with one name in each of two domains; in one domain they are two nodes."""
+    seen = as_planned()
+    for number in (11, 12):
+        here = seen[number]
+        end = End(TOPIC, PUBLISHES, "/initialpose", "t/msg/T", "", "/rviz2", None, "")
+        seen[number] = here._replace(nodes=(*here.nodes, Node("/rviz2")), ends=(*here.ends, end))
+    assert [it.code for it in found_in(seen)] == []
+    twice = seen[11]._replace(nodes=(*seen[11].nodes, Node("/robot1/drive", "other")))
+    assert "MG301" in {it.code for it in found_in({**seen, 11: twice})}
+
+
+def test_a_topic_that_has_to_cross_is_looked_for_on_both_sides() -> None:
+    seen = as_planned()
+    seen[10] = without(seen[10], "/robot1_bridge_10")
+    (here,) = (it for it in found_in(seen) if it.code == "MG101")
+    assert here.node == "/robot1_bridge_10"
+    assert (here.level, here.message[-14:]) == ("error", ", in domain 10")
+    seen = as_planned()
+    seen[12] = without(seen[12], "/robot2_bridge_12")
+    told = found_in(seen)
+    assert {it.node for it in told if it.code == "MG101"} == {"/robot2_bridge_12"}
+    assert all(it.message.endswith(", in domain 12") for it in told)
+
+
+def test_a_topic_that_a_bridge_does_not_bring() -> None:
+    """The bridge runs, and its file lacks the topic."""
+    seen = as_planned()
+    seen[11] = seen[11]._replace(ends=tuple(it for it in seen[11].ends if "bridge" not in it.node))
+    told = found_in(seen)
+    assert {(it.node, *it.names) for it in told if it.code == "MG102"} == {
+        ("/robot1_bridge_11", "/map"),
+        ("/robot1_bridge_11", "/robot1/odom"),
+    }
+
+
+def test_a_robot_in_the_domain_of_another_is_told_once() -> None:
+    seen = as_planned()
+    moved = [it for it in seen[12].nodes if it.name.startswith("/robot2/")]
+    ends = [it for it in seen[12].ends if it.node.startswith("/robot2/")]
+    seen[12] = without(seen[12], *(it.name for it in moved))
+    seen[11] = seen[11]._replace(nodes=(*seen[11].nodes, *moved), ends=(*seen[11].ends, *ends))
+    about = [it for it in found_in(seen) if "robot2" in (it.robot, it.node.split("/")[1:2] or "")]
+    hints = {it.hint for it in about if it.code in ("MG101", "MG109")}
+    assert hints == {"it runs in domain 11: start it with ROS_DOMAIN_ID=12"}
+    assert not [it for it in found_in(seen) if it.code == "MG108"]
+
+
+def saved(folder: Path, seen: dict[int, System]) -> list[str]:
+    words = []
+    for number, view in seen.items():
+        file = folder / f"{number}.json"
+        file.write_bytes(to_json(view))
+        words += ["--snapshot", str(file)]
+    return words
+
+
+def test_saved_snapshots_are_told_apart_by_their_domains(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "plan.yaml").write_text(to_yaml(plan()))
+    words = ["check", str(tmp_path / "plan.yaml")]
+    seen = as_planned()
+    assert main([*words, *saved(tmp_path, seen)]) == 0
+    broken = {**seen, 11: without(seen[11], "/robot1/drive")}
+    capsys.readouterr()
+    assert main([*words, *saved(tmp_path, broken)]) == 1
+    assert "in domain 11" in capsys.readouterr().out
+    # One domain alone, and too few of them.
+    one = saved(tmp_path, {12: broken[12]})
+    assert main([*words, "--domain", "12", *one]) == 0
+    assert main([*words, *one]) == 2
+    assert "give one of each of 10, 11, 12" in capsys.readouterr().err
+    assert main([*words, "--domain", "13"]) == 2
+    assert "the plan has no node there; it has 10, 11, 12" in capsys.readouterr().err
+    assert main([*words, "--watch"]) == 2
+    assert "give one with --domain (10, 11, 12)" in capsys.readouterr().err

@@ -1,0 +1,61 @@
+"""Sentences are short: in messages, rules, help and the pages that a user reads first."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import said_texts
+from paths import ROOT
+
+from multibot_rewrite.lint import catalogue
+
+MOST = 25
+PAGES = (
+    ROOT / "README.md",
+    *sorted(ROOT.glob("examples/*/README.md")),
+    *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
+    *(ROOT / "docs" / f"{it}.md" for it in ("index", "fleet-file", "check", "launch")),
+    *(ROOT / "docs" / f"{it}.md" for it in ("architecture", "coming-from")),
+)
+# Texts of the code that are no message: XML, Python, the examples of rules, a list of words.
+NO_MESSAGE = re.compile(
+    r"</|/>|<sdf|^def |^ankle arm |^(running|planned|as planned): ", re.MULTILINE
+)
+
+
+def test_a_long_sentence_is_seen() -> None:
+    short, long = "one " * MOST, "one " * (MOST + 1)
+    assert list(said_texts.long_sentences(f"{short}. {short}", MOST)) == []
+    assert list(said_texts.long_sentences(f"`{long}` {short[4:]}", MOST)) == []
+    assert list(said_texts.long_sentences(f"{short}. {long}. {short}", MOST)) == [f"{long}."]
+    assert list(said_texts.long_parts(f"{short}; {short}", MOST)) == []
+    assert list(said_texts.long_parts(f"{short}; {long}", MOST)) == [long.strip()]
+
+
+def test_rules_have_short_sentences() -> None:
+    found = {place: [*said_texts.long_sentences(it, MOST)] for place, it in said_texts.rule_words()}
+    assert {place: it for place, it in found.items() if it} == {}
+
+
+def test_help_has_short_sentences() -> None:
+    found = {place: [*said_texts.long_parts(it, MOST)] for place, it in said_texts.help_words()}
+    assert {place: it for place, it in found.items() if it} == {}
+
+
+@pytest.mark.more
+def test_messages_have_short_sentences() -> None:
+    examples = {text for it in catalogue.rules().values() for text in (it.bad, it.good, it.fixed)}
+    found = [
+        (place, part)
+        for place, text in said_texts.messages()
+        if not NO_MESSAGE.search(text) and text not in examples
+        for part in said_texts.long_parts(text, MOST)
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda it: str(it.relative_to(ROOT)))
+def test_a_page_has_short_sentences(page: Path) -> None:
+    assert list(said_texts.long_sentences_of_a_page(page, MOST)) == []

@@ -1,0 +1,150 @@
+"""The packages of fixtures/adopted_packages.tsv under ``multibot adopt``, judged by xacro itself.
+
+``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: each
+configuration is expanded by xacro before and after, without a prefix and with one. MIRRORS has clones,
+``OWNER+NAME/repo``. docs/measurements.md has the table.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from adopted_packages import checkout
+from joined_duals import expanded
+from lxml import etree
+from vendor_sources import install, packages_below
+
+from multibot_rewrite import adopt
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.joining.part import prefixing
+from multibot_rewrite.description.readback.xml import plain
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.refactor.adopt import Adopted
+
+LIST = Path(__file__).parents[2] / "fixtures/adopted_packages.tsv"
+PREFIX, WANTED = "robot1_", 20
+# What is left, by words of its reason.
+KINDS = {
+    "code": "code names",
+    "data": "it names",
+    "composed": "put together",
+    "unsaid": "no element says",
+    "launch": "by hand",
+    "unproved": "not proved",
+}
+
+
+class Judged(NamedTuple):
+    """Configurations that xacro makes the same of without a prefix, and what a rewrite makes with one,
+    of how many; ``wrong`` are those that it does not."""
+
+    every: int
+    same: int
+    named: int
+    wrong: tuple[str, ...]
+
+
+def rows() -> list[dict[str, str]]:
+    lines = (it for it in LIST.read_text().splitlines() if not it.startswith("#"))
+    return list(csv.DictReader(lines, delimiter="\t"))
+
+
+def renamed(text: bytes) -> list[object]:
+    """The elements of a description with a prefix, as a rewrite makes them."""
+    prepared = pipeline.prepare(text, "robot.urdf", prefixing(), builtin_tree((), "jazzy"))
+    return elements(next(pipeline.render(prepared, [PREFIX], again=True)))
+
+
+def elements(text: bytes) -> list[object]:
+    root = etree.fromstring(text)
+    return [dict(root.attrib), *map(plain, root.iterchildren("*"))]
+
+
+def judged(made: Adopted, environment: Mapping[str, str]) -> Judged:
+    """Every configuration of a package whose files are on the disk as they were."""
+    given: list[tuple[str, dict[str, str]]] = [(it, {}) for it in made.proved]
+    for it in made.configurations:
+        path, *words = it.split(" ")
+        given.append((path, dict(word.split(":=", 1) for word in words)))
+    before = [_text(path, arguments, environment) for path, arguments in given]
+    for path, data in made.after.items():
+        Path(path).write_bytes(data)
+    same, named, wrong = 0, 0, []
+    for (path, arguments), old in zip(given, before, strict=True):
+        new = expanded(Path(path), arguments, environment)
+        whole = (
+            elements(new) == elements(old) if not old.count(b"xacro") else _bare(new) == _bare(old)
+        )
+        other = expanded(Path(path), {**arguments, made.argument: PREFIX}, environment)
+        is_srdf = path.removesuffix(".xacro").endswith(".srdf")
+        equal = is_srdf or elements(other) == renamed(old)
+        same, named = same + whole, named + equal
+        if not whole or not equal:
+            wrong.append(" ".join((os.path.basename(path), *arguments.values())))
+    return Judged(len(given), same, named, tuple(wrong))
+
+
+def _text(path: str, arguments: dict[str, str], environment: Mapping[str, str]) -> bytes:
+    """A description before; a plain one becomes a xacro."""
+    if os.path.exists(path):
+        return expanded(Path(path), arguments, environment)
+    return Path(path.removesuffix(".xacro")).read_bytes()
+
+
+def _bare(text: bytes) -> bytes:
+    """Without xacro's own comment."""
+    return text[text.find(b"<robot") :]
+
+
+def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
+    """What adopt makes of a package, and what xacro makes of that."""
+    repo = mirrors / row["repository"].replace("/", "+") / "repo"
+    with TemporaryDirectory() as at, TemporaryDirectory() as prefix:
+        home = checkout(repo, row["commit"], Path(at))
+        try:
+            made = adopt(str(home / row["package"]))
+        except MultibotError as error:
+            return ("refused", str(error).replace(at, ""))
+        if not made.argument:
+            return ("has one", ", ".join(sorted(set(made.already.values()))))
+        environment = install(packages_below(home), Path(prefix), {})
+        found = judged(made, environment)
+        left = Counter(
+            next((k for k, word in KINDS.items() if word in it.why), "?") for it in made.left
+        )
+        return (
+            "counts",
+            made.argument,
+            f"{len(made.proved)} descriptions",
+            f"{len(made.configurations)} others",
+            f"{len(made.after)} files",
+            f"{found.same} of {found.every} the same",
+            f"{found.named} of {found.every} as rewritten",
+            "left " + (", ".join(f"{n} {it}" for it, n in left.items()) or "nothing"),
+            f"{len(made.unread)} unread, {len(made.already)} have one",
+            *found.wrong,
+        )
+
+
+def every(mirrors: Path, first: int, last: int) -> Iterator[tuple[str, ...]]:
+    many = 0
+    for row in rows()[first:last]:
+        found = one(row, mirrors)
+        many += found[0] == "counts"
+        yield row["repository"], row["commit"][:8], row["package"], *found
+        if many == WANTED:
+            return
+
+
+if __name__ == "__main__":
+    ends = [int(it) for it in sys.argv[2:]]
+    for it in every(Path(sys.argv[1]), *(ends or [0]), *([] if len(ends) > 1 else [999])):
+        print("\t".join(it), flush=True)
