@@ -78,8 +78,12 @@ MARKED = re.compile(r"^pytestmark = \[?\s*((?:pytest\.mark\.\w+,?\s*)+)", re.MUL
 
 def _left_out(config: pytest.Config) -> set[str]:
     """The marks of tests that are not even made: two of three are in no fast run."""
-    named = any("::" in it for it in config.args)
-    return set() if named else LEFT_OUT.get(config.option.markexpr, set())
+    return set() if _names_tests(config) else LEFT_OUT.get(config.option.markexpr, set())
+
+
+def _names_tests(config: pytest.Config) -> bool:
+    """Who names tests gets all of their rows."""
+    return bool(config.option.keyword) or any("::" in it for it in config.args)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -104,7 +108,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> Iterator[None]:
     the usual run are up to MANY, of those with ``sample(m)`` the first of every m.
     """
     yield
-    without, rows = _left_out(metafunc.config), metafunc._calls
+    config, rows = metafunc.config, metafunc._calls
+    if _names_tests(config) and config.option.markexpr in LEFT_OUT:
+        return
+    without = _left_out(config)
     marks = {it.name: it for it in metafunc.definition.iter_markers()}
     for at, row in enumerate(rows):
         row.marks.extend(_marks_of_row(at, len(rows), marks, {it.name for it in row.marks}))
