@@ -47,8 +47,8 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     """That another robot has it from a node of the same system is not for a driver outside of it."""
     elsewhere = {seen.plain(it): it for it in _given(seen) if seen.robot(it) not in ("", robot)}
-    lacked = [it for it in names if robot and seen.plain(it) in elsewhere]
-    rest = [it for it in names if it not in lacked]
+    lacked = tuple(it for it in names if robot and seen.plain(it) in elsewhere)
+    rest = tuple(it for it in names if it not in lacked)
     if lacked:
         others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
         message = f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}"
