@@ -89,6 +89,14 @@ def test_the_place_of_a_file_says_which_node_it_is_for(tmp_path: Path) -> None:
     }
 
 
+def test_a_file_alone_may_stand_where_the_user_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written(tmp_path, "plain.nodl.yaml", document())
+    monkeypatch.chdir(tmp_path)
+    assert find_interfaces(["plain.nodl.yaml"]).given == {Identity("", "plain"): "plain.nodl.yaml"}
+
+
 def test_a_folder_where_packages_are_installed_is_read_as_such(tmp_path: Path) -> None:
     installed(tmp_path, "acme__gripper", document("grip"))
     assert set(ends(node_of("acme/gripper", str(tmp_path)))) == {"grip"}

@@ -139,6 +139,10 @@ PLANTED = {
     "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB170"),
     "a class in capitals": (system("imu", "IMU"), "MB160"),
     "a class of another library": (system("imu", "DiffDrive"), "MB160"),
+    "a class for a library": (
+        '<gazebo><plugin name="gz-sim-imu-system" filename="gz::sim::systems::Imu"/></gazebo>',
+        "MB160",
+    ),
     "a label for a class": (
         '<gazebo><plugin name="drive" filename="gz-sim-diff-drive-system"/></gazebo>',
         "MB160",

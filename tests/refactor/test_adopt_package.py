@@ -10,6 +10,7 @@ from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.producers.launch.door import missing
+from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
@@ -132,6 +133,15 @@ def test_names_in_code_and_data_are_listed_with_their_lines(package: Path) -> No
         ("src/a.cpp:2", "its code names 'base', which a prefix does not reach"),
         ("src/b.py:3", "its code names 'arm', which a prefix does not reach"),
     ]
+
+
+def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> None:
+    code = {"py", "cpp", "hpp", "cc", "hh", "h", "c", "lua"}
+    data = {"yaml", "yml", "world", "sdf", "srdf", "rviz"}
+    for kind in (*code, *data):
+        (package / f"src/a.{kind}").write_text("x = 'arm'\n" if kind in code else "x: arm\n")
+    found = named_elsewhere(str(package), ["arm"], ())
+    assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
 
 
 @pytest.mark.parametrize("name", ["prefix", "tf_prefix"])
