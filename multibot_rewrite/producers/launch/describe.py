@@ -101,7 +101,9 @@ def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode |
     package = missing_package(error) or (of_path[1] if of_path else "")
     name = os.path.basename(path)
     spawns = name in _SPAWNS
-    if package not in SIMULATORS or not (spawns or name in _SIMULATES):
+    # Of a package that is missing here the path is not known.
+    known_other = bool(path) and not (spawns or name in _SIMULATES)
+    if package not in SIMULATORS or known_other:
         return None
     known = _SPAWN_WORDS if spawns else _SIM_WORDS
     for one, near in not_among(given_names(include, here.context), known, whole=spawns):
