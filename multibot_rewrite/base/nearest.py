@@ -37,6 +37,12 @@ def slip_of(name: str, known: Iterable[str]) -> str:
     return same or nearest(name, names, SLIP)
 
 
+def differ_in_numbers(name: str, other: str) -> bool:
+    """Are two names the same but for their digits? They are of two things then: robot1, robot2."""
+    bare, rest = ("".join(c for c in it if not c.isdigit()) for it in (name, other))
+    return bare == rest
+
+
 def _letters(name: str) -> str:
     return name.replace("_", "").replace("-", "").casefold()
 

@@ -131,6 +131,7 @@ HOMES: tuple[Home, ...] = (
             "rules.launch.ending",
             "rules.launch.models",
             "rules.launch.rows",
+            "rules.launch.joints",
             "rules.launch.started",
             "rules.launch.words",
             "rules.launch.world",

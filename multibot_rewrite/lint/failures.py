@@ -31,7 +31,7 @@ _CODES = (
 )
 # What another file may make: a macro or property of the file that includes this one, or what an
 # argument names.
-_LEVELS = (NOTE, WARNING, ERROR)
+_REFUSED = lazy_compile("DOCTYPE and entities|the encoding is")
 _LACKING = lazy_compile(
     r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
 )
@@ -42,13 +42,7 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
 
     code = next((code for said, code in _CODES if said.search(message)), "MB101")
-    level = level_of(settings, code, RULES[code].level)
-    if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
-        level = NOTE if is_for_ros_1(path) else WARNING
-    if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
-        level = NOTE
-    if code == "MB103":
-        level = min(level, _level_of_failed(path, message), key=_LEVELS.index)
+    level = level_of(settings, code, _level(code, path, message) or RULES[code].level)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)
@@ -57,11 +51,22 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     return Finding(code, level, what or hint, hint if what else "", file, line, column)
 
 
+def _level(code: str, path: str, message: str) -> str:
+    """How bad a failure is that is no fault for certain; empty for that of its rule."""
+    if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
+        return NOTE if is_for_ros_1(path) else WARNING
+    if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
+        return NOTE
+    if _REFUSED.search(message):  # here alone: xacro and urdfdom read some of these
+        return WARNING
+    return _level_of_failed(path, message) if code == "MB103" else ""
+
+
 def _level_of_failed(path: str, message: str) -> str:
     """How bad it is that xacro stops: a file may be a part of a robot, or not meant for xacro."""
     found = _LACKING.search(message)
     if found is None:
-        return ERROR if path.endswith(XACRO) else WARNING
+        return "" if path.endswith(XACRO) else WARNING
     name = found[1] or found[2]
     return NOTE if name and _is_made_beside(path, name) else WARNING
 

@@ -24,7 +24,7 @@ from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.producers.launch.bridges import is_bridge
+from multibot_rewrite.producers.launch.bridges import expands, is_bridge
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
     Launched,
@@ -140,17 +140,19 @@ def _bridges(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the rows of bridge files, beside all models that the launch file spawns."""
     models = models_in_simulator(launched)
     known = _topics(models) if models and not launched.models.lost else {}
-    for path in dict.fromkeys(_bridge_files(launched)):
-        for it in _of_bridge(path, launched.release, known):
+    for path, expanded in dict.fromkeys(_bridge_files(launched)):
+        # Names below the namespace of a bridge are not those of the file.
+        mine = {} if expanded else known
+        for it in _of_bridge(path, launched.release, mine):
             # The description is the one that is spawned: the row does not work.
-            yield it._replace(level=ERROR) if known or it.code != no_gz_topic.code else it
+            yield it._replace(level=ERROR) if mine or it.code != no_gz_topic.code else it
 
 
-def _bridge_files(launched: Launched) -> Iterator[str]:
+def _bridge_files(launched: Launched) -> Iterator[tuple[str, bool]]:
     for it in launched.nodes:
         given = it.values.get("config_file") if is_bridge(it) else None
         if given and os.path.isfile(str(given.value)):
-            yield os.path.realpath(str(given.value))
+            yield os.path.realpath(str(given.value)), expands(it)
 
 
 def _of_bridge(path: str, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:

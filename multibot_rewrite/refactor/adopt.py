@@ -26,12 +26,13 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     names_robots,
 )
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.description.steps.renames import make_renames
+from multibot_rewrite.description.steps.renames import make_renames, respeller
 from multibot_rewrite.refactor.configurations import configurations
 from multibot_rewrite.refactor.declaring import declared, free_name
 from multibot_rewrite.refactor.launches import with_launches
@@ -44,6 +45,7 @@ from multibot_rewrite.refactor.package import (
     read_package,
     read_text,
 )
+from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     Change,
@@ -104,10 +106,15 @@ def adopt(
     found = list(_configured(found, how, tree, unread))
     argument = free_name(found)
     made = _made(found, argument, how)
-    launches = with_launches(folder, package.found.launch, argument, made.after, TRIED, trust)
+    names = set(_names(found))
+    urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
+    filled = fillable(package.found.params, urdfs, names, argument, TRIED)
+    after = made.after
+    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust, filled)
     # A plain description that becomes a xacro is one of them.
     files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
-    elsewhere = named_elsewhere(folder, set(_names(found)), set(map(os.path.realpath, files)))
+    files |= {it.path for it in filled.values() if it.path in launches.after}
+    elsewhere = named_elsewhere(folder, names, set(map(os.path.realpath, files)))
     before = {**made.before, **{path: read_file(path) for path in launches.after}}
     return made._replace(
         before=before,
@@ -216,10 +223,10 @@ def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
 def _changes(it: Description) -> Iterator[Change]:
     """Where the prefix goes in the values of a description. A link or joint that it does not have is
     one of another description that includes the same file."""
-    document, claims, *_ = it.inventory
+    document, claims, _, declared, *_ = it.inventory
     naming = prefixing()
-    spellings = make_renames(it.inventory, naming).values
-    for claim, names, spelling in zip(claims, it.inventory.names, spellings, strict=True):
+    renames = make_renames(it.inventory, naming)
+    for claim, names, spelling in zip(claims, it.inventory.names, renames.values, strict=True):
         places = [found.affix.at for found in spelling]
         for name in names:
             kind = "" if name.kind else next((it for it in name.kinds if it in _PARTS), "")
@@ -227,19 +234,25 @@ def _changes(it: Description) -> Iterator[Change]:
             places += [name.at + there.at] if there else []
         for at in places:
             yield change_of(document, claim, at, at, TRIED)
+    # The name that Gazebo makes of a collision begins with that of its link.
+    for claim, text in respell_collisions(
+        document.root, claims, declared, respeller(renames, TRIED)
+    ):
+        if text == f"{TRIED}{claim.value}":
+            yield change_of(document, claim, 0, 0, TRIED)
 
 
 def _not_written(it: Description) -> Iterator[Left]:
-    """Names that a plugin takes where none is written: they need an element of their own."""
+    """What a plugin takes where nothing is written, such as the name of its sensor: to stay, or to
+    have the prefix, it needs an element of its own."""
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
-        if one.kind in PREFIXED and it.read:
+        if it.read:
             origin = it.read.origins.of(document.elements.index(one.parent))
             source = it.read.sources[origin.file] if origin else b""
             where = (origin.file, *locate(source, origin.start)) if origin else (it.path,)
-            yield Left(
-                ":".join(map(str, where)), f"its {one.kind} is {one.old!r}, which no element says"
-            )
+            what = f"it takes {one.old!r} where no element says a {one.kind}; write it out"
+            yield Left(":".join(map(str, where)), what)
 
 
 def _fault(

@@ -9,8 +9,10 @@ nodes has the prefix.
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
+from typing import Any
 
 import yaml
 
@@ -23,7 +25,8 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
-from multibot_rewrite.refactor.launch_argument import with_argument
+from multibot_rewrite.refactor.launch_argument import LaunchEdit, with_argument
+from multibot_rewrite.refactor.parameters import Filled
 from multibot_rewrite.refactor.placing import Left
 
 _DESCRIPTION = "robot_description"
@@ -51,45 +54,80 @@ def with_launches(
     after: Mapping[str, bytes],
     prefix: str,
     trust: bool,
+    parameters: Mapping[str, Filled] = MappingProxyType({}),
 ) -> Launches:
     """The launch files that expand a description of ``after``, files by their paths. One that does not
-    hand the argument on, tried with ``prefix``, is left as it was."""
+    hand the argument on, tried with ``prefix``, is left as it was. Of the ``parameters``, by their
+    names, those are filled in that no other file names and that are proved with their launch file."""
     names = {os.path.basename(it) for it in after}
-    made: dict[str, bytes] = {}
-    left: list[Left] = []
-    for path in launches:
-        found = with_argument(path, read_file(path), argument, names)
-        left += found.left
-        if found.data is not None:
-            made[path] = found.data
+    texts = {path: read_file(path) for path in launches}
+    alone = {
+        name: it
+        for name, it in parameters.items()
+        if sum(name.encode() in text for text in (*texts.values(), *after.values())) == 1
+    }
+    found = Launches({}, (), ())
+    for path, text in texts.items():
+        made = with_argument(path, text, argument, names, alone if trust else ())
+        one = _one(folder, path, made, argument, after, prefix, trust, alone)
+        if made.filled and path not in one.after:
+            made = with_argument(path, text, argument, names)
+            one = _one(folder, path, made, argument, after, prefix, trust, {})
+        found = Launches(*(_both(*it) for it in zip(found, one, strict=True)))
+    return found
+
+
+def _both(one: Any, other: Any) -> Any:
+    return {**one, **other} if isinstance(one, Mapping) else (*one, *other)
+
+
+def _one(
+    folder: str,
+    path: str,
+    made: LaunchEdit,
+    argument: str,
+    after: Mapping[str, bytes],
+    prefix: str,
+    trust: bool,
+    parameters: Mapping[str, Filled],
+) -> Launches:
+    """One launch file with what it fills in, as far as it is proved."""
+    if made.data is None:
+        return Launches({}, (), made.left)
     if not trust:
         why = f"it gets {argument}, which is proved with --trust alone: a launch file is a program"
-        return Launches(made, (), (*left, *(Left(it, why) for it in made)))
-    read = dict(_read(folder, {**after, **made}, made, argument, prefix)) if made else {}
-    for path, it in read.items():
-        if it.fault:
-            left.append(Left(path, f"it does not hand {argument} on: {it.fault}"))
-        elif it.unread:
-            left.append(Left(path, f"it gets {argument}, which is not proved: {it.unread}"))
-    kept = {path: data for path, data in made.items() if not read[path].fault}
-    proved = tuple(path for path in kept if not read[path].unread)
-    return Launches(kept, proved, tuple(left))
+        return Launches({path: made.data}, (), (*made.left, Left(path, why)))
+    filled = [parameters[it] for it in made.filled]
+    changed = {path: made.data, **{it.path: it.after for it in filled}}
+    it = _read(folder, {**after, **changed}, path, argument, prefix, filled)
+    if it.fault:
+        return Launches(
+            {}, (), (*made.left, Left(path, f"it does not hand {argument} on: {it.fault}"))
+        )
+    if it.unread and filled:
+        return Launches({}, (), ())
+    if it.unread:
+        why = f"it gets {argument}, which is not proved: {it.unread}"
+        return Launches(changed, (), (*made.left, Left(path, why)))
+    return Launches(changed, (path,), made.left)
 
 
 def _read(
-    folder: str, files: Mapping[str, bytes], launches: Collection[str], argument: str, prefix: str
-) -> Iterator[tuple[str, _Verdict]]:
-    """Each launch file in a copy of the package."""
+    folder: str,
+    files: Mapping[str, bytes],
+    path: str,
+    argument: str,
+    prefix: str,
+    filled: Sequence[Filled],
+) -> _Verdict:
+    """A launch file in a copy of the package."""
     home = (package_of(os.path.join(folder, "x")) or ("", os.path.abspath(folder)))[1]
     with TemporaryDirectory(prefix="multibot_") as above:
         root = os.path.join(above, os.path.basename(home))
-        _copy(home, root, {os.path.realpath(path): data for path, data in files.items()})
-        for path in launches:
-            copy = os.path.join(
-                root, os.path.relpath(os.path.realpath(path), os.path.realpath(home))
-            )
-            found = _verdict(LaunchOrder(copy, (), (above,), True), argument, prefix)
-            yield path, _Verdict(*(it.replace(f"{root}/", "") for it in found))
+        _copy(home, root, {os.path.realpath(it): data for it, data in files.items()})
+        copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
+        found = _verdict(LaunchOrder(copy, (), (above,), True), argument, prefix, filled)
+        return _Verdict(*(it.replace(f"{root}/", "") for it in found))
 
 
 def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
@@ -108,20 +146,33 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _verdict(order: LaunchOrder, argument: str, prefix: str) -> _Verdict:
+def _verdict(order: LaunchOrder, argument: str, prefix: str, filled: Sequence[Filled]) -> _Verdict:
     try:
-        plain = _links(launch_graph(order))
+        graph = launch_graph(order)
+        plain = _links(graph)
     except InputError as error:
         return _Verdict("", str(error))
     if not plain:
         return _Verdict("", "no node of it gets a robot_description that is known")
     try:
-        given = _links(launch_graph(order._replace(arguments=((argument, prefix),))))
+        other = launch_graph(order._replace(arguments=((argument, prefix),)))
+        given = _links(other)
     except InputError as error:
         return _Verdict(str(error), "")
+    for it in filled:
+        if not (_gets(graph, it.path, it.before) and _gets(other, it.path, it.tried)):
+            return _Verdict(f"{os.path.basename(it.path)} is not what it was, or lacks it", "")
     if given == [it if it == WORLD else f"{prefix}{it}" for it in plain]:
         return _Verdict("", "")
     return _Verdict(f"with {argument}:={prefix} its links are {', '.join(given[:3])}", "")
+
+
+def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
+    """Does some node get a parameter file with what is ``wanted``, and none another?"""
+    name = os.path.basename(path)
+    given = [it for node in graph.nodes for it in node.parameters]
+    texts = [it.text for it in given if name == os.path.basename(it.source or it.file)]
+    return bool(texts) and all(load_yaml(it) == load_yaml(wanted.decode()) for it in texts)
 
 
 def _links(graph: LaunchGraph) -> list[str]:

@@ -262,3 +262,35 @@ def test_a_list_in_a_list_is_refused(folder: Path) -> None:
         InputError, match=r"fleet.yaml:20: parts/table.urdf.join is a list of parts"
     ):
         outputs()
+
+
+RVIZ = """\
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/RobotModel
+      Name: RobotModel
+      Description Topic: {Value: robot_description}
+      Links: {left_tool: {Show Trail: false}, right_tool: {Show Trail: false}, table: {Value: true}}
+    - Class: rviz_default_plugins/TF
+      Name: TF
+      Frames: {left_base: {Value: true}, right_base: {Value: true}}
+  Global Options:
+    Fixed Frame: table
+  Views:
+    Current: {Class: rviz_default_plugins/Orbit, Target Frame: right_tool}
+"""
+
+
+def test_one_window_shows_both_parts(folder: Path) -> None:
+    """Names of the joined robot, in the one config that a person made of it, follow the robot."""
+    (folder / "dual.rviz").write_text(RVIZ)
+    text = FLEET.replace("stack:", "companions: {rviz: dual.rviz}\nstack:")
+    (folder / "fleet.yaml").write_text(text)
+    plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
+    made = make_outputs(plan)
+    (window,) = [it.data.decode() for it in made.files if it.path.endswith("dual.rviz")]
+    for name in ("left_base", "right_base", "left_tool", "right_tool", "table"):
+        assert window.count(f"cell1_{name}") == RVIZ.count(name)
+        assert f" {name}" not in window
+    assert [it for it in made.findings if it.code in ("MB853", "MB891")] == []

@@ -75,11 +75,17 @@ CASES = {
     "hardware of no package": ("MB110", "a.urdf", robot(HARDWARE % OWN), {}, ["warning"]),
     "the name of a <geometry>": ("MB901", "a.urdf", robot(""), {}, []),
     "a joint of a controller": ("MB877", "c.yaml", TRICYCLE, {}, []),
-    "a controller without type": ("MB115", "c.yaml", MANAGER % "joints: [a]", {}, ["error"]),
+    "a controller without type": ("MB115", "c.yaml", MANAGER % "joints: [a]", {}, ["warning"]),
     "hardware of no controller": ("MB115", "c.yaml", MANAGER % "plugin: own/Hardware", {}, []),
     "a list in a text": ("MB877", "c.yaml", SOURCES, {}, ["warning"]),
     "RViz of ROS 1 there": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": CATKIN}, ["note"]),
-    "RViz of ROS 1 in ROS 2": ("MB101", "a.rviz", ROS_1_DISPLAY, {"package.xml": AMENT}, ["error"]),
+    "RViz of ROS 1 in ROS 2": (
+        "MB101",
+        "a.rviz",
+        ROS_1_DISPLAY,
+        {"package.xml": AMENT},
+        ["warning"],
+    ),
 }
 
 

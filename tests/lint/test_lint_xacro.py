@@ -443,6 +443,7 @@ LACKS = {
     "r.urdf": (f'<link name="a"/><link name="base"/>{LOST}', "error"),
     "r.xacro": (f'<link name="a"/><link name="base"/>{LOST}', "warning"),
     "part.xacro": (f'<link name="a"/>{LOST}', "note"),
+    "part.urdf": (f'<link name="a"/>{LOST}', "warning"),
 }
 
 

@@ -119,6 +119,29 @@ FAULTS = {
     "what is left of a xacro": Fault(
         ROVER, 'link name="robot2/base_link"', 'link name="${ns}base_link"', "MB202", ROVER
     ),
+    "joints that only the other robot has": Fault(
+        LAUNCH, "executable='joint_state_publisher',",
+        "executable='joint_state_publisher', "
+        "condition=IfCondition('false' if name == 'robot2' else 'true'),", "MG316",
+    ),
+    "a model that nobody describes": Fault(
+        LAUNCH, "executable='robot_state_publisher',",
+        "executable='robot_state_publisher', "
+        "condition=IfCondition('false' if name == 'robot2' else 'true'),", "MG724",
+    ),
+    "a start in a frame that is misspelt": Fault(
+        LAUNCH, *for_two("f'{name}/odom'", "'robot2/odm'"), "MG406"
+    ),
+    "a package that is misspelt": Fault(
+        LAUNCH, "package='ros_gz_sim',\n", "package='ros_gz_simm',\n", "MG714"
+    ),
+    "a type that is misspelt": Fault(
+        BRIDGE, "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/LaserScn", "MB874", BRIDGE
+    ),
+    "an argument of an include that is misspelt": Fault(
+        LAUNCH, "launch_arguments=[", "launch_arguments=[('gz_argss', 'x'), ", "MG715",
+        level="warning",
+    ),
     "a world without sensors": Fault(
         WORLD, SYSTEM.format("sensors", "Sensors"), SYSTEM.format("label", "Label"), "MG706"
     ),
@@ -188,7 +211,7 @@ from launch_ros.actions import Node
 def generate_launch_description():
     return LaunchDescription([{}])
 """
-NODE = "Node(package='joint_state_publisher', executable='joint_state_publisher', \
+NODE = "Node(package='robot_state_publisher', executable='robot_state_publisher', \
 namespace='robot1', parameters=[{'use_sim_time': True, 'robot_description': \
 '<robot name=\"r\"><link name=\"a\"/></robot>'}])"
 CLOCK = "Node(package='ros_gz_bridge', executable='parameter_bridge', \

@@ -46,6 +46,14 @@ CASES = {
         '<sensor name="${prefix}lidar" type="gpu_lidar">'
         "<gz_frame_id> ${prefix}base </gz_frame_id></sensor></gazebo>",
     ),
+    "the name that Gazebo makes of a collision": (
+        '<link name="base"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
+        '<gazebo reference="base"><sensor name="bump" type="contact"><contact>'
+        "<collision>base_collision</collision></contact></sensor></gazebo>",
+        '<link name="${prefix}base"><collision><geometry><sphere radius="1"/></geometry></collision>'
+        '</link><gazebo reference="${prefix}base"><sensor name="${prefix}bump" type="contact">'
+        "<contact><collision>${prefix}base_collision</collision></contact></sensor></gazebo>",
+    ),
     "ros2_control and its joints": (
         '<link name="base"/><link name="a"/><joint name="j" type="revolute"><parent link="base"/>'
         '<child link="a"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'

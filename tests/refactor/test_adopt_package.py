@@ -74,6 +74,72 @@ def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text:
     assert made.before[str(path)] == text.encode()
 
 
+YAML = (
+    "# kept\nfollow:\n  ros__parameters:\n    joints: [j]  # the arm\n    frame: {frame_id: base}\n"
+)
+FILLED = YAML.replace("[j]", "[$(var prefix)j]").replace(": base", ": $(var prefix)base")
+MANAGER = """\
+        Node(
+            package="controller_manager",
+            executable="ros2_control_node",
+            parameters=[PARAMETERS],
+        ),
+"""
+GIVEN = 'os.path.join(os.path.dirname(__file__), "..", "config", "c.yaml")'
+
+
+def with_parameters(package: Path, item: str, more: str = "") -> str:
+    (package / "config/c.yaml").write_text(YAML)
+    node = MANAGER.replace("PARAMETERS", item)
+    text = LAUNCH.replace("    return", f"{more}    return").replace("    ])", f"{node}    ])")
+    (package / "launch/a.launch.py").write_text(text)
+    return text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("item", "more"), [(GIVEN, ""), ("given", f"    given = {GIVEN}\n")], ids=["there", "by a name"]
+)
+def test_a_parameter_file_is_filled_in(package: Path, item: str, more: str) -> None:
+    """UR's driver has it so: ParameterFile(..., allow_substs=True)."""
+    with_parameters(package, item, more)
+    made = adopt(str(package), trust=True)
+    assert made.after[str(package / "config/c.yaml")].decode() == FILLED
+    launch = made.after[str(package / "launch/a.launch.py")].decode()
+    assert f"parameters=[ParameterFile({item}, allow_substs=True)]" in launch
+    assert "from launch_ros.parameter_descriptions import ParameterFile\n" in launch
+    assert made.launches == (str(package / "launch/a.launch.py"),)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "why", ["named in the xacro, too", "named twice in the launch file", "opened as well"]
+)
+def test_a_parameter_file_that_others_read_stays(package: Path, why: str) -> None:
+    more = ""
+    if why == "named in the xacro, too":
+        plugin = '<plugin name="p" filename="x"><parameters>c.yaml</parameters></plugin>'
+        text = ROBOT.format(f"{JOINT}<gazebo>{plugin}</gazebo>")
+        (package / "urdf/r.urdf.xacro").write_text(text)
+    elif why == "named twice in the launch file":
+        more = '    print("config/c.yaml")\n'
+    with_parameters(package, "given", f"    given = {GIVEN}\n{more}")
+    if why == "opened as well":
+        path = package / "launch/a.launch.py"
+        path.write_text(
+            path.read_text().replace("    return", "    open(given).close()\n    return")
+        )
+    made = adopt(str(package), trust=True)
+    assert str(package / "config/c.yaml") not in made.after
+    assert b"ParameterFile" not in made.after[str(package / "launch/a.launch.py")]
+    assert any("c.yaml:4" in it.place for it in made.left)
+
+
+def test_without_trust_a_parameter_file_stays(package: Path) -> None:
+    with_parameters(package, GIVEN)
+    assert str(package / "config/c.yaml") not in adopt(str(package)).after
+
+
 @pytest.mark.slow
 def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     path = package / "launch/a.launch.py"

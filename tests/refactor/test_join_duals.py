@@ -36,6 +36,27 @@ EXPECTED = {
             "ros2_control name: UFRobotSystem -> R_UFRobotSystem",
         },
     ),
+    "Kinova, kortex_dual_robots": (
+        (75, 77),
+        {
+            f"param text: {(joint := 'robotiq_85_left_knuckle_joint')} -> {side}_{joint}"
+            for side in ("left", "right")
+        }
+        | {f"param text: {side}_ -> " for side in ("left", "right")},
+    ),
+    "KUKA, dual_arm_template": ((43, 43), set()),
+    "LBR, lbr_dual_arm": (
+        (68, 71),
+        {
+            "<joint>: 2 -> 4",
+            "<link>: 0 -> 2",
+            "<gazebo>: 1 -> 0",
+            "joint lbr_one_base_joint: 3 elements -> 4",
+            "joint name: lbr_two_base_joint -> lbr_one_floating_joint",
+            "child link: lbr_two_link_0 -> lbr_one_link_0",
+            "parent link: base_link -> lbr_one_floating_link",
+        },
+    ),
     "Franka, fr3_duo": (
         (57, 61),
         {

@@ -40,27 +40,8 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("RoboAlQuds2027+temp_ros2_issue_spawn_two_robot", "ede9146", "", {}),
     ("Kinovarobotics+ros2_kortex", "2f2ba44", "", {}),
 ]
-_TEXTS = [
-    "xacro",
-    "urdf",
-    "srdf",
-    "sdf",
-    "world",
-    "xml",
-    "yaml",
-    "yml",
-    "rviz",
-    "py",
-    "cpp",
-    "cc",
-    "c",
-    "hpp",
-    "hh",
-    "h",
-    "lua",
-    "launch",
-    "txt",
-]
+_DATA = ("xacro", "urdf", "srdf", "sdf", "world", "xml", "yaml", "yml", "rviz", "launch", "txt")
+_CODE = ("py", "cpp", "cc", "c", "hpp", "hh", "h", "lua")
 _PARTS = ("link", "joint", "ros2_control")
 
 
@@ -73,7 +54,7 @@ def git(repo: Path, *words: str, given: bytes = b"") -> bytes:
 def checkout(repo: Path, commit: str, folder: Path) -> Path:
     """The text files of a commit; a mirror lacks the largest."""
     names = git(repo, "ls-tree", "-r", "-z", "--name-only", commit).decode().split("\0")
-    texts = [it for it in names if it.rpartition(".")[2] in _TEXTS]
+    texts = [it for it in names if it.rpartition(".")[2] in (*_DATA, *_CODE)]
     asked = "".join(f"{commit}:{it}\n" for it in texts).encode()
     stream = BytesIO(git(repo, "cat-file", "--batch", given=asked))
     for name in texts:

@@ -1,7 +1,7 @@
 """The packages of fixtures/adopted_packages.tsv under ``multibot adopt``, judged by xacro itself.
 
-``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: each
-configuration is expanded by xacro before and after, without a prefix and with one. MIRRORS has clones,
+``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
+every configuration before and after, without a prefix and with one. MIRRORS has clones,
 ``OWNER+NAME/repo``. docs/measurements.md has the table.
 """
 
@@ -12,12 +12,14 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import redirect_stderr
+from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+import xacro
 from adopted_packages import checkout
-from joined_duals import expanded
 from lxml import etree
 from vendor_sources import install, packages_below
 
@@ -36,9 +38,10 @@ KINDS = {
     "code": "code names",
     "data": "it names",
     "composed": "put together",
-    "unsaid": "no element says",
+    "unsaid": "where no element says",
     "launch": "by hand",
     "unproved": "not proved",
+    "launch unread": "with --trust alone",
 }
 
 
@@ -68,22 +71,28 @@ def elements(text: bytes) -> list[object]:
     return [dict(root.attrib), *map(plain, root.iterchildren("*"))]
 
 
-def judged(made: Adopted, environment: Mapping[str, str]) -> Judged:
+def expanded(path: str, arguments: Mapping[str, str]) -> bytes:
+    """What xacro makes of a file."""
+    with redirect_stderr(StringIO()):
+        made = xacro.process_file(path, mappings=dict(arguments))
+    return bytes(made.toprettyxml(indent="  ", encoding="utf-8"))
+
+
+def judged(made: Adopted) -> Judged:
     """Every configuration of a package whose files are on the disk as they were."""
     given: list[tuple[str, dict[str, str]]] = [(it, {}) for it in made.proved]
     for it in made.configurations:
         path, *words = it.split(" ")
         given.append((path, dict(word.split(":=", 1) for word in words)))
-    before = [_text(path, arguments, environment) for path, arguments in given]
+    before = [_text(path, arguments) for path, arguments in given]
     for path, data in made.after.items():
         Path(path).write_bytes(data)
     same, named, wrong = 0, 0, []
     for (path, arguments), old in zip(given, before, strict=True):
-        new = expanded(Path(path), arguments, environment)
-        whole = (
-            elements(new) == elements(old) if not old.count(b"xacro") else _bare(new) == _bare(old)
-        )
-        other = expanded(Path(path), {**arguments, made.argument: PREFIX}, environment)
+        new = expanded(path, arguments)
+        # A URDF that becomes a xacro is written anew, with the same in it.
+        whole = new == old if made.before.get(path, b"x") else elements(new) == elements(old)
+        other = expanded(path, {**arguments, made.argument: PREFIX})
         is_srdf = path.removesuffix(".xacro").endswith(".srdf")
         equal = is_srdf or elements(other) == renamed(old)
         same, named = same + whole, named + equal
@@ -92,16 +101,9 @@ def judged(made: Adopted, environment: Mapping[str, str]) -> Judged:
     return Judged(len(given), same, named, tuple(wrong))
 
 
-def _text(path: str, arguments: dict[str, str], environment: Mapping[str, str]) -> bytes:
-    """A description before; a plain one becomes a xacro."""
-    if os.path.exists(path):
-        return expanded(Path(path), arguments, environment)
-    return Path(path.removesuffix(".xacro")).read_bytes()
-
-
-def _bare(text: bytes) -> bytes:
-    """Without xacro's own comment."""
-    return text[text.find(b"<robot") :]
+def _text(path: str, arguments: dict[str, str]) -> bytes:
+    """A description before; a plain one becomes a xacro, and some have expressions already."""
+    return expanded(path if os.path.exists(path) else path.removesuffix(".xacro"), arguments)
 
 
 def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
@@ -115,8 +117,8 @@ def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
             return ("refused", str(error).replace(at, ""))
         if not made.argument:
             return ("has one", ", ".join(sorted(set(made.already.values()))))
-        environment = install(packages_below(home), Path(prefix), {})
-        found = judged(made, environment)
+        os.environ.update(install(packages_below(home), Path(prefix), {}))
+        found = judged(made)
         left = Counter(
             next((k for k, word in KINDS.items() if word in it.why), "?") for it in made.left
         )

@@ -28,11 +28,19 @@ SEVEN = {"dof": "7"}
 FILES = ("script_filename", "output_recipe_filename", "input_recipe_filename")
 XARM = "xarm_description/urdf/xarm_device.urdf.xacro"
 GEN3 = "kortex_description/robots/gen3.xacro"
+GEN3_ARM = {
+    "gripper": "robotiq_2f_85",
+    "gripper_joint_name": "robotiq_85_left_knuckle_joint",
+} | SEVEN
+KR6 = "kuka_agilus_support/urdf/kr6_r700_sixx.urdf.xacro"
+IIWA7 = "lbr_description/urdf/iiwa7/iiwa7.xacro"
+LBR_DUAL, CONFIG = "lbr_dual_arm_description", "system_config.yaml"
 
 
 class Arm(NamedTuple):
     """One arm of the vendor's: ``at`` and ``pose`` are where it stands, ``mount`` the joint of the
-    vendor's that holds it, which ours replaces."""
+    vendor's that holds it, which ours replaces. ``names`` is what its names begin with where an
+    argument does it."""
 
     description: str
     arguments: Mapping[str, str]
@@ -40,6 +48,7 @@ class Arm(NamedTuple):
     at: str
     mount: str = ""
     pose: Sequence[float] = (0.0,) * 6
+    names: str = ""
 
 
 class Dual(NamedTuple):
@@ -112,12 +121,55 @@ DUALS = {
     ),
     "Kinova, kortex_dual_robots": Dual(
         "kortex_description/multiple_robots/kortex_dual_robots.xacro",
-        {
-            f"{side}_{key}": value
-            for side in ("left", "right")
-            for key, value in (("arm", "gen3"), ("dof", "7"), ("prefix", f"{side}_"))
-        },
-        tuple(Arm(GEN3, SEVEN, f"{side}_", "world") for side in ("left", "right")),
+        {},
+        tuple(
+            Arm(
+                GEN3,
+                {**GEN3_ARM, "robot_ip": ip},
+                prefix,
+                "world",
+                pose=(x, 0.0, 0.0, 0.0, 0.0, 0.0),
+            )
+            for prefix, ip, x in (
+                ("left_", "192.168.1.10", -0.25),
+                ("right_", "192.168.1.11", 0.25),
+            )
+        ),
+    ),
+    "KUKA, dual_arm_template": Dual(
+        "kuka_resources/urdf/dual_arm_template.urdf.xacro",
+        {},
+        tuple(
+            Arm(
+                KR6,
+                {"roundtrip_time": "4000", **own},
+                prefix,
+                "world",
+                pose=(0.0, y, 0.0, 0.0, 0.0, 0.0),
+            )
+            for prefix, y, own in (
+                ("robot1_", 0.0, {}),
+                ("robot2_", 1.0, {"client_port": "59153", "mxa_client_port": "1338"}),
+            )
+        ),
+    ),
+    "LBR, lbr_dual_arm": Dual(
+        "lbr_dual_arm_description/urdf/lbr_dual_arm.xacro",
+        {},
+        tuple(
+            Arm(
+                IIWA7,
+                {
+                    "robot_name": name,
+                    "system_config_path": f"$(find {LBR_DUAL})/ros2_control/{name}_{CONFIG}",
+                },
+                "",
+                "base_link",
+                f"{name}_base_joint",
+                names=f"{name}_",
+            )
+            for name in ("lbr_one", "lbr_two")
+        ),
     ),
 }
 
@@ -157,8 +209,10 @@ def compared(dual: Dual, packages: Mapping[str, Path], environment: Mapping[str,
     parts = [Part(_rest(theirs, dual), name="cell")]
     for it in dual.arms:
         text = expanded(_at(it.description, packages), it.arguments, environment)
-        parts.append(Part(text, it.at, _pose(theirs, it), it.prefix))
+        parts.append(Part(text, it.at, _pose(theirs, it), it.prefix, it.names.strip("_")))
     made = etree.fromstring(join(parts).data)
+    for it in (*theirs.iter("origin"), *made.iter("origin")):
+        it.attrib.update(_plain(it))
     one, other = (Counter(map(plain, root.iterchildren("*"))) for root in (theirs, made))
     left, right = list(_left(theirs, one - other)), list(_left(made, other - one))
     told: dict[str, None] = {}
@@ -176,7 +230,7 @@ def _at(path: str, packages: Mapping[str, Path]) -> Path:
 def _rest(theirs: etree._Element, dual: Dual) -> bytes:
     """What the vendor's has that is of no arm."""
     root = etree.fromstring(etree.tostring(theirs))
-    own = tuple(it.prefix for it in dual.arms)
+    own = tuple(it.names or it.prefix for it in dual.arms)
     mounts = {it.mount for it in dual.arms} - {""}
     stands = {it.at for it in dual.arms}
     for it in list(root.iterchildren("*")):
@@ -210,8 +264,12 @@ def _told(theirs: Sequence[etree._Element], ours: Sequence[etree._Element]) -> I
     """What differs, element by element in their order."""
     if len(theirs) != len(ours):
         yield f"<{(*theirs, *ours)[0].tag}>: {len(theirs)} -> {len(ours)}"
-    for one, other in zip(theirs, ours, strict=len(theirs) == len(ours)):
-        for first, second in zip(_sorted(one), _sorted(other), strict=True):
+    for one, other in zip(theirs, ours, strict=False):
+        inside = _sorted(one), _sorted(other)
+        if len(inside[0]) != len(inside[1]):
+            yield f"{one.tag} {one.get('name')}: {len(inside[0])} elements -> {len(inside[1])}"
+            continue
+        for first, second in zip(*inside, strict=True):
             old, new = ({**_plain(it), "text": (it.text or "").strip()} for it in (first, second))
             yield from (
                 f"{first.tag} {key}: {old[key]} -> {new.get(key)}"

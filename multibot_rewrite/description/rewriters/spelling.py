@@ -113,7 +113,8 @@ def is_reached(claim: Claim, naming: Naming) -> bool:
 
 def takes_empty(site: Site) -> bool:
     """An empty text is a value too: the prefix of names that have none yet."""
-    return site.form == "prefix" and site.role == "uses" and "@" not in site.path.rpartition("]")[2]
+    is_one = site.form == "prefix" and site.role == "uses" and site.empty == "itself"
+    return is_one and "@" not in site.path.rpartition("]")[2]
 
 
 def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.producers.launch.snapshot import NOT_WHOLE
+from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
 from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
 from multibot_rewrite.rules.system import (

@@ -16,6 +16,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
@@ -56,9 +57,19 @@ def is_bridge(it: RunningNode) -> bool:
 
 
 def bridged_by(it: RunningNode) -> Iterator[Row]:
-    """All that a bridge passes on; nothing for another node."""
-    if not is_bridge(it):
-        return
+    """All that a bridge passes on; nothing for another node. The names in the simulator may be below
+    its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp, expand_gz_topic_names)."""
+    for row in _rows_of(it) if is_bridge(it) else ():
+        inside = expand(row.inside, it.namespace, it.name) if expands(it) else row.inside
+        yield Row(row.end, inside)
+
+
+def expands(it: RunningNode) -> bool:
+    """Does the bridge take names in the simulator as those below its namespace?"""
+    return it.value("expand_gz_topic_names") is True
+
+
+def _rows_of(it: RunningNode) -> Iterator[Row]:
     yield from _told(it.program, it.arguments)
     given = it.values.get("config_file")
     path = str(given.value) if given else ""

@@ -11,14 +11,13 @@ import os
 import re
 from collections.abc import Collection, Iterator
 
-from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.producers.launch.kept_paths import read_text
 
 _DECLARED = re.compile(
     r"""DeclareLaunchArgument\(\s*(?:name\s*=\s*)?["']([\w.-]+)["']|<arg\s[^>]*\bname="([\w.-]+)\""""
     r"""|-\s*arg:\s*\{?\s*name:\s*["']?([\w.-]+)"""
 )
-_DIGITS = "0123456789"
 # It may read any name: one that is made when it runs, or one for a file that it includes itself.
 _ANY = re.compile(
     r"LaunchConfiguration\(\s*(?!name)[^\s\"']|launch_configurations|nclude|import \w*\."
@@ -43,6 +42,5 @@ def not_among(
             continue
         near = nearest(name, sorted(declared), SLIP)
         # robot1_x and robot2_x are two things; what is given as it should be needs no other name.
-        slip = near.strip(_DIGITS) != name.strip(_DIGITS) if near else whole
-        if slip:
+        if not differ_in_numbers(near, name) if near else whole:
             yield name, "" if near in given else near

@@ -61,6 +61,7 @@ UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
 _STATIC = "static_transform_publisher"
+_CLASSIC_SPAWNER = "spawn_entity.py"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 
@@ -156,7 +157,8 @@ def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
     """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
     passes it on."""
     for it in graph.nodes:
-        if (it.package, it.executable) == (CLASSIC, SIMULATOR):
+        # Who spawns has the simulator running, if in another launch file.
+        if it.package == CLASSIC and it.executable in (SIMULATOR, _CLASSIC_SPAWNER):
             clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
             facts = NodeFacts("gazebo", it.package, (clock,))
             names = (facts.name, "/", (), (), "/")

@@ -7,7 +7,6 @@ condition that nobody knows is left out.
 
 from __future__ import annotations
 
-import os
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
@@ -31,8 +30,8 @@ from multibot_rewrite.producers.launch.launched import (
     Launched,
     frames_of_sensors,
     models_in_simulator,
-    world_files,
 )
+from multibot_rewrite.producers.launch.model_caveats import NOT_KNOWN, NOT_WHOLE, of_simulator
 from multibot_rewrite.producers.launch.models import (
     Models,
     frames_of_plugins,
@@ -57,7 +56,6 @@ from multibot_rewrite.producers.launch.running import (
     bound_of,
     running_nodes,
 )
-from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.transforms import lookups_of
 from multibot_rewrite.system.parameters import parameter_text
@@ -81,12 +79,7 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
-    "launch-not-whole",
-    "node-not-known",
-    "description-not-known",
-    "rcl-refuses",
-)
+NO_TREE, REFUSED = "description-not-known", "rcl-refuses"
 
 
 class _Part(NamedTuple):
@@ -110,7 +103,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     of_plugins = sent_by_plugins(models.found)
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
-    lost = (*_of_models(models), *_of_worlds(graph))
+    lost = of_simulator(graph, models)
     caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
         tuple(_nodes(nodes, parts)),
@@ -241,28 +234,6 @@ def _tf_topics(it: RunningNode) -> Iterator[str]:
     for end, inside in bridged_by(it):
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             yield inside
-
-
-def _of_models(models: Models) -> Iterator[Caveat]:
-    """Plugins of a spawned model are nodes, which a robot brings with it."""
-    for it in models.lost[:1]:
-        text = "nodes that plugins of a spawned model make are not known: its description is not"
-        yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
-    unknown = [name for it in models.found if it.spawned for _, name in it.reading.unknown]
-    if unknown:
-        listed = shorten(list(dict.fromkeys(unknown)), SEVERAL)
-        text = f"what these plugins of spawned models start is not known: {listed}"
-        yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
-
-
-def _of_worlds(graph: LaunchGraph) -> Iterator[Caveat]:
-    """A world may have robots in it, which nobody spawns."""
-    for it in graph.nodes:
-        for file in world_files(it):
-            told = NOT_INSTALLED in file
-            if os.path.isabs(file) and not os.path.isfile(file) and not told:
-                text = f"the world {file} is not here, so what robots in it send is not known"
-                yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
 
 
 def _part(it: RunningNode, inside: Sent) -> _Part:

@@ -17,11 +17,10 @@ from multibot_rewrite.producers.launch.describe import (
     is_wanted,
     node,
     process,
-    simulator,
     text,
-    without_effect,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain
+from multibot_rewrite.producers.launch.includes import simulator, without_effect
 from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.

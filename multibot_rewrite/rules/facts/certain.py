@@ -19,12 +19,11 @@ from multibot_rewrite.rules.subject import Subject
 @memoized
 def level_of_absence(subject: Subject) -> str:
     """How bad it is that a description lacks something: a xacro file may be a part of a robot, or have
-    it behind a condition. It is a part where all of its links hang on others."""
-    if not subject.origins:
-        return ERROR
+    it behind a condition. What is a part for certain has links that all hang on others."""
     robot = subject.robot
     is_part = robot.links and not roots(robot) and any(it not in robot.link for it in robot.below)
-    return NOTE if is_part else WARNING
+    levels = (WARNING, NOTE) if subject.origins else (ERROR, WARNING)
+    return levels[bool(is_part)]
 
 
 def lacking(subject: Subject, found: Iterable[Problem]) -> Iterator[Problem]:

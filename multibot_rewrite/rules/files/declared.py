@@ -22,7 +22,7 @@ from multibot_rewrite.knowledge.declared import (
     stands_for,
 )
 from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_facts import of_release
+from multibot_rewrite.rules.files.parameter_facts import of_parameter, of_release
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
@@ -112,7 +112,7 @@ def wrong_types(file: NamedFile) -> Iterator[Remark]:
     where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
-            type_ = _wrong_type(it, of_release(known, file.context.distro))
+            type_ = _wrong_type(it, of_parameter(known, file.context.distro))
             if type_:
                 given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
@@ -125,7 +125,7 @@ def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[De
     package, around = section.node.package if section.node else "", sources_around(file.file)
     if package and around and package in packages_below((around,)):
         return False
-    facts = (of_release(known, release) for release in RELEASES)
+    facts = (of_parameter(known, release) for release in RELEASES)
     return all(_wrong_type(it, found) for found in facts if found)
 
 

@@ -23,7 +23,7 @@ from multibot_rewrite.knowledge.declared import DEMANDED, Declared
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.files.examples import a_section
-from multibot_rewrite.rules.files.parameter_facts import of_release
+from multibot_rewrite.rules.files.parameter_facts import of_parameter, of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
 
@@ -48,9 +48,9 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
     """The demands of these kinds on the parameters of a file."""
     for section in sections(file):
         for it, known in section.known:
-            facts = [fact for fact in known if fact.how == DEMANDED] if it.value is not None else []
-            exact = [fact for fact in facts if fact.path == it.name]
-            for fact in of_release(exact or facts, file.context.distro):
+            here = of_parameter(known, file.context.distro) if it.value is not None else []
+            facts = [fact for fact in here if fact.how == DEMANDED]
+            for fact in [one for one in facts if one.path == it.name] or facts:
                 for check, text in fact.checks:
                     if check in checks:
                         words = filled(text, fact.path, it.name)

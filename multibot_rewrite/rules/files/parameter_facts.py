@@ -13,7 +13,13 @@ from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.sources.packages import entries, package_folder
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.knowledge.declared import YAML, Declared, declared_by, says_something
+from multibot_rewrite.knowledge.declared import (
+    DEMANDED,
+    YAML,
+    Declared,
+    declared_by,
+    says_something,
+)
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.knowledge.parameters import KnownNode
 from multibot_rewrite.rules.files.parameter_files import file_parameters
@@ -90,3 +96,10 @@ def _parameter_files(folder: str) -> Iterator[str]:
 def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:
     """Those that the release has."""
     return [it for it in facts if has_release(it.releases, release)]
+
+
+def of_parameter(facts: Sequence[Declared], release: str) -> list[Declared]:
+    """The same of one parameter: what is demanded of it counts where the release declares it at all."""
+    found = of_release(facts, release)
+    elsewhere = any(it.how != DEMANDED for it in facts)
+    return [] if elsewhere and all(it.how == DEMANDED for it in found) else found

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.rules.launch import ending, models, rows, started, words, world
+from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
 from multibot_rewrite.system.records import System
 
-MODULES = (ending, models, rows, started, words, world)
+MODULES = (ending, joints, models, rows, started, words, world)
 
 
 def _rules() -> Iterator[Rule]:

@@ -31,6 +31,7 @@ from multibot_rewrite.rules.launch.declaration import (
     launch_rule,
     node_of,
 )
+from multibot_rewrite.rules.launch.joints import read_by_joints
 
 _SPAWNER = node_of("controller_manager", "spawner", ("arm",))
 _MANAGER = node_of("controller_manager", "ros2_control_node")
@@ -151,8 +152,9 @@ def _is_known(launched: Launched) -> bool:
 @launch_rule(
     "MG724",
     "model-without-description",
-    what="A launch file spawns a model from a topic on which no node of it sends a description.",
-    why="The spawner waits for ever: the robot is not in the simulator.",
+    what="A launch file spawns a model from a topic on which no node of it sends a description, or "
+    "starts a joint_state_publisher that waits there.",
+    why="It waits for ever: the robot is not in the simulator, or its joints are not sent.",
     fix="Name the topic of its robot_state_publisher, with the namespace.",
     bad=launch_of(_STATE, _CREATE.format("/robot1/robot_description")),
     good=launch_of(_STATE, _CREATE.format("/robot_description")),
@@ -175,6 +177,14 @@ def no_description(launched: Launched) -> Iterator[Finding]:
             hint = f"did you mean {near}?" if near else "name the topic that has it"
             message = f"waits for a description on {topic}, where nothing sends one"
             yield at(no_description, it.place, message, hint, names=(topic,))
+    waiting = read_by_joints(launched) if launched.whole else ()
+    for node, topic in waiting:
+        if topic.endswith("robot_description") and topic not in sent:
+            message = (
+                f"{node.full_name} waits for a description on {topic}, where nothing sends one"
+            )
+            hint = "start a robot_state_publisher there: no parameter tells it"
+            yield at(no_description, node.place, message, hint, names=(topic,))
 
 
 @launch_rule(

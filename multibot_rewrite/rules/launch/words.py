@@ -14,7 +14,7 @@ from itertools import pairwise
 from math import isclose, pi
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.nearest import SLIP, nearest
+from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched, world_files
@@ -37,7 +37,6 @@ _PUBLISHER = (
 )
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
-_DIGITS = "0123456789"
 _TF = "tf2_ros", "static_transform_publisher"
 _FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
 # More than a turn: nobody writes so many radians.
@@ -179,7 +178,7 @@ def generate_launch_description():
 
 @launch_rule(
     "MG715",
-    "argument-not-read",
+    "include-argument-not-read",
     what="A launch file includes another one with an argument that this one neither declares nor "
     "reads. Where it declares one that is called nearly so it is an error, else a warning.",
     why="launch hands it on and says nothing: the other file goes on with its default.",
@@ -261,11 +260,7 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
 def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> str:
     """The package that has the program, where the name is nearly that of it and of none around."""
     near = "" if it.package in known else nearest(it.package, sorted(known), SLIP)
-    if (
-        not near
-        or it.executable not in known[near]
-        or near.strip(_DIGITS) == it.package.strip(_DIGITS)
-    ):
+    if it.executable not in known.get(near, ()) or differ_in_numbers(near, it.package):
         return ""
     around = sources_around(it.place.file)
     return "" if around and it.package in packages_below((around,)) else near

@@ -10,7 +10,7 @@ from multibot_rewrite.rules.schema.versions import read_version
 
 # The newest SDF that Gazebo Classic wrote; what names a system of its successor.
 _NEWEST = (1, 7)
-_SYSTEMS = ("ignition-gazebo", "gz-sim")
+_SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
 
 
 def may_be_classics(root: _Element, release: str) -> bool:

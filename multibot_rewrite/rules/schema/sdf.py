@@ -49,6 +49,8 @@ ANGLES = frozenset({"min_angle", "max_angle"})
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
 _CLASSICS = "gazebo_ros_"
 Version = tuple[int, ...]
+# How bad is for Gazebo Classic what its successor refuses.
+_MILD = {"range": NOTE, "value": WARNING, "word": WARNING}
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
 SENSOR_TYPE = "sensor/@type"
@@ -66,7 +68,8 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
     version, taken = version_of_release(release), described("urdf")
     assert taken
     filled = (it for it in blocks if len(it))
-    return tuple(fault for block in filled for fault in _block(block, robot, version, taken))
+    found = tuple(fault for block in filled for fault in _block(block, robot, version, taken))
+    return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 
 def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
@@ -74,14 +77,17 @@ def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
     version = version_of_release(release)
     tops = root.iterchildren("model", "world")
     found = tuple(fault for it in tops for fault in _element(it, str(it.tag), version))
-    # libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector.
-    old = may_be_classics(root, release)
-    return tuple(map(_mild, found)) if old else found
+    return _by_reader(found, root, release)
+
+
+def _by_reader(found: tuple[Fault, ...], root: _Element, release: str) -> tuple[Fault, ...]:
+    """libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector."""
+    mild = any(it.kind in _MILD for it in found) and may_be_classics(root, release)
+    return tuple(map(_mild, found)) if mild else found
 
 
 def _mild(fault: Fault) -> Fault:
-    mild = {"range": NOTE, "value": WARNING, "word": WARNING}.get(fault.kind, fault.level)
-    return fault._replace(level=mild)
+    return fault._replace(level=_MILD.get(fault.kind, fault.level))
 
 
 def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
@@ -289,7 +295,7 @@ def _unknown(
     if near:
         yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = _homes(tag) or _beside(child, known)
+        homes = [it for it in _homes(tag) if it != home] or _beside(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
 

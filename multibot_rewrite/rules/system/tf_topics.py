@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
@@ -238,8 +238,7 @@ def _meant(name: str, others: Collection[str]) -> str:
     """The frame that is called nearly so; names that differ in their numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near
-    letters = ([it for it in word if not it.isdigit()] for word in (name, near))
-    return near if slip and next(letters) != next(letters) else ""
+    return near if slip and not differ_in_numbers(name, near) else ""
 
 
 def _slipped(

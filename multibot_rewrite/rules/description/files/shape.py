@@ -17,6 +17,7 @@ from multibot_rewrite.rules.description.files.libraries import (
 )
 from multibot_rewrite.rules.description.references.gazebo import sensors_of_joints
 from multibot_rewrite.rules.description.references.interfaces import misspelt_interfaces
+from multibot_rewrite.rules.facts.certain import lacking
 from multibot_rewrite.rules.facts.faults import faults
 from multibot_rewrite.rules.subject import Subject
 
@@ -106,7 +107,10 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
 )
 def missing(subject: Subject) -> Iterator[Problem]:
     """By what each reader requires."""
-    yield from faults("missing", subject)
+    root = subject.document.root
+    for it in faults("missing", subject):
+        # What includes a part of a robot may have its name.
+        yield from lacking(subject, [it]) if it.element is root else [it]
     yield from plugins_without_library(subject)
 
 

@@ -20,6 +20,7 @@ from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.rules.description.references.shared import (
     name_of,
 )
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
@@ -102,7 +103,8 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     """Every name that another element has."""
     systems = subject.elements.tops("ros2_control")
     for it in _repeated((name_of(system), system) for system in systems if name_of(system)):
-        yield Problem(it, f"there is another <ros2_control> {name_of(it)!r}", "name", "rename one")
+        message = f"there is another <ros2_control> {name_of(it)!r}"
+        yield Problem(it, message, "name", "rename one", level=since_jazzy(subject))
 
 
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:

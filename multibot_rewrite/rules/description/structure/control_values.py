@@ -20,6 +20,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.structure.shared import BOUNDED, LIMIT, one_joint
+from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 _COMMAND, _STATE = "command_interface", "state_interface"
@@ -36,12 +37,16 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
         for name, words in _WHOLE.items():
             text = system.get(name, "0")
             if not text.isdigit() and "$" not in text:
-                yield Problem(system, f"{name} is {text!r}, not {words}", name)
+                message = f"{name} is {text!r}, not {words}"
+                yield Problem(system, message, name, level=since_jazzy(subject))
         for it in _params(system):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
-                yield Problem(it, f"{it.get('name')} is {text!r}, which is no number", "", hint)
+                message = f"{it.get('name')} is {text!r}, which is no number"
+                # Humble keeps min and max and reads neither (component_parser.cpp:261).
+                level = since_jazzy(subject) if it.get("name") != "initial_value" else ""
+                yield Problem(it, message, "", hint, level=level)
 
 
 def _params(system: _Element) -> Iterator[_Element]:

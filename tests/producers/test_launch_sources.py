@@ -1,0 +1,133 @@
+"""Launch files of packages that are there as sources: where their files are, what includes read."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.producers.launch.failures import failure
+from multibot_rewrite.producers.launch.include_arguments import not_among, unread
+from multibot_rewrite.producers.launch.install_rules import link_share
+from multibot_rewrite.producers.launch.kept_paths import lasting
+
+CMAKE = """\
+install(DIRECTORY config/ DESTINATION share/${PROJECT_NAME}/params)
+install(DIRECTORY assets/models DESTINATION "share/${PROJECT_NAME}")
+install(FILES top.yaml DESTINATION share/${PROJECT_NAME}/launch)
+install(DIRECTORY include/ DESTINATION include)
+"""
+
+
+def write(folder: Path, *files: str) -> Path:
+    for it in files:
+        (folder / it).parent.mkdir(parents=True, exist_ok=True)
+        (folder / it).write_text("")
+    return folder
+
+
+def test_a_share_folder_is_as_cmake_installs_it(tmp_path: Path) -> None:
+    files = ("config/nav.yaml", "assets/models/a.sdf", "top.yaml", "launch/b.launch.py")
+    source = write(tmp_path / "src", *files)
+    (source / "CMakeLists.txt").write_text(CMAKE)
+    link_share("mine", str(source), str(tmp_path / "share"))
+    wanted = {
+        "params/nav.yaml": "config/nav.yaml",
+        "models/a.sdf": "assets/models/a.sdf",
+        "launch/top.yaml": "top.yaml",
+        # What stands in the sources is found where it stands, too.
+        "launch/b.launch.py": "launch/b.launch.py",
+        "config/nav.yaml": "config/nav.yaml",
+    }
+    found = {it: os.path.realpath(tmp_path / "share" / it) for it in wanted}
+    assert found == {it: str(source / own) for it, own in wanted.items()}
+    assert not (source / "launch" / "top.yaml").exists()
+
+
+def test_a_share_folder_of_a_package_in_python(tmp_path: Path) -> None:
+    source = write(tmp_path / "src", "setup.py", "mine/assets/a.sdf", "mine/__init__.py")
+    link_share("mine", str(source), str(tmp_path / "share"))
+    assert (tmp_path / "share/assets/a.sdf").is_file() and (tmp_path / "share/setup.py").is_file()
+    assert not (source / "assets").exists()
+
+
+PYTHON = 'DeclareLaunchArgument("map"), DeclareLaunchArgument(name="start_x", default_value="0")'
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "found"),
+    [
+        (PYTHON, ["map", "start_x"], []),
+        (PYTHON, ["strat_x"], [("strat_x", "start_x")]),
+        (PYTHON, ["start_x", "strat_x"], [("strat_x", "")]),
+        (PYTHON, ["rviz"], [("rviz", "")]),
+        (f'{PYTHON}; LaunchConfiguration("rviz")', ["rviz"], []),
+        (f"{PYTHON}; LaunchConfiguration(robot + '_x')", ["rviz"], []),
+        (f"{PYTHON}; IncludeLaunchDescription(other)", ["rviz"], []),
+        (f"{PYTHON}; IncludeLaunchDescription(other)", ["strat_x"], [("strat_x", "start_x")]),
+        ("LaunchDescription([])", ["rviz"], []),
+        ('<launch><arg name="start_x"/></launch>', ["strat_x"], [("strat_x", "start_x")]),
+        ("launch:\n- arg: {name: start_x}\n", ["strat_x"], [("strat_x", "start_x")]),
+    ],
+)
+def test_arguments_that_the_other_file_does_not_read(
+    text: str, given: list[str], found: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    (tmp_path / "child").write_text(text)
+    assert list(unread(str(tmp_path / "child"), given)) == found
+
+
+def test_arguments_that_differ_in_their_number() -> None:
+    assert list(not_among(["robot3_x"], ["robot1_x", "robot2_x"])) == []
+
+
+def test_a_file_that_the_launch_makes_is_kept_as_a_text(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, sources, real = tmp_path / "made", tmp_path / "made" / "sources", tmp_path / "real"
+    made.mkdir()
+    (made / "r.sdf").write_text("<sdf/>")
+    write(real, "a.world")
+    sources.symlink_to(real)
+    monkeypatch.setattr("tempfile.tempdir", str(made))
+    words = ["-file", str(made / "r.sdf"), "-name", "r", str(sources / "a.world"), "/tf/"]
+    kept = ["-string", "<sdf/>", "-name", "r", str(real / "a.world"), "/tf/"]
+    assert list(lasting(words)) == kept
+
+
+def raised(text: str) -> BaseException:
+    try:
+        exec(text)
+    except BaseException as error:
+        return error
+    raise AssertionError(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "import os; os.environ['NOT_SET_HERE']",
+            "the environment variable NOT_SET_HERE is not set",
+        ),
+        ("raise SystemExit(2)", "it ends itself (sys.exit(2)); give it the arguments"),
+        (
+            "open('/nowhere/a.yaml')",
+            "FileNotFoundError: [Errno 2] No such file or directory: '/now",
+        ),
+        (
+            "import subprocess; subprocess.run(['no_such_program'])",
+            "it starts the program 'no_such",
+        ),
+    ],
+)
+def test_why_a_launch_file_cannot_be_read(text: str, said: str) -> None:
+    assert failure(raised(text)).startswith(said)
+
+
+def test_a_path_of_a_variable_that_is_not_set() -> None:
+    try:
+        os.path.join(os.getenv("NOT_SET_HERE"), "a")  # type: ignore[arg-type]
+    except TypeError as error:
+        assert failure(error).startswith("the environment variable NOT_SET_HERE is not set here")
