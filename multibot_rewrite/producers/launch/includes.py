@@ -45,9 +45,7 @@ def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode |
     # Before it is read, launch has the parts of the path (jazzy launch_description_source.py).
     name = (_LAUNCH_FILE.findall(path) or [""])[-1]
     spawns = name in _SPAWNS
-    # Of a package that is missing here the path is not known.
-    known_other = bool(path) and not (spawns or name in _SIMULATES)
-    if package not in SIMULATORS or known_other:
+    if package not in SIMULATORS or not (spawns or name in _SIMULATES):
         return None
     known = _SPAWN_WORDS if spawns else _SIM_WORDS
     for one, near in not_among(given_names(include, here.context), known, whole=spawns):
