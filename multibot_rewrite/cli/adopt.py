@@ -26,6 +26,8 @@ def run(options: argparse.Namespace) -> int:
     deliver_changed(options, made.before, made.after, write=options.in_place)
     if made.argument:
         many = plural(len(made.proved), "description")
+        if made.configurations:
+            many += f" and {plural(len(made.configurations), 'other configuration')}"
         note(
             options,
             f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved",

@@ -33,6 +33,7 @@ from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
+from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.refactor.configurations import configurations
 from multibot_rewrite.refactor.declaring import declared, free_name
 from multibot_rewrite.refactor.launches import with_launches
@@ -104,24 +105,27 @@ def adopt(
     if not found:
         return Adopted("", {}, {}, (), (), unread, already)
     found = list(_configured(found, how, tree, unread))
-    argument = free_name(found)
-    made = _made(found, argument, how)
+    made = _made(found, free_name(found), how)
+    made = _with_files_beside(made, folder, package.found, found, trust)
+    return made._replace(unread=unread, already=already)
+
+
+def _with_files_beside(
+    made: Adopted, folder: str, there: Found, found: Sequence[Description], trust: bool
+) -> Adopted:
+    """With launch files and the parameters that they fill in, and what other files name."""
     names = set(_names(found))
     urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
-    filled = fillable(package.found.params, urdfs, names, argument, TRIED)
-    after = made.after
-    launches = with_launches(folder, package.found.launch, argument, after, TRIED, trust, filled)
+    filled = fillable(there.params, urdfs, names, made.argument, TRIED)
+    launches = with_launches(folder, there.launch, made.argument, made.after, TRIED, trust, filled)
     # A plain description that becomes a xacro is one of them.
     files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
     files |= {it.path for it in filled.values() if it.path in launches.after}
     elsewhere = named_elsewhere(folder, names, set(map(os.path.realpath, files)))
-    before = {**made.before, **{path: read_file(path) for path in launches.after}}
     return made._replace(
-        before=before,
+        before={**made.before, **{path: read_file(path) for path in launches.after}},
         after={**made.after, **launches.after},
         left=tuple(dict.fromkeys((*made.left, *launches.left, *elsewhere))),
-        unread=unread,
-        already=already,
         launches=launches.proved,
     )
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
@@ -174,3 +177,57 @@ def test_every_public_call_is_explained(read: dict[Path, Html], site: Path) -> N
     assert {f"multibot_rewrite.{it}" for it in multibot_rewrite.__all__} <= ids
     assert "multibot_rewrite.Rewrite.not_proved" in ids
     assert "Raises InputError" in (site / "api" / "index.html").read_text()
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    """Serves a folder and writes no log."""
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.fixture
+def address(site: Path) -> Iterator[str]:
+    """The site as a reader opens it: its search asks a server."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.mark.deep
+@pytest.mark.live
+def test_the_site_in_a_browser(address: str, tmp_path: Path) -> None:
+    """Pictures are shown, the switch makes it dark, and the search finds a page."""
+    pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
+    from selenium import webdriver
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if not (chromium and driver):
+        pytest.skip("no browser: apt install chromium chromium-driver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,900")
+    for flag in (*flags, f"--user-data-dir={tmp_path}"):
+        options.add_argument(flag)
+    browser = webdriver.Chrome(options, webdriver.ChromeService(driver))
+    wait, ask = WebDriverWait(browser, 60), browser.execute_script
+    try:
+        browser.get(f"{address}/tutorials/layouts/index.html")
+        wide = "return [...document.querySelectorAll('article img')].map(it => it.naturalWidth)"
+        wait.until(lambda _: len(ask(wide)) >= 5 and all(ask(wide)))
+        colour = "return getComputedStyle(document.body).backgroundColor"
+        light = ask(colour)
+        assert ask("return document.body.dataset.mdColorScheme") == "default"
+        ask("document.querySelector('label[for=__palette_1]').click()")
+        wait.until(lambda _: ask("return document.body.dataset.mdColorScheme") == "slate")
+        assert ask(colour) != light
+        ask("document.querySelector('input[name=query]').focus()")
+        browser.switch_to.active_element.send_keys("frame_prefix")
+        hits = "return [...document.querySelectorAll('.md-search-result__link')].map(it => it.href)"
+        wait.until(lambda _: ask(hits))
+        assert any("/coming-from/" in it or "/recipes/" in it for it in ask(hits))
+    finally:
+        browser.quit()

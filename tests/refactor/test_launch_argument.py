@@ -76,7 +76,11 @@ def test_what_runs_xacro_otherwise_is_left_with_its_line(case: str) -> None:
 
 def test_another_robots_launch_file_is_nothing_of_ours() -> None:
     source = f'{HEAD}text = Command(["xacro ", "other.xacro"])\n'
-    assert with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"]) == (None, ())
+    assert with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"]) == (
+        None,
+        (),
+        (),
+    )
 
 
 def test_a_file_that_is_no_python_is_left() -> None:

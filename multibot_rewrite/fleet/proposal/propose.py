@@ -236,7 +236,7 @@ def see(wanted: Wanted) -> Seen:
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
         _refuse(_by_launches(looked, found), others)
-        where = ", ".join(found.folders)
+        where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
         raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
     best = chosen(usable, found)
     _refuse(

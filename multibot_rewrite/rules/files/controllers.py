@@ -146,8 +146,9 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
     "section-of-no-controller",
     WARNING,
     what="A section has the parameters of a controller, and no controller manager declares it. In "
-    "a build it is a note unless it is called nearly as a declared controller that has no "
-    "section, or is the only one for such a controller. Of a file alone only that is reported.",
+    "a build it is a note, with two exceptions. Its name is nearly that of a declared controller "
+    "without a section, or it is the only one for such a controller. Of a file alone only that is "
+    "reported.",
     why="Nothing reads the section: the controller that is meant runs with its defaults, or fails.",
     fix="Give the section the controller's name, or declare the controller below controller_manager.",
     bad=a_controller("arm_controller", "arm_controler"),

@@ -221,8 +221,8 @@ def _named_files(it: LaunchedNode) -> Iterator[str]:
 @launch_rule(
     "MG714",
     "program-misspelt",
-    what="A launch file starts a program that its package has not, and that is like one that it has; "
-    "or the package is not there, and one with the program is called nearly so.",
+    what="A launch file starts a program that its package does not have, but it has a similar one. "
+    "Or the package is not there, and one with a similar name has the program.",
     why="launch ends there: the executable, or the package, is not found.",
     fix="Write the name of the program, or of its package.",
     bad=launch_of(

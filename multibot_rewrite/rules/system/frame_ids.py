@@ -138,8 +138,8 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     ERROR,
     what="A message of one robot's joint states, or a trajectory that is sent to it, names joints of"
     " another robot.",
-    why="robot_state_publisher and MoveIt leave out joints that they do not know: the robot's own parts"
-    " do not move in tf, or the arm does not move.",
+    why="robot_state_publisher and MoveIt leave out joints that they do not know. The robot's own "
+    "parts do not move in tf, or the arm does not move.",
     fix="Give the sender the joints of its own robot: a parameter file (`joints`) or a description of"
     " the other robot is in use.",
     bad="""\
