@@ -28,12 +28,13 @@ READERS = {
     "lint/test_lint_formats.py": ("junitparser", "markdown_it", "sarif_pydantic"),
     "lint/test_lint_hooks.py": ("junitparser",),
 }
-collect_ignore = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
+UNREAD = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
+collect_ignore = [*UNREAD]
 
 
 def pytest_report_header() -> str:
     """The files that are left out."""
-    return f"left out, no readers: {', '.join(collect_ignore)}" if collect_ignore else ""
+    return f"left out, no readers: {', '.join(UNREAD)}" if UNREAD else ""
 
 
 settings.register_profile(
@@ -64,7 +65,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 # So many rows of a test are in the fast run; of one with ``sample``, whose rows cost more, one.
 FEW = 3
 # So many at most are in the usual run.
-MANY = 20
+MANY = 12
 
 
 # What -m asks of the fast run, and of the usual one, and the marks that leave a test out.
@@ -76,9 +77,13 @@ MARKED = re.compile(r"^pytestmark = \[?\s*((?:pytest\.mark\.\w+,?\s*)+)", re.MUL
 
 
 def _left_out(config: pytest.Config) -> set[str]:
-    """The marks of tests that need not even be made: two of three are in no fast run."""
-    named = any("::" in it for it in config.args)
-    return set() if named else LEFT_OUT.get(config.option.markexpr, set())
+    """The marks of tests that are not even made: two of three are in no fast run."""
+    return set() if _names_tests(config) else LEFT_OUT.get(config.option.markexpr, set())
+
+
+def _names_tests(config: pytest.Config) -> bool:
+    """Who names tests gets all of their rows."""
+    return bool(config.option.keyword) or any("::" in it for it in config.args)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -103,7 +108,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> Iterator[None]:
     the usual run are up to MANY, of those with ``sample(m)`` the first of every m.
     """
     yield
-    without, rows = _left_out(metafunc.config), metafunc._calls
+    config, rows = metafunc.config, metafunc._calls
+    if _names_tests(config) and config.option.markexpr in LEFT_OUT:
+        return
+    without = _left_out(config)
     marks = {it.name: it for it in metafunc.definition.iter_markers()}
     for at, row in enumerate(rows):
         row.marks.extend(_marks_of_row(at, len(rows), marks, {it.name for it in row.marks}))
@@ -145,18 +153,25 @@ LIVE_FILES = (
     *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),
     *("test_tutorials", "test_walk"),
 )
+# Files whose tests look at the syntax trees of all sources, which are made once.
+SOURCES_FILES = (
+    *("test_architecture", "test_bounded", "test_conventions", "test_dependencies", "test_layers"),
+    *("test_plain_words", "test_record.", "test_releases_are_passed", "test_sentences"),
+)
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """With ``-n 3`` the tests of a file stay together, and all files with nodes: two of them at once
-    would meet in a domain."""
+    """With ``-n 3`` the tests of a file stay together, all files with nodes: two of them at once would
+    meet in a domain, and those that need the same that costs much."""
     from xdist.scheduler import LoadFileScheduling
 
     class Scheduling(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            return "live" if any(word in file for word in LIVE_FILES) else file
+            groups = {"live": LIVE_FILES, "sources": SOURCES_FILES}
+            found = (it for it, words in groups.items() if any(word in file for word in words))
+            return next(found, file)
 
     return Scheduling(config, log)
 

@@ -54,11 +54,19 @@ def leftovers(folder: Path) -> list[str]:
     return [it.name for it in folder.rglob("*") if "multibot-build" in it.name or ".tmp" in it.name]
 
 
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a fleet that was built once."""
+    folder = tmp_path_factory.mktemp("built")
+    fleet_folder(folder)
+    assert build(folder) == 0
+    return folder
+
+
 @pytest.fixture
-def out(tmp_path: Path) -> Path:
-    """The output folder of a fleet that was built once."""
-    fleet_folder(tmp_path)
-    assert build(tmp_path) == 0
+def out(built: Path, tmp_path: Path) -> Path:
+    """Its output folder, in a copy."""
+    shutil.copytree(built, tmp_path, dirs_exist_ok=True, symlinks=True)
     return tmp_path / "out"
 
 

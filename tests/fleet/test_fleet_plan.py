@@ -30,10 +30,12 @@ def made(folder: Path, text: str, **files: str) -> dict[str, str]:
     return {it.path: it.data.decode() for it in make_outputs(plan).files}
 
 
-@pytest.fixture(params=LAYOUTS, ids=lambda it: it[0])
-def fleet(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, dict[str, str]]:
+@pytest.fixture(scope="module", params=LAYOUTS, ids=lambda it: it[0])
+def fleet(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[str, dict[str, str]]:
     layout, affix = request.param
-    return layout, made(tmp_path, mixed(layout, affix))
+    return layout, made(tmp_path_factory.mktemp(layout), mixed(layout, affix))
 
 
 def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Path) -> None:

@@ -91,7 +91,7 @@ def test_what_nothing_relies_on_is_a_warning(
 
 @pytest.mark.live
 @pytest.mark.skipif(not find_spec("rclpy"), reason="rehearse starts nodes: install rclpy")
-@pytest.mark.parametrize("command", ["plan", "rehearse"])
+@pytest.mark.parametrize("command", ["plan", pytest.param("rehearse", marks=pytest.mark.deep)])
 def test_other_commands_say_it_too(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

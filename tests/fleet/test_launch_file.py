@@ -88,7 +88,7 @@ def test_what_two_robots_of_gazebo_classic_are_started_with(
     assert "ros2 run teleop_twist_keyboard" in text
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "example")
     fleet, out = tmp_path / "example" / "nav2.yaml", tmp_path / "out"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -15,12 +16,20 @@ def build(folder: Path, *more: str) -> int:
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), *more])
 
 
-@pytest.fixture
-def out(tmp_path: Path) -> Path:
-    """What a build made whose second robot is called otherwise now."""
-    fleet = fleet_folder(tmp_path)
-    assert build(tmp_path) == 0
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what a build made whose second robot is called otherwise now."""
+    folder = tmp_path_factory.mktemp("built")
+    fleet = fleet_folder(folder)
+    assert build(folder) == 0
     fleet.write_text(fleet.read_text().replace("robot2", "robot3"))
+    return folder
+
+
+@pytest.fixture
+def out(built: Path, tmp_path: Path) -> Path:
+    """Its output folder, in a copy."""
+    shutil.copytree(built, tmp_path, dirs_exist_ok=True)
     return tmp_path / "out"
 
 

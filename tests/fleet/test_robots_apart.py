@@ -66,7 +66,7 @@ def test_a_robot_without_a_pose_is_at_the_origin(tmp_path: Path) -> None:
     assert found(tmp_path, "  - {name: a}\n  - {name: b}\n") == [], "somebody else places them"
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_neighbours_of_a_large_fleet(tmp_path: Path) -> None:
     robots = "  - {name: r, count: 450, pose: {x: 0}, step: {y: 0.4}}\n"
     assert len(found(tmp_path, robots)) > 0

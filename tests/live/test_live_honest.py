@@ -8,7 +8,6 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any
@@ -76,17 +75,6 @@ def crowd(count: int) -> tuple[list[str], list[dict[str, Any]]]:
 Done = subprocess.CompletedProcess[str]
 
 
-@pytest.fixture(scope="module")
-def looks(tmp_path_factory: pytest.TempPathFactory) -> tuple[Done, Done]:
-    """A look at more participants than there may be, and one into another domain; side by side."""
-    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
-    folder = tmp_path_factory.mktemp("looks")
-    with ThreadPoolExecutor() as pool:
-        both = pool.submit(at_a_crowd, folder), pool.submit(elsewhere, folder)
-        one, other = (it.result() for it in both)
-    return one, other
-
-
 def at_a_crowd(folder: Path) -> Done:
     names, nodes = crowd(36)
     plan = write_plan(folder / "crowd.yaml", names, ("drive", "pilot"))
@@ -101,8 +89,8 @@ def elsewhere(folder: Path) -> Done:
 
 
 @pytest.mark.deep
-def test_the_participants_beyond_32_are_not_called_missing(looks: tuple[Done, Done]) -> None:
-    done, _ = looks
+def test_the_participants_beyond_32_are_not_called_missing(ros: None, tmp_path: Path) -> None:
+    done = at_a_crowd(tmp_path)
     assert_inconclusive(done)
     assert done.stdout.count(": inconclusive: MG101 node /robot") == 36 - LIMIT
     limit, verdict, _ = done.stderr.splitlines()
@@ -310,8 +298,8 @@ def snapshot(caveats: tuple[Caveat, ...]) -> System:
 # --- looking elsewhere, or not at all
 
 
-def test_another_domain_is_named(looks: tuple[Done, Done]) -> None:
-    _, done = looks
+def test_another_domain_is_named(ros: None, tmp_path: Path) -> None:
+    done = elsewhere(tmp_path)
     assert_inconclusive(done)
     nothing, _ = done.stderr.splitlines()
     assert f"no node was seen (domain {domain(86)}, range LOCALHOST)" in nothing

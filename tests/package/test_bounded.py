@@ -14,8 +14,8 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from parsed import sources
 
-import multibot_rewrite
 from multibot_rewrite import knowledge
 from multibot_rewrite.base import bounded
 from multibot_rewrite.base.model import InputError, MultibotError
@@ -34,7 +34,6 @@ from multibot_rewrite.system.json import from_json
 
 NODES = Path(knowledge.__file__).parent / "nodes"
 
-PACKAGE = Path(multibot_rewrite.__file__).parent
 Reader = Callable[[str], object]
 
 
@@ -259,20 +258,16 @@ def test_line_ends_are_those_of_unix(tmp_path: Path) -> None:
     assert bounded.read_text(str(tmp_path / "text")) == "a\nb\nc\n"
 
 
-def calls(file: Path) -> set[str]:
-    tree = ast.parse(file.read_text())
-    return {ast.unparse(it.func) for it in ast.walk(tree) if isinstance(it, ast.Call)}
+def calls(tree: ast.Module) -> set[str]:
+    called = (it.func for it in ast.walk(tree) if isinstance(it, ast.Call))
+    return {ast.unparse(it) for it in called if isinstance(getattr(it, "value", None), ast.Name)}
 
 
 @pytest.mark.slow
 def test_the_parsers_are_called_in_one_place() -> None:
     parsers = {f"{module}.{name}" for module in ("yaml", "json") for name in ("load", "loads")}
     parsers |= {f"yaml.{name}" for name in ("compose", "parse", "safe_load", "load_all")}
-    found = {
-        path.relative_to(PACKAGE).as_posix()
-        for path in PACKAGE.rglob("*.py")
-        if calls(path) & parsers
-    }
+    found = {path for path, tree in sources().items() if calls(tree) & parsers}
     # What these read is written by the tool: its schema, and messages between its processes.
     own = {"fleet/file/fleet_data.py", "live/staged.py", "producers/ros/request.py"}
     own |= {"producers/launch/records.py", "producers/ros/ask.py", "producers/ros/child.py"}

@@ -35,7 +35,6 @@ class Case(NamedTuple):
     output: bytes
 
 
-@cache
 def load_cases(home: Path = HOME) -> list[Case]:
     """Every case below ``home``; raises CaseError for an empty folder or a name used twice."""
     cases: dict[str, Case] = {}
@@ -48,6 +47,12 @@ def load_cases(home: Path = HOME) -> list[Case]:
                 raise CaseError(f"{file}: there is a case {cases[file.stem].name} already")
             cases[file.stem] = read_case(f"{folder.name}/{file.stem}", file.read_bytes())
     return list(cases.values())
+
+
+@cache
+def all_cases() -> list[Case]:
+    """Those of this repository, read once."""
+    return load_cases()
 
 
 def read_case(name: str, data: bytes) -> Case:

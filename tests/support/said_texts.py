@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from parsed import sources
 from paths import ROOT
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
@@ -33,9 +34,9 @@ _IN_A_LINE = re.compile(r"(?<=[.!?;])[)'\"]*\s+|\n")
 def messages() -> tuple[tuple[str, str], ...]:
     """Every text of more than one word in the code that is no docstring: with file and line."""
     return tuple(
-        (f"{path.relative_to(ROOT)}:{line}", text)
-        for path in sorted(PACKAGE.rglob("*.py"))
-        for line, text in _texts(ast.parse(path.read_text()))
+        (f"multibot_rewrite/{path}:{line}", text)
+        for path, tree in sources().items()
+        for line, text in _texts(tree)
         if " " in text
     )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from graph_cases import as_planned, environment, sent, without_node
 
 from multibot_rewrite.base.naming import make_naming, spelled
@@ -47,6 +49,7 @@ NODES = (
 LINKS = ("base_link", "laser")
 
 
+@cache
 def plan(layout: str = "L2") -> System:
     naming = make_naming(layout)
     return expect(build_table(ROBOTS, NODES, naming, release=NEWEST_LTS), naming, frames(layout))
@@ -57,6 +60,7 @@ def frames(layout: str) -> dict[str, list[str]]:
     return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
+@cache
 def healthy(layout: str = "L2") -> System:
     """The graph exactly as planned, on odometry."""
     graph = as_planned(plan(layout))

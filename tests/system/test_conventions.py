@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
+from parsed import sources
 
-import multibot_rewrite
 from multibot_rewrite.base.conventions import (
     EVERYBODYS,
     FRAMES,
@@ -23,18 +22,17 @@ from multibot_rewrite.base.conventions import (
 )
 from multibot_rewrite.base.naming import affix, make_naming
 
-PACKAGE = Path(multibot_rewrite.__file__).parent
 FRAME_WORDS = {it.name for it in FRAMES}
 
 
 def lists() -> Iterator[tuple[str, set[str]]]:
     """Every literal list, tuple or set of the package that holds nothing but texts, with its place."""
-    for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+    for path, tree in sources().items():
+        for node in ast.walk(tree):
             if isinstance(node, ast.Tuple | ast.List | ast.Set) and len(node.elts) > 1:
                 words = [it.value for it in node.elts if isinstance(it, ast.Constant)]
                 if len(words) == len(node.elts) and all(isinstance(it, str) for it in words):
-                    yield f"{path.relative_to(PACKAGE)}:{node.lineno}", {str(it) for it in words}
+                    yield f"{path}:{node.lineno}", {str(it) for it in words}
 
 
 @pytest.mark.slow

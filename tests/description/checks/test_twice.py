@@ -116,7 +116,7 @@ EDITS = {
 }
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("edit", EDITS)
 @pytest.mark.parametrize("robot", NAMES)
 @pytest.mark.parametrize("side", SIDES)

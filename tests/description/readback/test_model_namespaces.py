@@ -100,7 +100,7 @@ SOURCES = [
 ]
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
 @pytest.mark.parametrize("release", [*RELEASED, MAIN])
 @pytest.mark.parametrize("source", SOURCES)
@@ -113,7 +113,7 @@ def test_two_robots_do_not_meet(source: str, release: str, layout: str) -> None:
     assert all(len(readings[a].names) == len(readings[b].names) for a, b in combinations(texts, 2))
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
 @pytest.mark.parametrize("release", [*RELEASED, MAIN])
 @pytest.mark.parametrize("source", SOURCES)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import cast
 
 import pytest
-from case_files import Case, CaseError, load_cases
+from case_files import Case, CaseError, all_cases, load_cases
 from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
@@ -30,7 +30,7 @@ from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.collect import declarations
 
 ROBOTS = ("robot1", "robot2")
-CASES = load_cases()
+CASES = all_cases()
 BY_NAME = {case.name: case for case in CASES}
 REWRITTEN = [case for case in CASES if case.expect != "refused"]
 CHANGED = [case for case in CASES if case.expect == "changed"]

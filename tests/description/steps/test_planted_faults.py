@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import cast
 
 import pytest
-from case_files import Case, load_cases
+from case_files import Case, all_cases
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from paths import ROBOTS
@@ -29,7 +29,7 @@ from multibot_rewrite.description.steps.collect import declarations
 
 # Words of a case that are not of its naming.
 NO_POLICY = ("again", "file", "urdf", "distro")
-CASES = [case for case in load_cases() if case.expect == "changed"]
+CASES = [case for case in all_cases() if case.expect == "changed"]
 SOME = CASES[::40]
 options = st.fixed_dictionaries(
     {"layout": st.sampled_from(LAYOUTS), "affix": st.sampled_from(("postfix", "prefix"))}

@@ -113,6 +113,7 @@ WARNED = """\
 """
 
 
+@pytest.mark.sample(3)
 @pytest.mark.more
 @pytest.mark.parametrize(("on_a_terminal", "term"), [(True, "xterm"), (True, "dumb"), (False, "")])
 def test_what_is_looked_at_is_shown_on_a_terminal(

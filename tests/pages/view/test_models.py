@@ -222,6 +222,7 @@ def test_what_is_no_mesh_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert isinstance(box, Mesh) and len(box.faces) == 12 * 12
 
 
+@pytest.mark.more
 def test_a_mesh_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     with (tmp_path / "a.stl").open("wb") as file:
         file.truncate(MOST_BYTES + 1)
