@@ -59,7 +59,8 @@ def place_of(text: str) -> Place:
 
 
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, is switched ``off``, or it is ``unknown``.
+    """Whether something is there: ``runs`` always, ``may`` on a condition, is switched ``off``, or
+    it is ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
     runs.
