@@ -69,6 +69,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",
+            "fleet.checks.across_domains",
             "fleet.robots.joined_robots",
             "fleet.robots.own_ports",
             "fleet.outputs.given_world",

@@ -26,6 +26,7 @@ shared_nodes: {/clock_bridge: [[publishes, topic, /clock, rosgraph_msgs/msg/Cloc
 shared_topics: [/clock]
 shared_frames: [map]
 ignored_nodes: [/rqt*]
+domains: {robot1: 11, shared_nodes: 10}
 robots:
   robot1:
     tf: /robot1/tf
@@ -63,6 +64,8 @@ WRONG = {
     "x: {y: 1}": "x: [1, 2.5]",
     "sends: {/robot1/amcl: [odom]}": "sends: {/robot1/amcl: map -> odom}",
     "level: bad": "level: warning",
+    "domains: {robot1: 233,": "domains: {robot1: 11,",
+    "domains: {robot1: true,": "domains: {robot1: 11,",
     "one_of: [a]": "one_of: [[/robot1/a, /robot1/b]]",
 }
 

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean
@@ -13,9 +13,6 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 from multibot_rewrite.system.domains import USUAL_DOMAIN
 from multibot_rewrite.system.records import Domain
-
-if TYPE_CHECKING:
-    from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 
 DOMAINS, CROSSING, FREE_FLEET, SHARED = "domains", "crossing", "free_fleet", "shared_nodes"
 _NEED_DOMAINS = (CROSSING, FREE_FLEET)
@@ -44,8 +41,9 @@ class Apart(NamedTuple):
 TOGETHER = Apart()
 
 
-def apart_of(read: FleetData, robots: Sequence[RobotSpec]) -> Apart:
-    """What a fleet file says; raises InputError with its line where that does not fit together."""
+def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
+    """What a fleet file says; ``robots`` are the names with the namespaces. Raises InputError with its
+    line where that does not fit together."""
     data = read.data
     for key in (it for it in _NEED_DOMAINS if it in data and DOMAINS not in data):
         raise _wrong(read, key, f"write {DOMAINS} as well, with the domain of each robot")
@@ -54,7 +52,7 @@ def apart_of(read: FleetData, robots: Sequence[RobotSpec]) -> Apart:
     given = data[DOMAINS]
     for what in _faults(data, given, robots):
         raise _wrong(read, DOMAINS, what)
-    numbers = {it.namespace: given[it.name] for it in robots}
+    numbers = {space: given[name] for name, space in robots.items()}
     numbers[""] = given.get(SHARED, USUAL_DOMAIN)
     return Apart(
         tuple(Domain(*it) for it in numbers.items()),
@@ -76,10 +74,10 @@ def _wrong(read: FleetData, key: str, what: str) -> InputError:
 
 
 def _faults(
-    data: Mapping[str, Any], given: Mapping[str, int], robots: Sequence[RobotSpec]
+    data: Mapping[str, Any], given: Mapping[str, int], robots: Mapping[str, str]
 ) -> Iterator[str]:
-    lacking = [it.name for it in robots if it.name not in given]
-    unknown = [it for it in given if it != SHARED and it not in {own.name for own in robots}]
+    lacking = [it for it in robots if it not in given]
+    unknown = [it for it in given if it != SHARED and it not in robots]
     if lacking:
         near = next(filter(None, (did_you_mean(lacking[0], [it]) for it in unknown)), "")
         yield f"{lacking[0]} has none; give it one{f' ({near})' if near else ''}"

@@ -110,7 +110,7 @@ def read_fleet(
         zenoh_of(read),
         data.get("simulator_world", ""),
         read.places.get(("simulator_world",), (read.file, 1)),
-        apart_of(read, robots),
+        apart_of(read, {it.name: it.namespace for it in robots}),
     )
 
 

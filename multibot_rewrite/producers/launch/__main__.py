@@ -22,6 +22,16 @@ NO_LAUNCH = (
     "launch is not installed here, and its stand-in reads launch files in Python alone: source ROS 2 "
     "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 )
+# What launch says of the file, too.
+OF_THE_FILE = (
+    *(
+        "SyntaxError:",
+        "RecursionError:",
+        "FileNotFoundError:",
+        "AttributeError: module 'launch_file'",
+    ),
+    *("the environment variable", "it ends itself", "it starts the program"),
+)
 
 
 def main() -> int:
@@ -37,7 +47,8 @@ def main() -> int:
             with standing_in() if stands_in else nullcontext():
                 graph = read_graph(order, folder)._replace(stood_in=stands_in)
         except UnreadableError as error:
-            print(f"{error}; {NO_LAUNCH}" if stands_in else error, file=sys.stderr)
+            own = str(error).startswith(OF_THE_FILE)
+            print(f"{error}; {NO_LAUNCH}" if stands_in and not own else error, file=sys.stderr)
             return UNREADABLE
     with os.fdopen(answer, "w", encoding="utf-8") as out:
         out.write(to_json(graph))

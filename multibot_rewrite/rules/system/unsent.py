@@ -53,11 +53,13 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
         others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
         message = f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}"
         hint = "start what sends it for the other robot"
-        yield nothing_known_sends.finding(message, hint, level=ERROR, robot=robot, names=lacked)
+        yield nothing_known_sends.finding(
+            message, hint, level=ERROR, robot=robot, names=tuple(lacked)
+        )
     if rest:
         hint = "name a stack or nodes that do, if no driver of its own does"
         message = f"no known node sends {shorten(rest, _LISTED)}"
-        yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
+        yield nothing_known_sends.finding(message, hint, robot=robot, names=tuple(rest))
 
 
 def _given(seen: Index) -> Iterator[str]:
