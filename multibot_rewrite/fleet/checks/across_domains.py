@@ -33,9 +33,9 @@ NOT_ACROSS = declare(
     "MF849",
     "not-across-domains",
     ERROR,
-    what="Something of a fleet is in another ROS domain than what it works with: a plugin of the "
-    "simulator, which has one process, a service or an action, or a node that the launch file itself "
-    "has to reach.",
+    what="Something of a fleet is in another ROS domain than what it works with. That is a plugin "
+    "of the simulator, which has one process, a service or an action, or a node that the launch "
+    "file reaches.",
     why="Nodes of two domains never see each other, and domain_bridge brings topics alone.",
     fix="Give both one domain, or leave out `domains:`. Start the robots that the line names with a "
     "launch of their own: `ros2 launch fleet.launch.py robots:=robot1`.",
