@@ -188,7 +188,7 @@ def stamped(child: str, x: float = 0.0) -> Any:
     at = SimpleNamespace(x=x, y=0.0, z=0.0)
     turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     return SimpleNamespace(
-        header=SimpleNamespace(frame_id="base"),
+        header=SimpleNamespace(frame_id="base", stamp=1.0),
         child_frame_id=child,
         transform=SimpleNamespace(translation=at, rotation=turn),
     )

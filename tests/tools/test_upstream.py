@@ -13,9 +13,9 @@ ERRORS = upstream.errors()
 HUNK = re.compile(r"@@ -(\d+)(?:,(\d+))? \+(\d+)(?:,(\d+))? @@")
 
 
-def test_there_are_thirty_of_rules_that_fail_ci() -> None:
+def test_there_are_thirty_and_none_is_a_note() -> None:
     assert len(ERRORS) == 30
-    assert {RULES[it.rule].level for it in ERRORS} == {"error"}
+    assert all(RULES[it.rule].level in ("error", "warning") for it in ERRORS)
     assert {it.rule for it in ERRORS} == upstream.BREAKS.keys()
 
 
