@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 
+from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.fleet.file.domains import FREE_FLEET, FreeFleet
@@ -22,8 +23,8 @@ from multibot_rewrite.system.records import ACTION, SERVES, Robot, System
 
 ROBOTS_FILE = "robots.yaml"
 _BATTERY, _NAVIGATE = "battery_state", "navigate_to_pose"
-_ODOM, _MAP = "odom", "map"
-_BASES = ("base_footprint", "base_link")
+_ODOM = "odom"
+_MAP = "map"
 
 
 def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]]:
@@ -105,5 +106,5 @@ def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:
         if not nodes.isdisjoint(it.publishers) and whose.plain_frame(it.parent) == _ODOM
     )
     plain = {whose.plain_frame(it): it for it in robot.frames}
-    base = next((plain[it] for it in _BASES if it in plain), _BASES[0])
+    base = next((plain[it] for it in BODY_FRAMES if it in plain), BODY_FRAMES[0])
     return next(moved, base)

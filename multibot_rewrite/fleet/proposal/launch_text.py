@@ -15,6 +15,7 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.fleet.proposal.searching import text_of
@@ -159,7 +160,7 @@ def _configured(reading: Reading, name: str, depth: int) -> Any:
     if found is UNKNOWN and name not in reading.given:
         found = reading.value(reading.text.declared.get(name), depth)
     try:
-        return yaml.safe_load(found) if isinstance(found, str) and found else found
+        return load_yaml(found) if isinstance(found, str) and found else found
     except yaml.YAMLError:
         return found
 

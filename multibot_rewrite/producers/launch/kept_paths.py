@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 LIMIT = 1 << 24
 
@@ -15,18 +15,16 @@ def is_made(path: str) -> bool:
     return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
 
 
-def lasting(words: Iterable[str]) -> Iterator[str]:
+def lasting(words: Iterable[str]) -> list[str]:
     """Words with paths that are there when the launch is over: the folder with links to sources is gone
     then. Of a file that the launch makes its text is kept (``-string``)."""
-    before = ""
-    for word in words:
-        made = before == "-file" and is_made(word) and os.path.isfile(word)
-        if before:
-            yield "-string" if made else before
-        inside = word.startswith(tempfile.gettempdir() + os.sep) and not is_made(word)
-        before = read_text(word) if made else os.path.realpath(word) if inside else word
-    if before:
-        yield before
+    kept = list(words)
+    for at, word in enumerate(kept):
+        if at and kept[at - 1] == "-file" and is_made(word) and os.path.isfile(word):
+            kept[at - 1 : at + 1] = "-string", read_text(word)
+        elif word.startswith(tempfile.gettempdir() + os.sep) and not is_made(word):
+            kept[at] = os.path.realpath(word)
+    return kept
 
 
 def read_text(path: str) -> str:

@@ -219,19 +219,32 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
     is sent and has nothing below it, while a root is called nearly so."""
     for tree in seen.trees:
         children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
+        sent, roots = _near(seen, children), _near(seen, parents - children)
         for it in tree.edges:
             usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
-            near = (
-                "" if it.parent in children or usual else _meant(it.parent, children - {it.child})
-            )
+            bare = it.parent not in children and not usual
+            near = _meant(it.parent, sent(it.parent) - {it.child}) if bare else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
                 yield _slipped(seen, tree, it, near, (it.parent, root_of(near, _above(tree))), why)
             leaf = it.child not in parents and not is_of_description(seen, it)
-            near = _meant(it.child, parents - children - {it.parent}) if leaf else ""
+            near = _meant(it.child, roots(it.child) - {it.parent}) if leaf else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and has nothing below it"
                 yield _slipped(seen, tree, it, near, (root_of(it.child, _above(tree)), near), why)
+
+
+def _near(seen: Index, frames: Collection[str]) -> Callable[[str], set[str]]:
+    """Of some frames those that another one can be meant for: of its robot, or of none."""
+    own: dict[str, set[str]] = defaultdict(set)
+    for it in frames:
+        own[seen.frame_robot(it)].add(it)
+
+    def near(frame: str) -> set[str]:
+        robot = seen.frame_robot(frame)
+        return own[robot] | own[""] if robot else set(frames)
+
+    return near
 
 
 def _meant(name: str, others: Collection[str]) -> str:
