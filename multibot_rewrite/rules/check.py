@@ -53,6 +53,8 @@ from multibot_rewrite.rules.system import (
 )
 from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
+from multibot_rewrite.rules.system.commands import command_to_nobody
+from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
@@ -109,7 +111,14 @@ def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
         found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
-        return differing.unexplained(found)
+        return differing.unexplained(_of_readers(found))
+
+
+def _of_readers(found: Sequence[Finding]) -> list[Finding]:
+    """A sender and a reader that miss each other are one finding: that of the reader."""
+    missed = {frozenset(it.names) for it in found if it.code == topic_names_miss.code}
+    sender = command_to_nobody.code
+    return [it for it in found if it.code != sender or frozenset(it.names) not in missed]
 
 
 def contradictions(seen: Index) -> list[Finding]:

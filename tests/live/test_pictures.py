@@ -475,7 +475,10 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     rows = pick(tree, "details", "finding")
     assert len(rows) == len(scene.findings) > 5
     by_code = {}
-    for row, finding in zip(rows, scene.findings, strict=True):
+    errors_first = sorted(
+        scene.findings, key=lambda it: ("error", "warning", "note").index(it.level)
+    )
+    for row, finding in zip(rows, errors_first, strict=True):
         text = row.text_content()
         assert all(part in text for part in (finding.robot, finding.node, *finding[:4]))
         target = section(tree, pick(row, "a", "place")[0].get("href")[1:])

@@ -77,7 +77,7 @@ def chain_rows() -> tuple[Fault, ...]:
         Fault(
             "the drive has a topic of its own", nav,
             renamed("/robot2/cmd_vel", "/robot2/diff_drive/cmd_vel", "/robot2/diff_drive"),
-            "MG308", ("/robot2/collision_monitor", "/robot2/diff_drive/cmd_vel"),
+            "MG303", ("/robot2/collision_monitor", "/robot2/diff_drive/cmd_vel"),
         ),
         Fault(
             "a start pose to initial_pose", nav,
