@@ -159,11 +159,12 @@ class HeaderSamples:
         # What is there in place of a frame is a word of its sender's own.
         frame = "" if topic.type in JOINTED else read_header_frame(data)
         own = self._heard[topic.name]
-        if frame is not None and (frame, *joints) not in own:
+        said = (frame or "", *joints)
+        if frame is not None and said not in own:
             age = 0.0 if topic.latched else _age(read_stamp(data))
             child = read_child_frame(data) if topic.type == ODOMETRY else ""
             told = Heard(topic.name, frame, age, child=child or "", joints=joints)
-            own[(frame, *joints)] = told
+            own[said] = told
         more = topic.has_rate and self._spanned(topic, data, mark)
         if not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES):
             self._close(topic.name)

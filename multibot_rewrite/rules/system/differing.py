@@ -155,8 +155,8 @@ def _qualities(seen: Index) -> _Values:
     for robot, made in made_of(seen).items() if not zenoh else ():
         for key, end in made.ends.items():
             if end.qos:
-                words = _words(end)
-                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
+                words, what = _words(end), (*key, "qos")
+                found[what][robot] = _Told(end.node, end.name, words, words)
     return found
 
 

@@ -164,7 +164,9 @@ def _set(found: Any, path: list[str], value: Any) -> None:
             found = found.setdefault(word, {})
         else:
             return
-    if isinstance(found, dict) and (last in found or "ros__parameters" in path):
+    if isinstance(found, list) and last.isdigit() and int(last) < len(found):
+        found[int(last)] = value
+    elif isinstance(found, dict) and (last in found or "ros__parameters" in path):
         found[last] = value
 
 
