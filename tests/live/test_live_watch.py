@@ -130,8 +130,8 @@ def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
     ):
         watch.until("2/2 nodes, 6/6 names")
         with live_fleet.running(own, STRANGER):
-            assert "error" in watch.until("  + /robot1/stranger: error: MG306 topic /robot2/odom")
-        watch.until("  - /robot1/stranger: error: MG306 topic /robot2/odom")
+            assert "error" in watch.until("  + /robot1/stranger: error: MG306 uses /robot2/odom")
+        watch.until("  - /robot1/stranger: error: MG306 uses /robot2/odom")
         code, said = watch.end()
     assert code == 1, said
     assert said.endswith("not as planned\n")
