@@ -152,16 +152,3 @@ def test_saved_snapshots_are_told_apart_by_their_domains(
     assert "the plan has no node there; it has 10, 11, 12" in capsys.readouterr().err
     assert main([*words, "--watch"]) == 2
     assert "give one with --domain (10, 11, 12)" in capsys.readouterr().err
-
-
-def test_robots_of_two_domains_are_compared() -> None:
-    """Both run the same node: in one domain it is active, in the other it is not."""
-    seen = {number: it for number, it in as_planned().items() if number != 10}
-    states = dict(zip(seen, ("active", "inactive"), strict=True))
-    for number, state in states.items():
-        nodes = tuple(it._replace(lifecycle=state) for it in seen[number].nodes)
-        seen[number] = seen[number]._replace(nodes=nodes)
-    assert len(seen) == 2
-    assert any(
-        {"active", "inactive"} <= {*it.message.replace(",", " ").split()} for it in found_in(seen)
-    )
