@@ -45,14 +45,13 @@ def of_hardware(root: _Element, node: str, place: Place) -> Iterator[Address]:
 def of_parameters(
     node: str, params: Mapping[str, Param], values: Mapping[str, Given]
 ) -> Iterator[Address]:
-    """What the parameters of a node name and no other node can have, or none on that computer. A known
-    node does not read the parameters of others, which one file gives to all."""
+    """What the parameters of a node name and no other node can have, or none on that computer."""
     for name, given in values.items():
         text = str(given.value).strip()
         known = params.get(name)
         if known and known.kind in OWN_KINDS and text.lower() not in _OFF:
             yield Address(OWN, name, text, node, given.place)
-        elif not params and (kind := held_by(name, text)):
+        elif not known and (kind := held_by(name, text)):
             yield Address(kind, name, text, node, given.place)
 
 

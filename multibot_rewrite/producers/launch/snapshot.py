@@ -181,9 +181,10 @@ def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Ad
     model in a simulator."""
     node = known.parameters.nodes.get(it.facts.known) if it.facts else None
     params = node.params if node else {}
-    # One file is often given to all nodes; what these read is known whole.
-    if params or not is_known(it.program.partition("/")[0]):
-        yield from of_parameters(it.full_name, params, it.values)
+    # One file is often given to all nodes; what these read is known, but for that of their plugins.
+    whole = is_known(it.program.partition("/")[0])
+    own = {name: value for name, value in it.values.items() if name in params or "." in name}
+    yield from of_parameters(it.full_name, params, own if whole else it.values)
     text = it.value(DESCRIPTION)
     root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
