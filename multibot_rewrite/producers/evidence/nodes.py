@@ -173,8 +173,8 @@ def _left_out(
 
 
 def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
-    """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or another
-    program of the package that sends the same, as ukf_filter_node?"""
+    """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
+    another program of the package that sends the same, as ukf_filter_node?"""
     if given.known == node.name:
         return True
     entry = known.get(given.known)
