@@ -233,6 +233,16 @@ def test_a_wrong_launch_file_in_xml(text: str, fault: str, tmp_path: Path) -> No
     assert fault in str(caught.value) and "\n" not in str(caught.value)
 
 
+def test_a_name_that_is_not_there_is_told_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.py"
+    file.write_text("def generate_launch_description():\n    return LaunchDescription([])\n")
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), (), (), True))
+    assert str(caught.value).endswith(
+        "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)"
+    )
+
+
 def test_components_are_in_their_container(tmp_path: Path) -> None:
     graph = read(
         tmp_path,
