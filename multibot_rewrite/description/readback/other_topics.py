@@ -17,6 +17,7 @@ from multibot_rewrite.description.readback.nodes import (
     TOPIC,
     TRANSFORMS,
     holds_topic,
+    is_of_others,
 )
 from multibot_rewrite.description.readback.parameters import switched_off, values_of
 from multibot_rewrite.description.readback.wired import wired_of
@@ -46,7 +47,7 @@ def resolved(
     if above is not None:
         yield from ((TOPIC, _joined(above, word), path) for path, word in words)
     yield from _of_nobody(host, stems)
-    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
+    of_gz = _is_of_gz(host, section)
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
@@ -61,6 +62,21 @@ def resolved(
             elif below is not None:
                 yield kind, _joined(below, name), site.path
     yield from _coded(host, section, above)
+
+
+def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+    """Name and parameter of the topics that are the world's or left as they are, below the namespace
+    that the plugin puts in front."""
+    above = _namespace(host, section)
+    for site in filter(is_of_others, section.sites):
+        names = values_of(host, site)
+        for name in map(as_valid_topic, names) if _is_of_gz(host, section) else names:
+            if name.startswith("/") or above is not None:
+                yield name if name.startswith("/") else _joined(above or "", name), site.path
+
+
+def _is_of_gz(host: _Element, section: VocabularySection) -> bool:
+    return section.names[0].startswith("gz") or host.tag in OF_GZ
 
 
 def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str, str]]:

@@ -16,7 +16,7 @@ from multibot_rewrite.description.readback.nodes import (
     frames_of,
     node_of,
 )
-from multibot_rewrite.description.readback.other_topics import resolved
+from multibot_rewrite.description.readback.other_topics import of_others, resolved
 from multibot_rewrite.description.readback.parameters import (
     MODEL,
     around,
@@ -58,12 +58,14 @@ class RuntimeName(NamedTuple):
 class Reading(NamedTuple):
     """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
     as its number among the plugins and its library; ``missed`` the frames below a model's name, which
-    are in the tree of no robot, though nothing else of the model sends their transform."""
+    are in the tree of no robot, though nothing else of the model sends their transform;
+    ``of_others`` the topics that are the world's or left as they are."""
 
     nodes: tuple[ReadNode, ...]
     names: tuple[RuntimeName, ...]
     unknown: tuple[tuple[int, str], ...]
     missed: tuple[RuntimeName, ...] = ()
+    of_others: tuple[RuntimeName, ...] = ()
 
 
 class _Host(NamedTuple):
@@ -98,7 +100,12 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     names += _of_elements(root, vocabulary)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
-    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts))
+    others = tuple(
+        RuntimeName(TOPIC, name, "plugin", it.number, path)
+        for it in hosts
+        for name, path in of_others(it.element, it.section)
+    )
+    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), others)
 
 
 def _of_first_senders(

@@ -52,7 +52,7 @@ def why(text: str, layout: str = "postfix", distro: str = "jazzy") -> tuple[str,
             '<gazebo reference="a"><sensor name="s" type="acme_sonar"/></gazebo>',
             "1 plugin not known",
         ),
-        (plugin("AtlasPlugin"), "1 plugin not known"),
+        (plugin("gazebo_yarp_camera"), "1 plugin not known"),
         # A plugin in a plugin (gz-sim SystemManager.cc: it is read by the system around it).
         (
             plugin("gazebo_grasp_fix", '<plugin name="q" filename="libunheard.so"/>'),
@@ -166,6 +166,34 @@ def test_ends_of_one_topic_stay_together(one: str, other: str, layout: str) -> N
 def test_ends_that_part_are_told() -> None:
     found = rewrite(robot(TRIGGER.format("hit", "~/hit")), "robot1", distro="jazzy").findings
     assert "MB438" in {it.code for it in found}
+
+
+CURRENT = "<flow_velocity_topic>current/{}</flow_velocity_topic>"
+
+
+@pytest.mark.parametrize("layout", ["postfix", "tf-per-robot", "frames-per-robot", "both"])
+@pytest.mark.parametrize(("sent", "heard"), [("me", "me"), ("me", "sea")])
+def test_a_topic_of_the_world_is_the_robots_where_it_sends_it(
+    sent: str, heard: str, layout: str
+) -> None:
+    """uuv_gazebo_plugins UnderwaterObjectPlugin.cc: the hull subscribes to flow_velocity_topic; DAVE's
+    ocean_current_model_plugin.cc advertises its own: one vehicle's, where the two are the same."""
+    sender = plugin("dave_ocean_current_model_plugin", CURRENT.format(sent))
+    text = robot(sender + plugin("uuv_underwater_object_ros_plugin", CURRENT.format(heard)))
+    made = rewrite(text, "robot1", layout=layout)
+    end, other = read_xml(made.data, "").iter("flow_velocity_topic")
+    assert "MB438" not in {it.code for it in made.findings}
+    assert "robot1" in str(end.text)
+    assert other.text == (end.text if sent == heard else "current/sea")
+    assert strip(made.data, "robot1", layout=layout) == text.encode()
+
+
+def test_a_topic_that_is_kept_is_an_end_like_others() -> None:
+    """What the vocabulary leaves as it is does not hide that something else had the same topic."""
+    sent = '<gazebo reference="a"><sensor name="s" type="imu"><topic>/eye</topic></sensor></gazebo>'
+    world = "<target_topic>{}</target_topic>"
+    for topic, reason in (("/eye", ("1 topic whose ends no longer match",)), ("/star", ())):
+        assert why(robot(sent + plugin("{0}", world.format(topic)))) == reason
 
 
 def test_services_of_the_world_keep_their_names() -> None:
