@@ -150,7 +150,7 @@ def _changed(
 
 def _alike(reading: Reading, robot: str) -> bool:
     """Are there topics that differ in the place of the robot's name alone?"""
-    every = (*reading.names, *reading.of_others)
+    every = (*reading.names, *reading.other_ends)
     topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
     return len(bare) < len(topics)

@@ -115,15 +115,7 @@ def code_of(name: RuntimeName) -> str:
         from multibot_rewrite.system.words import is_order  # nothing is shared in most files
 
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
-    others = {
-        TRANSFORMS: DATA,
-        NODE: TWO_NODES,
-        FRAME: FRAMES,
-        ADDRESS: OPENED,
-        FILE: OPENED,
-        RELATIVE: TWO_NODES,
-    }
-    return others.get(name.kind, LOOKUP)
+    return _CODES.get(name.kind, LOOKUP)
 
 
 def said(who: str, *names: RuntimeName) -> str:
