@@ -196,8 +196,7 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
     """Does this name lead nowhere now, though there was something called so?"""
-    kinds = () if name.kind else name.kinds
-    return any(name.text in inventory.declared.get(kind, ()) for kind in kinds)
+    return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
 
 def robots_own(it: Evidence) -> None:
