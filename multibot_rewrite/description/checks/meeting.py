@@ -139,7 +139,7 @@ def _changed(
             f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
             "they were the same topic"
         )
-        hint = "write both the same way"
+        hint = f"write both the same way, or {BESIDE}"
         yield Problem(_element(document, it), message, None, hint, (), PARTED)
     for it, *pair in undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))

@@ -32,7 +32,8 @@ OPENED = "MB412"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
-_ALLOW = "rename it for each robot, or allow it with --shared-topics"
+_ALLOWED = "allow it with --shared-topics"
+_ALLOW = f"rename it for each robot, or {_ALLOWED}"
 _ADVICE = {
     TWO_NODES: "give each robot's node a name or namespace of its own",
     TWO_SERVERS: _ALLOW,
@@ -135,6 +136,8 @@ def advice(name: RuntimeName) -> str:
         return "ROS 1 has one /tf: use --layout frames-per-robot"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
+    if name.path.startswith("/") and code_of(name) in _ADVICE:
+        return f"it is in the code of the plugin, so no description moves it: {_ALLOWED}"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 
