@@ -13,11 +13,11 @@ import pytest
 import yaml
 from launched_nodes import AT
 
-from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -288,7 +288,7 @@ def test_the_command_reports_and_compares(
         orders.append(order)
         return graphs[dict(order.arguments)["as"]]  # type: ignore[attr-defined]
 
-    monkeypatch.setattr(check_launch, "launch_graph", read)
+    monkeypatch.setattr(child, "launch_graph", read)
 
     def code(*words: str) -> int:
         return main([words[0], *words[1:], "--distro", "jazzy"])
@@ -502,6 +502,19 @@ def test_a_port_that_two_robots_open(
     )
     told = [it for it in diagnose(made).findings if it.code == "MB412"]
     assert [it.message.rpartition(": ")[2] for it in told] == found
+
+
+def test_a_port_in_a_file_for_all_is_that_of_the_nodes_that_read_it(run: Graph) -> None:
+    """Nav2's nodes declare what they read, and no node of it a port or a device."""
+    servers = ("nav2_map_server/map_saver_server", "nav2_controller/controller_server", BRIDGE)
+    made = run(
+        *(
+            node(it, f"n{at}", space, port=9090, video_device="/dev/video0")
+            for space in ("/robot1", "/robot2")
+            for at, it in enumerate(servers)
+        )
+    )
+    assert {it.node for it in made.addresses} == {"/robot1/n2", "/robot2/n2"}
 
 
 @pytest.mark.parametrize(("address", "levels"), [("10.0.0.2", ["warning"]), ("10.0.0.3", [])])
