@@ -56,27 +56,28 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     The robot of a domain where none has a name is called by its number."""
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
-    found = [
-        _sent_elsewhere(in_domain(it, at), at, each)
-        for at, one in each.items()
-        for it in one.findings
-    ]
-    told = {name for it in found for name in it.names}
+    found = {at: [in_domain(it, at) for it in one.findings] for at, one in each.items()}
+    told = {name for own in found.values() for it in own for name in it.names}
     compared = [unnamed(it) for it in together.findings if it.code in BETWEEN_ROBOTS]
-    found += [it for it in compared if told.isdisjoint(it.names)]
-    return together._replace(findings=tuple(sorted(found, key=lambda it: it.code)))
+    every = [
+        *(_sent_elsewhere(it, together, each, at) for at, own in found.items() for it in own),
+        *(_sent_elsewhere(it, together, each) for it in compared if told.isdisjoint(it.names)),
+    ]
+    return together._replace(findings=tuple(sorted(every, key=lambda it: it.code)))
 
 
-def _sent_elsewhere(it: Finding, at: int, each: Mapping[int, Diagnosis]) -> Finding:
+def _sent_elsewhere(
+    it: Finding, together: Diagnosis, each: Mapping[int, Diagnosis], at: int | None = None
+) -> Finding:
     """The finding; where what is missing is a robot's by its name, and another domain has it, with that
     as the cause."""
+    missed = [name for name in it.names if it.code in ABSENCE and together.whose.robot(name)]
     for other, seen in each.items():
-        for name in it.names if other != at and it.code in ABSENCE else ():
-            there = ends_of(seen.whose, name) if seen.whose.robot(name) else ()
-            sender = next((end.node for end in there if end.role in (PUBLISHES, SERVES)), "")
-            if sender:
-                hint = f"{sender} of domain {other} has it: start both in one domain, or bridge it"
-                return it._replace(hint=hint)
+        ends = (end for name in missed if other != at for end in ends_of(seen.whose, name))
+        sender = next((end.node for end in ends if end.role in (PUBLISHES, SERVES)), "")
+        if sender:
+            hint = f"{sender} of domain {other} has it: start both in one domain, or bridge it"
+            return it._replace(hint=hint)
     return it
 
 

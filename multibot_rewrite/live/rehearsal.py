@@ -106,9 +106,10 @@ def stub_nodes(
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
-    """The bridge to a simulator that a plan needs, if it needs one."""
+    """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
+    serves, too."""
     rows = [
-        StubEndpoint(TOPIC, role, topic.name, topic.type, False)
+        StubEndpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type, False)
         for topic in topics
         for role in topic.bridge
     ]

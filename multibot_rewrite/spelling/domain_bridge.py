@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE
+from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE, is_from_outside
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
@@ -55,8 +55,8 @@ def bridge_name(robot: str) -> str:
 
 def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
     """The plan with a bridge for each robot that has something to bring; ``given`` are topics of each
-    robot that cross besides what nodes of the plan need: to the domain of all robots, or from it where
-    the robot only reads them.
+    robot that cross besides what nodes of the plan need: to the domain of all robots, or from it what
+    people and planners send to a robot, such as ``cmd_vel``.
 
     Raises UsageError for one that no robot has.
     """
@@ -119,7 +119,9 @@ def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> It
     for it in plan.ends:
         robot = robot_of[it.node]
         if it.kind == TOPIC and it.type and robot and numbers[robot] != numbers[""]:
-            crossing = Crossing(robot, it.name, it.type, (robot, it.name) in sent)
+            # A sensor's driver need not be in the plan.
+            out = (robot, it.name) in sent or not is_from_outside(it.name)
+            crossing = Crossing(robot, it.name, it.type, out)
             for word in (it.name, it.code_name.removeprefix("~").strip("/")):
                 known[word].setdefault(robot, crossing)
     for word in given:
