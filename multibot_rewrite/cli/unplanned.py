@@ -79,7 +79,7 @@ def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
         yield from (f"domain {domain}: {it}" for it in _nothing_seen(one.graph))
 
 
-def _check_use(options: argparse.Namespace, domains: Sequence[int]) -> None:
+def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
     live.check_source(options)
     for name in ("watch", "suggest") if domains else ():
         if vars(options)[name]:
