@@ -32,6 +32,9 @@ def run(options: argparse.Namespace) -> int:
             options,
             f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved",
         )
+    if made.namespace:
+        where = plural(len(made.spaced), "description")
+        note(options, f"argument {made.namespace}: what ROS names in {where}; proved")
     for it in made.launches:
         note(options, f"{it}: it hands {made.argument} on; proved")
     for path, name in made.already.items():

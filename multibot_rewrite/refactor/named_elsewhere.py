@@ -18,6 +18,7 @@ from multibot_rewrite.refactor.placing import Left
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
 _DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
 _SKIPPED = {"build", "install", "log", "node_modules"}
+_SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
 # Of one file so many lines are listed.
 _MOST = 20
 
@@ -37,6 +38,14 @@ def named_elsewhere(
         pattern = literal if path.endswith(_CODE) else word
         why = "its code names" if path.endswith(_CODE) else "it names"
         yield from _lines(path, pattern, why)
+
+
+def root_sections(paths: Collection[str]) -> Iterator[Left]:
+    """Sections of parameter files whose nodes are in no namespace. Source: rcl_yaml_param_parser."""
+    for path in paths:
+        for it in _SECTION.finditer(data := read_file(path)):
+            line, name = locate(data, it.start())[0], it[1].decode()
+            yield Left(f"{path}:{line}", f"{name!r} is no node in a namespace; write /**/{name}")
 
 
 def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
