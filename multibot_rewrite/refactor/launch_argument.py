@@ -144,11 +144,11 @@ def _of_python(
     first = at(actions.elts[0].lineno, actions.elts[0].col_offset)
     gap = source[at(actions.lineno, actions.col_offset) + 1 : first]
     gap = gap or b" "
-    declared = (f'DeclareLaunchArgument("{it}", default_value=""),'.encode() + gap for it in every)
+    declared = [f'DeclareLaunchArgument("{it}", default_value=""),'.encode() + gap for it in every]
     edits.append(SourceEdit(path, first, first, b"".join(declared)))
-    for it in _nodes_of_robot(tree) if space else ():
-        end, line = at(it.end_lineno, it.end_col_offset), lines[it.lineno - 1]
-        indent = source[line : at(it.lineno, it.col_offset)]
+    for package in _nodes_of_robot(tree) if space else ():
+        end = at(package.end_lineno, package.end_col_offset)
+        indent = source[lines[package.lineno - 1] : at(package.lineno, package.col_offset)]
         gap = b" " if indent.strip() else b"\n" + indent
         inside = b',%snamespace=LaunchConfiguration("%s")' % (gap, every[-1].encode())
         edits.append(SourceEdit(path, end, end, inside))

@@ -196,7 +196,7 @@ def test_the_command_writes_them_beside_the_description(
     ]
     assert Path("out/robot.srdf").read_text() == JOINED_SRDF
     assert main([*words[:-2], "-o", "out/robot.urdf"]) == 2
-    assert "--controllers is there 1 time for 2 parts" in capsys.readouterr().err
+    assert "--rviz is there 1 time for 2 parts" in capsys.readouterr().err
     # Beside arm.urdf it would be written over a file that is read.
     assert main([*words, "-o", "arm.urdf"]) == 2
     assert main([*words[:7], "-o", "arm.urdf"]) == 2

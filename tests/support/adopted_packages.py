@@ -129,7 +129,8 @@ def ours(folder: Path, given: dict[str, str]) -> str:
         return f"has {sorted(set(made.already.values()))} already"
     names = ", ".join(os.path.basename(it) for it in made.proved[:4])
     return (
-        f"{made.argument}, {made.namespace or 'no namespace'}: {len(made.proved)} proved ({names}), {len(made.after)} files,"
+        f"{made.argument}, {made.namespace or '-'}: {len(made.proved)} proved ({names}),"
+        f" {len(made.after)} files,"
         f" {len(made.left)} left, {len(made.unread)} unread, {len(made.already)} already"
     )
 
