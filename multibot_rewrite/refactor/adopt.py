@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import redirect_stderr
+from io import StringIO
 from itertools import chain
 from types import MappingProxyType
 
@@ -168,17 +169,21 @@ def _made(
     """The descriptions with the argument and what was proved of them, beside ``more`` edits; and the
     files that change, by their real paths."""
     word = b"${%s}" % argument.encode()
-    made = placed(found, [list(_changes(it)) for it in found], lambda _: word)
+    asked = [list(_changes(it)) for it in found]
+    made = placed(found, asked, lambda _: word)
     edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument), *more}
     after = edited(texts, edits)
     every = zip(found, made.changes, strict=True)
     faults = [(it, _fault(it, changes, after, argument, how)) for it, changes in every]
     wrong = [(it, why) for it, why in faults if why]
     paths = dict.fromkeys(it.path for it in found)
-    proved = tuple(path for path in paths if path not in {it.path for it, _ in wrong})
-    if not proved:
+    if len({it.path for it, _ in wrong}) == len(paths):
         it, why = wrong[0]
         raise InputError(f"{it.words}: {_ALONE}; {why}")
+    # One with a name that is left has some without the prefix.
+    unmade = {found[at].path for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
+    unmade |= {it.path for it, _ in wrong}
+    proved = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
@@ -204,13 +209,15 @@ def _with_namespace(
     space = namespaced([] if any(own.values()) else found, texts, tree)
     left = (*space.left, *has)
     if space.argument:
-        with suppress(InputError):
+        try:
             made, after = _made(found, texts, prefix, how, space.edits)
             proved, wrong = space_proved(space, prefix, TRIED, after, how, tree)
-            if proved:
-                left = (*made.left, *left, *wrong)
-                return made._replace(left=left, namespace=space.argument, spaced=proved)
-        left = (*left, Left(found[0].path, "no place for a namespace changes ROS names alone"))
+        except InputError as error:
+            proved, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
+        left = (*left, *wrong)
+        if proved:
+            left = (*made.left, *left)
+            return made._replace(left=left, namespace=space.argument, spaced=proved)
     made, _ = _made(found, texts, prefix, how)
     return made._replace(left=(*made.left, *left))
 
@@ -233,7 +240,9 @@ def _arguments(it: Description, tree: Tree, how: Expanding) -> Sequence[Argument
     """The arguments of a xacro that are called as those for a robot's names."""
     if it.read is None or it.inventory.format != "robot":
         return ()
-    found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
+    # What xacro warns about is not said here.
+    with redirect_stderr(StringIO()):
+        found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
     return found.arguments
 
 

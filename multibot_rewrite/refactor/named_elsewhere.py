@@ -43,9 +43,13 @@ def named_elsewhere(
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
     """Sections of parameter files whose nodes are in no namespace. Source: rcl_yaml_param_parser."""
     for path in paths:
-        for it in _SECTION.finditer(data := read_file(path)):
-            line, name = locate(data, it.start())[0], it[1].decode()
-            yield Left(f"{path}:{line}", f"{name!r} is no node in a namespace; write /**/{name}")
+        data = read_file(path)
+        found = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
+        if found:
+            line, name = found[0]
+            more = f", and {len(found) - 1} sections more" if len(found) > 1 else ""
+            why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"
+            yield Left(f"{path}:{line}", why)
 
 
 def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:

@@ -223,14 +223,16 @@ def _needs(template: Template) -> dict[etree._Element, _Added]:
 def _edits(
     file: str, source: bytes, start: int, added: _Added, argument: str
 ) -> Iterator[SourceEdit]:
-    """One that the condition guards: xacro writes ``<a/>`` where nothing is in it."""
+    """What the condition guards; xacro writes ``<a/>`` where nothing is in it."""
     end = tag_end(source, start)
-    lead = "" if added.text else lead_of(source, start, end)
+    is_empty = source[end - 2 : end] == b"/>"
+    # White space alone would be left in an element that had none.
+    lead = "" if added.text or is_empty else lead_of(source, start, end)
     step = lead and f"{lead}  "
     inside = added.text + "".join(f"{step}{it}" for it in added.xml)
     test = f"<xacro:if value=\"${{{argument} != ''}}\">"
     text = f"{lead}{test}{inside.replace(ROBOT_SLOT, f'${{{argument}}}')}{lead}</xacro:if>"
-    if source[end - 2 : end] == b"/>":
+    if is_empty:
         tag = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
         yield SourceEdit(file, end - 2, end, f">{text}</{tag}>".encode())
     else:

@@ -118,6 +118,7 @@ SPACES = {
         "<argument>x</argument></ros>",
         "<ros><namespace>/robot1</namespace><argument>x</argument></ros>",
     ),
+    "a plugin without anything": ("", "", "<ros><namespace>/robot1</namespace></ros>"),
     "an empty one": (
         "<ros><namespace/></ros>",
         "<ros><namespace><xacro:if value=\"${namespace != ''}\">/${namespace}</xacro:if>"
@@ -125,7 +126,10 @@ SPACES = {
         "<ros><namespace>/robot1</namespace></ros>",
     ),
 }
+ROS = "<ros><namespace>/${namespace}</namespace></ros>"
+ADDED = f"<xacro:if value=\"${{namespace != ''}}\">{ROS}</xacro:if>"
 DRIVES = {
+    "": "libgazebo_ros_imu_sensor.so",
     "robotNamespace": "libgazebo_ros_control.so",
     "ros": "libgazebo_ros_joint_state_publisher.so",
 }
@@ -136,13 +140,13 @@ def test_plugins_take_a_namespace(case: str, tmp_path: Path) -> None:
     inside, wanted, shown = SPACES[case]
     path = tmp_path / "r.urdf.xacro"
     plugin = f'<plugin name="p" filename="{DRIVES[inside[1:].partition(">")[0]]}">{{}}</plugin>'
-    block = f'<link name="base"/><gazebo>{plugin}</gazebo>'
-    path.write_text(robot(block.format(inside)))
+    block = f'<link name="base"/><gazebo>\n{plugin.format(inside)}\n</gazebo>'
+    path.write_text(robot(block.replace("></plugin>", "/>") if not inside else block))
     before = expand(str(path), {})
     made = adopt(str(tmp_path))
     assert (made.namespace, made.spaced) == ("namespace", (str(path),))
     path.write_bytes(made.after[str(path)])
-    assert plugin.format(wanted) in path.read_text()
+    assert plugin.format(wanted or ADDED) in path.read_text()
     assert expand(str(path), {}) == before
     text = "".join(
         line.strip() for line in expand(str(path), {"namespace": "robot1"}).decode().split("\n")
@@ -227,6 +231,7 @@ def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
     assert [(it.place.partition(":")[2], it.why) for it in made.left] == [
         (f"2:{robot(inside).splitlines()[1].index('<gazebo') + 1}", "'a' is put together")
     ]
+    assert made.proved == ()
 
 
 def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
