@@ -11,13 +11,19 @@ from types import MappingProxyType
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
+from multibot_rewrite.base.findings.selection import (
+    Selection,
+    fails,
+    grouped,
+    robot_of,
+    selected,
+)
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
-TEXT = "text"
+TEXT, JSON = "text", "json"
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
@@ -96,6 +102,8 @@ def _text(
     colour: bool,
 ) -> str:
     shown = findings if options.verbose else grouped(findings, about.robots)
+    if options.format == JSON:
+        shown = [it._replace(robot=robot_of(it, about.robots)) for it in shown]
     if options.format != TEXT and not rules:
         from multibot_rewrite.lint.catalogue import rules as all_rules  # it imports every check
 

@@ -97,13 +97,15 @@ def with_members(
     order = {robot: at for at, robot in enumerate(names.values())}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:
-        robot = it.robot or _only_robot(it, names)
+        robot = robot_of(it, names)
         groups.setdefault(_without(it, robot, names), []).append((robot, it))
     return [(_first(members, order), [it for _, it in members]) for members in groups.values()]
 
 
-def _only_robot(finding: Finding, names: Mapping[str, str]) -> str:
-    """The robot that a finding without one speaks of; empty for none or several."""
+def robot_of(finding: Finding, names: Mapping[str, str]) -> str:
+    """The robot of a finding, or the one that it speaks of; empty for none or several."""
+    if finding.robot:
+        return finding.robot
     text = f"{finding.message} {finding.hint} {finding.node}"
     found = {robot for word, robot in names.items() if _pattern(word).search(text)}
     return found.pop() if len(found) == 1 else ""

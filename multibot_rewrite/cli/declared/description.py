@@ -240,7 +240,7 @@ ADOPT = Command(
     "adopt",
     "adopt",
     "%(prog)s FOLDER [NAME:=VALUE...] [options]",
-    "Give a description package arguments for a prefix and a namespace.",
+    "Give a description package a prefix and a namespace.",
     (
         Example("multibot adopt my_robot_description", "print the patch"),
         Example("multibot adopt my_robot_description --in-place"),

@@ -8,7 +8,7 @@ import pytest
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, same_for
 from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
-from multibot_rewrite.base.findings.selection import grouped
+from multibot_rewrite.base.findings.selection import grouped, robot_of
 
 ROBOTS = [f"robot{number}" for number in range(1, 21)]
 NAMES = {robot: robot for robot in ROBOTS}
@@ -113,3 +113,9 @@ def test_what_is_inconclusive_is_no_failure_in_junit() -> None:
     found = [lost("robot1", level=INCONCLUSIVE), lost("robot2")]
     text = rendered("junit", found, Report("multibot check", ["plan.yaml"], {}))
     assert 'tests="2" failures="1" errors="0" skipped="1"' in text
+
+
+def test_one_of_a_file_is_of_the_robot_that_it_speaks_of() -> None:
+    it = lost("robot1")._replace(robot="", node="", message="robot 'robot1' is lost", hint="")
+    assert robot_of(it, NAMES) == "robot1"
+    assert robot_of(it._replace(message="robot1 and robot2"), NAMES) == ""
