@@ -12,13 +12,18 @@ from types import MappingProxyType
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
+from multibot_rewrite.base.findings.selection import (
+    Selection,
+    fails,
+    grouped,
+    selected,
+)
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
-TEXT = "text"
+TEXT, JSON = "text", "json"
 FEW_NOTES = 3
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
