@@ -20,7 +20,7 @@ from multibot_rewrite.rules.system import (
     names,
     relays,
     sharing,
-    tf_topics,
+    tf_pieces,
     transforms,
 )
 from multibot_rewrite.spelling.ways import SPAWNER
@@ -40,7 +40,7 @@ _OF_SOURCES = frozenset(
     )
 )
 # What a simulator may give that the launch file does not start.
-_OF_OTHERS = frozenset((clocks.no_clock.code, tf_topics.tf_tree_in_pieces.code))
+_OF_OTHERS = frozenset((clocks.no_clock.code, tf_pieces.tf_tree_in_pieces.code))
 # What a node of the launch file has is known, whatever else runs.
 _OF_NODES = frozenset(
     it.code for it in (nodes.missing_node, nodes.missing_robot, endpoints.missing_endpoint)

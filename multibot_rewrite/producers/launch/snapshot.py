@@ -209,7 +209,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
     for note in (it for it in notes if not it.fails):
         yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
     unknown = [
-        f"{it.full_name} ({it.program})" for it in nodes if it.facts is None and not is_bridge(it)
+        f"{it.full_name} ({it.program})" for it in nodes if not it.is_known and not is_bridge(it)
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)

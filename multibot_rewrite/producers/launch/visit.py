@@ -47,6 +47,7 @@ _PASSED = (
 )
 
 
+_INCLUDE = "IncludeLaunchDescription"
 # The locals of a launch that are of this package.
 _OURS = "multibot_"
 # One after the other; a timer may start itself again.
@@ -69,7 +70,7 @@ def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
     here = _at(entity, seen)
     # An include has the path of its file for what is below it; other actions may leave theirs.
-    own = _is(entity, "IncludeLaunchDescription")
+    own = _is(entity, _INCLUDE)
     if own:
         seen.context._push_locals()
     try:
@@ -77,18 +78,25 @@ def visit(entity: Any, seen: Visit) -> None:
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
-        missing = simulator(error, entity, here) if own else None
-        if missing:
-            here.nodes.append(missing)
-            return
-        ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(
-            f"{here.later} {failure(error)}{ended}".strip(),
-            fails=is_certain(error, here.place.file),
-        )
+        _failed(entity, error, here)
     finally:
         if own:
             seen.context._pop_locals()
+
+
+def _failed(entity: Any, error: BaseException, here: Visit) -> None:
+    """Keep why an entity cannot be visited, or what it starts, where that is known all the same."""
+    if _is(entity, _INCLUDE):
+        try:
+            known = simulator(error, entity, here)
+        except TypeError as wrong:
+            known, error = [], wrong
+        here.nodes.extend(known)
+        if known:
+            return
+    ended = "; groups and their launch configurations have ended by then" if here.later else ""
+    fails = is_certain(error, here.place.file)
+    here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=fails)
 
 
 def _at(entity: Any, seen: Visit) -> Visit:
@@ -219,7 +227,7 @@ _HANDLERS: Mapping[str, Handler] = MappingProxyType(
     {
         **dict.fromkeys(_EXECUTED, _execute),
         **dict.fromkeys(_PASSED, _pass),
-        "IncludeLaunchDescription": _include,
+        _INCLUDE: _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,
         "Node": _node,
