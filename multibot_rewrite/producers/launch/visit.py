@@ -19,7 +19,7 @@ from multibot_rewrite.producers.launch.describe import (
     process,
     text,
 )
-from multibot_rewrite.producers.launch.failures import failure, is_certain
+from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
 from multibot_rewrite.producers.launch.includes import simulator, without_effect
 from multibot_rewrite.producers.launch.places import place_of
 
@@ -47,6 +47,7 @@ _PASSED = (
 )
 
 
+_ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"
 # The locals of a launch that are of this package.
 _OURS = "multibot_"
@@ -94,9 +95,10 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
         here.nodes.extend(known)
         if known:
             return
-    ended = "; groups and their launch configurations have ended by then" if here.later else ""
-    fails = is_certain(error, here.place.file)
-    here.note(f"{here.later} {failure(error)}{ended}".strip(), fails=fails)
+    reason = failure(error)
+    if here.later and is_unset(error):
+        reason = f"{reason.partition(';')[0]}; {_ENDED}"
+    here.note(f"{here.later} {reason}".strip(), fails=is_certain(error, here.place.file))
 
 
 def _at(entity: Any, seen: Visit) -> Visit:

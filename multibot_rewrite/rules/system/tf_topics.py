@@ -107,7 +107,8 @@ def _frames_beside(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
     """A robot's frames on a topic that none of its nodes has, sent by a node of no robot that does not
-    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest."""
+    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest.
+    Where it is known which topic is the robot's, its plan is asked (rules/pair/transforms.py)."""
     level = WARNING if incomplete(seen.system) else ERROR
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         found: dict[str, list[Edge]] = defaultdict(list)
@@ -115,9 +116,9 @@ def _frames_beside(
             robot = seen.frame_robot(it.child)
             if robot and robot == seen.frame_robot(it.parent) and it.publishers:
                 found[robot].append(it)
-        for robot, edges in ((robot, its) for robot, its in found.items() if robot in senders):
+        for robot in (it for it in found if it in senders and it not in seen.known.home):
             home = _home(seen, robot, senders[robot])
-            odd = [e for e in edges if not any(_passes(seen, home, by) for by in e.publishers)]
+            odd = [it for it in found[robot] if not _is_copy(seen, home, it)]
             if not odd or tree.topic in senders[robot]:
                 continue
             node, frames = odd[0].publishers[0], unique(it.child for it in odd)
@@ -128,10 +129,12 @@ def _frames_beside(
             )  # fmt: skip
 
 
-def _passes(seen: Index, home: str, node: str) -> bool:
-    """Is it a robot's, looks on, or may pass on what it hears of a tree?"""
-    hears = any(it.topic == home and node in it.listeners for it in seen.trees)
-    return bool(seen.robot(node)) or _looks(seen, node) or hears
+def _is_copy(seen: Index, home: str, edge: Edge) -> bool:
+    """Is it in the tree as well, or sent by a node of a robot, or by one that hears the tree?"""
+    tree = next(it for it in seen.trees if it.topic == home)
+    there = {name for it in tree.edges for name in (it.child, seen.plain_frame(it.child))}
+    hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
+    return hears or edge.child in there or seen.plain_frame(edge.child) in there
 
 
 def _looks(seen: Index, node: str) -> bool:
