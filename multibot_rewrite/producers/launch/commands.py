@@ -25,6 +25,7 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
 _POSTFIX = "multibot_rewrite.cli.urdf_postfix"
 _FAULTS = "multibot_command_faults"
@@ -89,7 +90,9 @@ def output_of(line: str) -> Output:
         read = _READERS.get(os.path.basename(program))
         return Output(read(words) if read else "")
     except (ValueError, MultibotError, subprocess.SubprocessError) as error:
-        # A launch fails here, unless it is the boundary that is in the way.
+        # A launch fails here, unless it is the boundary, or a package that is told, that is in the way.
+        if NOT_INSTALLED in line:
+            return Output("")
         reason = " ".join(f"{error}".split())
         return Output("", f"the output of {line!r} is not known: {reason}")
 

@@ -118,7 +118,8 @@ def _frames_beside(
                 found[robot].append(it)
         for robot in (it for it in found if it in senders and it not in seen.known.home):
             home = _home(seen, robot, senders[robot])
-            odd = [it for it in found[robot] if not _is_copy(seen, home, it)]
+            whole = len(found[robot]) > 1
+            odd = [it for it in found[robot] if not _is_copy(seen, home, it, whole)]
             if not odd or tree.topic in senders[robot]:
                 continue
             node, frames = odd[0].publishers[0], unique(it.child for it in odd)
@@ -129,12 +130,13 @@ def _frames_beside(
             )  # fmt: skip
 
 
-def _is_copy(seen: Index, home: str, edge: Edge) -> bool:
-    """Is it in the tree as well, or sent by a node of a robot, or by one that hears the tree?"""
+def _is_copy(seen: Index, home: str, edge: Edge, whole: bool) -> bool:
+    """Is it in the tree as well, without the robot's name if it is not the only one, or sent by a node
+    of a robot, or by one that hears the tree?"""
     tree = next(it for it in seen.trees if it.topic == home)
-    there = {name for it in tree.edges for name in (it.child, seen.plain_frame(it.child))}
+    there = {it.child for it in tree.edges}
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
-    return hears or edge.child in there or seen.plain_frame(edge.child) in there
+    return hears or edge.child in there or (whole and seen.plain_frame(edge.child) in there)
 
 
 def _looks(seen: Index, node: str) -> bool:
