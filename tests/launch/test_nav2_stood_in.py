@@ -123,6 +123,7 @@ def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
         (it,) = (nodes[key] for key in (f"/{name}_robot2", f"/robot2/{name}") if key in nodes)
         program = "opennav_docking" if name == "docking_server" else name
         assert (it.package, it.executable, it.container) == (package, program, "")
+        assert it.arguments == ("--ros-args", "--log-level", "info")
     state = nodes["/robot_state_publisher_robot2"]
     assert (state.package, state.executable) == ("robot_state_publisher",) * 2
     assert "robot_description" in "".join(it.text for it in state.parameters)

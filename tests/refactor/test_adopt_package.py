@@ -59,14 +59,19 @@ def package(tmp_path: Path) -> Path:
 
 
 NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
-FILES = [("a.launch.py", LAUNCH), pytest.param("a.launch.xml", XML, marks=NEEDS_LAUNCH)]
+FILES = [
+    pytest.param("a.launch.py", LAUNCH, marks=pytest.mark.more),
+    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.slow)),
+]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "text"), FILES)
 def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text: str) -> None:
     path = package / "launch" / name
     path.write_text(text)
+    # The world is no name of the robot: the launch file is proved with it.
+    robot = package / "urdf/r.urdf.xacro"
+    robot.write_text(robot.read_text().replace("  <link", '  <link name="world"/>\n  <link', 1))
     made = adopt(str(package), trust=True)
     assert made.launches == (str(path),)
     assert not [it for it in made.left if it.place.startswith(str(path))]
@@ -208,6 +213,16 @@ def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> Non
         (package / f"src/a.{kind}").write_text("x = 'arm'\n" if kind in code else "x: arm\n")
     found = named_elsewhere(str(package), ["arm"], ())
     assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
+
+
+@pytest.mark.parametrize("lines", [20, 23])
+def test_of_many_lines_of_a_file_twenty_are_listed(package: Path, lines: int) -> None:
+    (package / "src/a.py").write_text("x = 'arm'\n" * lines)
+    *listed, last = [it.why for it in named_elsewhere(str(package), ["arm"], ())]
+    listed += [last] if lines == 20 else []
+    assert {*listed} == {"its code names 'arm', which a prefix does not reach"}
+    assert len(listed) == 20
+    assert lines == 20 or last == "its code names such names in 3 lines more"
 
 
 @pytest.mark.parametrize("name", ["prefix", "tf_prefix"])
