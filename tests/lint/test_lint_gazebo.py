@@ -532,7 +532,7 @@ def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
 READ_IN = {
     "joint": "stopCfm stopErp fudgeFactor provideFeedback springReference springStiffness "
     "implicitSpringDamper cfmDamping",
-    "link": "mu1 mu2 kp kd maxVel minDepth maxContacts selfCollide gravity laserRetro",
+    "link": "mu1 mu2 kp kd maxVel minDepth maxContacts selfCollide laserRetro",
     "": "dampingFactor preserveFixedJoint disableFixedJointLumping static canonicalBody",
 }
 
