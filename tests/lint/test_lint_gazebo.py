@@ -541,7 +541,9 @@ def test_a_tag_of_a_joint_has_no_effect_in_a_link_and_the_reverse() -> None:
     for home, reference in (("link", "a"), ("joint", "j")):
         for belongs, tags in READ_IN.items():
             inside = "".join(f"<{it}>1</{it}>\n" for it in tags.split())
-            text = f'<robot name="r">{LINK}<gazebo reference="{reference}">{inside}</gazebo></robot>'
+            text = (
+                f'<robot name="r">{LINK}<gazebo reference="{reference}">{inside}</gazebo></robot>'
+            )
             seen = lint_data("r.urdf", text.encode(), NEW._replace(distro="jazzy"))
             told = [it for it in seen if it.message.endswith("has no effect")]
             assert len(told) == (len(tags.split()) if belongs not in ("", home) else 0), told
