@@ -11,6 +11,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.producers.launch.door import missing
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
+from multibot_rewrite.refactor.parameters import fillable
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
@@ -101,7 +102,7 @@ def with_parameters(package: Path, item: str, more: str = "") -> str:
     return text
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("item", "more"), [(GIVEN, ""), ("given", f"    given = {GIVEN}\n")], ids=["there", "by a name"]
 )
@@ -116,7 +117,7 @@ def test_a_parameter_file_is_filled_in(package: Path, item: str, more: str) -> N
     assert made.launches == (str(package / "launch/a.launch.py"),)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     "why", ["named in the xacro, too", "named twice in the launch file", "opened as well"]
 )
@@ -140,12 +141,37 @@ def test_a_parameter_file_that_others_read_stays(package: Path, why: str) -> Non
     assert any("c.yaml:4" in it.place for it in made.left)
 
 
+def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Path) -> None:
+    robot = ROBOT.format(JOINT).encode()
+    files = {
+        "a/c.yaml": YAML,
+        "b/d.yaml": YAML,
+        "b/c.yaml": YAML,
+        "a/e.yaml": "a: [",
+        "f.yaml": FILLED,
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    def filled(urdfs: list[bytes], names: set[str]) -> dict[str, tuple[str, str, str]]:
+        paths = [str(tmp_path / it) for it in files]
+        found = fillable(paths, urdfs, names, "prefix", "try_")
+        return {name: (it.path, it.after.decode(), it.tried.decode()) for name, it in found.items()}
+
+    after = YAML.replace("[j]", "[$(var prefix)j]")
+    tried = YAML.replace("[j]", "[try_j]")
+    assert filled([robot], {"j"}) == {"d.yaml": (f"{tmp_path}/b/d.yaml", after, tried)}
+    assert filled([robot], {"j", "base"})["d.yaml"][1] == FILLED
+    assert filled([robot], {"arm"}) == filled([], {"j"}) == {}
+
+
 def test_without_trust_a_parameter_file_stays(package: Path) -> None:
     with_parameters(package, GIVEN)
     assert str(package / "config/c.yaml") not in adopt(str(package)).after
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     path = package / "launch/a.launch.py"
     path.write_text(EARLY)
@@ -156,7 +182,7 @@ def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     assert why.startswith("it does not hand prefix on")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path) -> None:
     path = package / "launch/a.launch.py"
     path.write_text(f"raise RuntimeError(1)\n{LAUNCH}")
