@@ -22,7 +22,19 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import IO, NamedTuple
 
-HALVES = ("work", "last", "fresh", "more", "kept", "more2", "kept2", "more3", "kept3")
+HALVES = (
+    "work",
+    "last",
+    "fresh",
+    "more",
+    "kept",
+    "more2",
+    "kept2",
+    "more3",
+    "kept3",
+    "more4",
+    "kept4",
+)
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
