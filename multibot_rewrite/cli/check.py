@@ -33,6 +33,7 @@ from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
 from multibot_rewrite.system.domains import by_domain, side_by_side
@@ -184,12 +185,13 @@ def conclude(
 
 
 def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
-    """What is open in the plan. Notes, as of what a driver that nobody names may send, are only counted
-    where they are asked for."""
+    """What is open in the plan. What a driver that nobody names may send is only counted where it is
+    not asked for."""
     found = chosen(options, plan.gaps)
     if options.fail_on == NOTE or options.verbose:
         return found
-    serious = [it for it in found if it.level != NOTE]
+    quiet = nothing_known_sends.code
+    serious = [it for it in found if it.level != NOTE or it.code != quiet]
     if len(serious) < len(found):
         left = plural(len(found) - len(serious), "note")
         note(options, f"note: {left} about topics that no known node sends; --verbose shows them")
@@ -208,7 +210,7 @@ def _outcome(
     """A graph may be as planned, and the plan have faults."""
     is_open = any(it.level != NOTE for it in gaps)
     word = "but" if verdict == Verdict.PLANNED else "and"
-    but = f", {word} the plan has faults" if is_open else ""
+    but = f", {word} the plan has faults" if is_open else ", with notes on the plan" if gaps else ""
     return Outcome(
         verdict, f"{words or WORDS[verdict]}{but}", f"{options.program} {options.command}"
     )
