@@ -30,6 +30,8 @@ _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
 _BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
+# What launch files begin with, in a folder of theirs: many are called up.py.
+_LAUNCH = re.compile(rb"^def generate_launch_description|^\s*<launch\b", re.MULTILINE)
 # MoveIt's own files, by the names that its setup assistant gives them.
 _MOVEIT = frozenset(
     (
@@ -166,7 +168,8 @@ def text_of(path: str) -> str:
 def _kind(path: str, data: bytes) -> str:
     """The field of ``Found`` that a file goes into; empty for none."""
     stem, end = os.path.splitext(os.path.basename(path))
-    if stem.endswith((".launch", "_launch")):
+    above = os.path.basename(os.path.dirname(path))
+    if stem.endswith((".launch", "_launch")) or (above == "launch" and _LAUNCH.search(data)):
         return "launch"
     if end in _BY_NAME:
         return _BY_NAME[end]

@@ -114,7 +114,7 @@ def test_of_two_files_that_fit_alike_one_is_asked_for(
         (folder / f"{name}.yaml").write_text(text)
     shown, fleet = talked(folder, ["", "", answer, *[""] * 4], "rover.urdf")
     assert "2 files have parameters of amcl, and names that the robot has not" in shown
-    assert "1: a.yaml (a_base)" in shown and "The one that is meant (none)" in shown
+    assert "1: a.yaml (a_base)" in shown and "The one that is meant [1/2/none] (none)" in shown
     assert fleet["companions"].get("params", []) == taken
 
 

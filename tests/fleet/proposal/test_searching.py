@@ -37,11 +37,14 @@ KINDS = [
     ("other.yaml", "a: 1", ""), ("t.xml", "<root><BehaviorTree/></root>", "behavior_trees"),
     ("t.xml", "<root/>", ""), ("a.launch.py", "", "launch"), ("a_launch.yaml", PARAMS, "launch"),
     ("a.launch.xml", "", "launch"), ("launch.py", "", ""), ("a.txt", ROBOT, ""),
+    ("launch/up.py", "def generate_launch_description():", "launch"), ("launch/up.py", "", ""),
+    ("launch/up.xml", "<launch/>", "launch"), ("up.py", "def generate_launch_description():", ""),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "text", "kind"), KINDS, ids=[f"{a}-{c}" for a, _, c in KINDS])
 def test_a_file_is_for_one_thing(name: str, text: str, kind: str, tmp_path: Path) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text(text)
     found = search([str(tmp_path)])
     path = str(tmp_path / name)
