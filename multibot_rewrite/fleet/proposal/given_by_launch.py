@@ -148,10 +148,10 @@ def _shown(name: str, value: Any) -> str:
 def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
     known = {os.path.basename(one.name) for one in nodes}
     for line, _, arguments in _included(it):
-        for name, (node, parameter) in _MAP.items():
-            if node in known and arguments.get(name):
+        for name, (server, parameter) in _MAP.items():
+            if server in known and arguments.get(name):
                 values = {parameter: arguments[name]}
-                yield _Given(it.text.file, line, node, "", values, ())
+                yield _Given(it.text.file, line, server, "", values, ())
     for call in it.text.nodes:
         program = word_of(argument(call, "executable"))
         who = word_of(argument(call, "name")) or program

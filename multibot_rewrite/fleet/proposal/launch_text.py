@@ -14,7 +14,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import yaml
 from lxml import etree
@@ -223,7 +223,10 @@ def _of_xml(text: str) -> list[_Action]:
 def _of_element(it: etree._Element) -> _Action:
     inner = tuple(map(_of_element, it.iterchildren("*")))
     return _Action(
-        str(it.tag), it.sourceline or 1, {str(k): str(v) for k, v in it.attrib.items()}, inner
+        str(it.tag),
+        cast("int", it.sourceline),
+        {str(k): str(v) for k, v in it.attrib.items()},
+        inner,
     )
 
 

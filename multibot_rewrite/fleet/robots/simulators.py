@@ -162,7 +162,7 @@ def note(robot: RewrittenRobot) -> Finding:
 
 
 UNREAD_DRIVE = declare(
-    "MF714",
+    "MF844",
     "drive-of-unknown-code",
     NOTE,
     what="A plugin or hardware class that no section of the vocabulary knows names a joint or link of "
@@ -185,19 +185,19 @@ UNREAD_DRIVE = declare(
 def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
     """Each plugin that may move the robot and that nobody has read, and each such class where a node
     loads its ``hardware``."""
-    root: etree._Element = robot.member.inventory.document.root
+    root: etree._Element = robot.member.source.root
+    simulated = robot.spec.simulator != REAL
+    asked = {HARDWARE: hardware or (simulated and loads_hardware(root)), PLUGIN: simulated}
     parts = [
         it
         for it in active_parts(root, robot.member.vocabulary)
-        if it.kind == PLUGIN or (it.kind == HARDWARE and (hardware or loads_hardware(root)))
-        if next(it.element.iterancestors("sensor"), None) is None
+        if asked.get(it.kind) and next(it.element.iterancestors("sensor"), None) is None
     ]
-    alone = None
-    for it in (one for one in parts if not one.is_known):
-        why = _named(it, root)
-        if not why and it.kind == PLUGIN:
-            alone = not _has_drive(robot, parts) if alone is None else alone
-            why = "is all that may move it" if alone else ""
+    unread = [it for it in parts if not it.is_known]
+    alone = bool(unread) and not _has_drive(robot, parts)
+    for it in unread:
+        # Hardware without a joint is a sensor's.
+        why = _named(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
         if why:
             who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
             message = f"{who} {why}, and nobody has read it: whether it drives is not shown"
@@ -220,7 +220,7 @@ def _named(part: ActivePart, root: etree._Element) -> str:
 
 def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
     """Is there hardware that somebody has read, or a plugin that names a joint or hears commands?"""
-    root: etree._Element = robot.member.inventory.document.root
+    root: etree._Element = robot.member.source.root
     ends = (it for node in robot.member.reading.nodes for it in node.endpoints)
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
     return (
