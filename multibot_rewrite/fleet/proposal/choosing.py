@@ -111,8 +111,8 @@ def _bare_links(it: Looked) -> set[str]:
 
 
 def is_model(path: str) -> bool:
-    """Is it an SDF, or a xacro of one?"""
-    return ".sdf" in os.path.basename(path)
+    """Is it an SDF, or a xacro of one? Gazebo Classic's may end with .model."""
+    return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
 def _are_launched_together(path: str, other: str, found: Found) -> bool:

@@ -22,7 +22,19 @@ from multibot_rewrite.fleet.outputs.output_file import PLAN
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 _SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
 _BUILT = frozenset((MANIFEST, PLAN))
-_ENDS = (".urdf", ".sdf", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
+_ENDS = (
+    ".urdf",
+    ".sdf",
+    ".model",
+    ".world",
+    ".xacro",
+    ".srdf",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".xml",
+    ".py",
+)
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
@@ -209,6 +221,6 @@ def _of_yaml(stem: str, data: bytes) -> str:
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_TEXT = {
-    ".urdf": _of_urdf, ".sdf": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
+    ".urdf": _of_urdf, ".sdf": _of_sdf, ".model": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
     ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
 }  # fmt: skip
