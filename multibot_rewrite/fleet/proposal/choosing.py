@@ -37,7 +37,8 @@ class Undecided(UsageError):
         """``before`` are files that are named beside the one that is meant."""
         self.files = files
         named = [*before, next(iter(files))]
-        folders = [it for it in found.folders if it != home_of(named[0])]
+        home = os.path.abspath(home_of(named[0]))
+        folders = [it for it in found.folders if os.path.abspath(it) != home]
         more = f" and {len(files) - MOST_SHOWN} more" if len(files) > MOST_SHOWN else ""
         shown = ", ".join([*map(self.said, files)][:MOST_SHOWN])
         command = f"multibot init {shlex.join([*folders, *named])}"

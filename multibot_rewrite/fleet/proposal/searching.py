@@ -92,7 +92,8 @@ def search(paths: Sequence[str]) -> Found:
     meant = [it for it in named if it.endswith(_BESIDE)]
     files = [it for it in named if it not in meant]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
-    homes = dict.fromkeys((*folders, *(home_of(it) for it in files)))
+    apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
+    homes = dict.fromkeys((*folders, *map(home_of, apart)))
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):
@@ -114,6 +115,12 @@ def home_of(file: str) -> str:
     """The package of a file, as a path like the file's; its folder where it is in none."""
     package = package_of(file)
     return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Is it in the folder, however both are written?"""
+    above = os.path.join(os.path.abspath(folder), "")
+    return os.path.abspath(path).startswith(above)
 
 
 def _files(folder: str) -> Iterator[str]:

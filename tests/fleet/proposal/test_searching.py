@@ -68,6 +68,18 @@ def test_what_a_build_has_written_is_no_other_robot(tmp_path: Path) -> None:
     assert search([str(tmp_path)]).descriptions == (str(tmp_path / "own.urdf"),)
 
 
+def test_a_description_in_a_folder_that_is_named_is_there_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder as an absolute path, the description as a relative one."""
+    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__a_dot_urdf=ROBOT,
+        config__p_dot_yaml=PARAMS)  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    found = search([str(tmp_path), "urdf/a.urdf"])
+    assert found.params == (str(tmp_path / "config" / "p.yaml"),)
+    assert found.descriptions == ("urdf/a.urdf",)
+
+
 def test_hidden_and_built_folders_are_left_out(tmp_path: Path) -> None:
     left = ("build", "install", "log", "node_modules", "test", "tests", "__pycache__", ".git")
     for folder in (*left, "urdf", "builds"):
