@@ -34,9 +34,9 @@ class Undecided(UsageError):
     """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
 
     def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
-        """``before`` are files that are named beside the one that is meant."""
+        """``before`` are files that are named beside the one that is meant, as are those that were."""
         self.files = files
-        named = [*before, next(iter(files))]
+        named = [*before, *found.meant, next(iter(files))]
         home = os.path.abspath(home_of(named[0]))
         folders = [it for it in found.folders if os.path.abspath(it) != home]
         more = f" and {len(files) - MOST_SHOWN} more" if len(files) > MOST_SHOWN else ""
