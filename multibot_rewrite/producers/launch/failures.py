@@ -21,6 +21,12 @@ _NOT_FOUND = re.compile(
     rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
 )
 _ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
+_TRIED = re.compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
+_OF_ROS_1 = re.compile(
+    r"Unknown substitution: (?:arg|find|optenv)\b"
+    r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
+)
+_ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $(var NAME), exec="
 NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
 
 
@@ -36,7 +42,17 @@ def failure(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
-    return " ".join(f"{type(error).__name__}: {error}".split())
+    text = " ".join(f"{type(error).__name__}: {error}{_line(error)}".split())
+    # launch tries its other forms, too, and says what each of them says.
+    text = found[1] if (found := _TRIED.search(text)) else text
+    return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
+
+
+def _line(error: BaseException) -> str:
+    """The line of a launch file in Python that raised it."""
+    frames = extract_tb(error.__traceback__)
+    name = os.path.basename(frames[-1].filename) if frames else ""
+    return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
 
 
 def _variable(error: BaseException) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
@@ -111,6 +111,17 @@ class LaunchGraph(NamedTuple):
     def whole(self) -> bool:
         """Are these all nodes?"""
         return all(it.parameters for it in self.notes)
+
+    @property
+    def packages(self) -> set[str]:
+        """The packages whose nodes are started."""
+        return {it.package for it in self.nodes}
+
+    @property
+    def texts(self) -> Iterator[str]:
+        """The texts that nodes get, and those of files that are read for them."""
+        yield from (it.text for _, it in self.files)
+        yield from (it.text for node in self.nodes for it in node.parameters)
 
 
 class RunningNode(NamedTuple):

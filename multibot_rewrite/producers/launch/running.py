@@ -96,8 +96,11 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
+    first: dict[str, Rules] = {}
     for model in models.found:
         made = managers(model, dict(graph.files))
+        if model.spawned and controller_way(known.release).process_wide:
+            made = iter([_of_process(it, first) for it in made])
         wanted = [it for it in made if model.spawned or full_name(it, None) in asked]
         found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
         found += _plugins(model) if model.spawned else ()
@@ -108,6 +111,12 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     lost = [it for it in spawned if it.manager not in by_name]
     nodes, more = (*found, *controllers), (*notes, *_without_manager(lost))
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
+
+
+def _of_process(manager: LaunchedNode, first: dict[str, Rules]) -> LaunchedNode:
+    """A manager with the rules of the process, which are those of the ``first`` one of its program."""
+    rules = first.setdefault(manager.executable, manager.remappings)
+    return manager._replace(remappings=rules)
 
 
 def _apart(found: Sequence[RunningNode], unnamed: Collection[str]) -> Iterator[RunningNode]:

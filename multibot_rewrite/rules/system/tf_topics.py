@@ -69,13 +69,13 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         home = _home(seen, robot, topics)
         planned = robot in seen.known.home
         odd = [it for it in topics if it != home and (planned or it not in mixed)]
-        yield from (_sends_elsewhere(seen, robot, home, it, topics[it]) for it in odd)
+        yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
         for topic in lost:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
-                yield _hears_elsewhere(seen, robot, home, topic, deaf)
+                yield _elsewhere(seen, robot, home, topic, deaf, "hear")
     yield from _frames_of_another(seen)
     yield from _rviz_hears_nothing(seen)
 
@@ -126,20 +126,10 @@ def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
 
-def _sends_elsewhere(
-    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
+def _elsewhere(
+    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str], does: str
 ) -> Finding:
-    verb = "sends" if len(nodes) == 1 else "send"
-    message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
-    return tf_on_two_topics.finding(
-        message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
-    )
-
-
-def _hears_elsewhere(
-    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str]
-) -> Finding:
-    verb = "hears" if len(nodes) == 1 else "hear"
+    verb = f"{does}s" if len(nodes) == 1 else does
     message = f"{shorten(nodes)} {verb} tf on {topic}, but the tf of {robot} is on {home}"
     return tf_on_two_topics.finding(
         message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
