@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from lxml.etree import Comment, _Element
+from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.readback.xml import child_text
@@ -68,8 +68,8 @@ def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> Vocabul
 def _is_authored(ros: _Element) -> bool:
     before = [*ros.itersiblings(preceding=True)]
     for at, it in enumerate(before):
-        put = _PUT.fullmatch(it.text or "") if it.tag is Comment else None
-        if put and sum(one.tag is not Comment for one in before[:at]) < int(put[1]):
+        put = _PUT.fullmatch(it.text or "") if not isinstance(it.tag, str) else None
+        if put and sum(isinstance(one.tag, str) for one in before[:at]) < int(put[1]):
             return False
     return True
 

@@ -302,7 +302,7 @@ def written_out(robot: RewrittenRobot) -> frozenset[str]:
     texts = {
         text_of(it) for plugin in inventory.document.root.iter("plugin") for it in plugin.iter()
     }
-    return texts & {it.gz for it in bridged}
+    return frozenset(texts & {it.gz for it in bridged})
 
 
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
