@@ -165,8 +165,8 @@ UNREAD_DRIVE = declare(
     "MF844",
     "drive-of-unknown-code",
     NOTE,
-    what="A plugin or hardware class that no section of the vocabulary knows names a joint or link of "
-    "the robot, or nothing else moves the robot.",
+    what="No section of the vocabulary knows a plugin or hardware class of the robot. It names a joint "
+    "or link, or nothing else moves the robot.",
     why="Which topics it reads, and whether they have the robot's name, is not known. So the plan may "
     "hold, and the robot not drive, or all robots at once.",
     fix="Write a section for it in a vocabulary file, with a line for each topic and service; where it "
