@@ -176,8 +176,8 @@ UNREAD_DRIVE = declare(
     line=2,
     formats=("fleet",),
     beside={
-        "own.urdf": _DRIVE.replace("gazebo_ros_diff", "acme"),
-        "known.urdf": _DRIVE,
+        "own.urdf": DRIVE.replace("gazebo_ros_diff", "acme"),
+        "known.urdf": DRIVE,
     },
 )
 
