@@ -180,8 +180,8 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     line=5,
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits, and
-    one that moves nothing stands for something else: a pressure, a dial."""
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits,
+    and one that moves nothing stands for something else: a pressure, a dial."""
     for joint, limit, lower, upper in _bounds(subject):
         far = max(abs(lower), abs(upper))
         is_long = joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper
