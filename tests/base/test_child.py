@@ -78,7 +78,7 @@ def test_git_runs_no_program_of_a_repository(
     program.write_text(f"#!/bin/sh\necho x > {ran}\ncat\n")
     program.chmod(0o755)
     for folder in (own / "sub", own):
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         (folder / "a.urdf").write_text("<robot/>")
         _git(folder, "init", "-q")
         _git(folder, "add", ".")

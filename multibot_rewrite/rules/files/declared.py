@@ -23,6 +23,7 @@ from multibot_rewrite.knowledge.declared import (
 )
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import of_parameter, of_release
+from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
@@ -121,7 +122,10 @@ def wrong_types(file: NamedFile) -> Iterator[Remark]:
 
 
 def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[Declared]) -> bool:
-    """Does every release refuse the value, and is the node's package none of the repository's own?"""
+    """Does every release refuse the value, and is the node's package none of the repository's own? What
+    is for a release before Humble is another matter."""
+    if any(older_nodes(file)):
+        return False
     package, around = section.node.package if section.node else "", sources_around(file.file)
     if package and around and package in packages_below((around,)):
         return False

@@ -205,8 +205,14 @@ def _without_type(file: NamedFile) -> Iterator[Remark]:
 def renamed_nodes(file: NamedFile) -> Iterator[Remark]:
     """Sections of nodes that have another name since a release before Humble."""
     now = plugin_bases()[NODE].older
+    for name, section in older_nodes(file):
+        message = f"no supported release has a node {name}: it is called {now[name]}"
+        yield remark_at(section.keys[-1], message, f"write {now[name]}")
+
+
+def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
+    """Sections of nodes that only releases before Humble call so, with the name."""
     for section, _ in file.pages:
         name = section.path.rpartition("/")[2]
-        if name in now:
-            message = f"no supported release has a node {name}: it is called {now[name]}"
-            yield remark_at(section.keys[-1], message, f"write {now[name]}")
+        if name in plugin_bases()[NODE].older:
+            yield name, section
