@@ -16,7 +16,12 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.sections import MANAGER, RawSection, controller_types
+from multibot_rewrite.companions.params.sections import (
+    MANAGER,
+    ParamSection,
+    RawSection,
+    controller_types,
+)
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.plugin_classes import (
