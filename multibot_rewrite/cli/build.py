@@ -20,6 +20,7 @@ from multibot_rewrite.cli.report import About, check_report, chosen, report_besi
 from multibot_rewrite.cli.walk import is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import (
@@ -30,7 +31,6 @@ from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.manifest import (
-    MANIFEST,
     NOTE,
     OutputChanges,
     hash_of,

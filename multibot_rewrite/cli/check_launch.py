@@ -8,21 +8,16 @@ import shlex
 from collections.abc import Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.fleet.fleet import known_nodes
-from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import LaunchOrder, joined, orders_in_words
-from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
 from multibot_rewrite.rules.launch.judge import judge_launch, placed
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
@@ -35,7 +30,8 @@ def run(options: argparse.Namespace) -> int:
     orders = orders_of(options, options.words)
     _check_use(options, orders)
     plan = check.plan_of(options) if options.plan else None
-    made = launched_by(options, orders)
+    told = release_told(options.distro) or (plan.release if plan else "")
+    made = launched_by(orders, told, *own_nodes(options))
     for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
@@ -59,15 +55,6 @@ def _certain(it: Finding) -> Finding:
     """A claim that no hardware meets is an error where all that is started is known."""
     claims = it.code in (interface_not_exported.code, interface_claimed_twice.code)
     return it._replace(level=ERROR) if claims and it.level == WARNING else it
-
-
-def launched_by(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> Launched:
-    """What launch files would start, together; raises InputError for one that cannot be read."""
-    release = release_here(options.distro)
-    nodes, nodl = own_nodes(options)
-    library = known_nodes(nodes, release, nodl).library
-    known = Knowledge(library.nodes, load_known_nodes(nodes or "", release), release)
-    return launched(joined([launch_graph(it) for it in orders]), known)
 
 
 def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:

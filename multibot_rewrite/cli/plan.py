@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.releases import facts_of_release, release_told
 from multibot_rewrite.cli import check_launch, fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
@@ -90,13 +91,13 @@ def _of_launch(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
-    made = check_launch.launched_by(options, orders).system
+    made = launched_by(orders, release_told(options.distro), *fleet.own_nodes(options)).system
     seen = diagnose(made)
     if not made.nodes:
         raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")
     for caveat in doubts(made):
         say(f"incomplete: {caveat.message}", PROGRAM)
-    _write(options, seen_plan(seen)._replace(release=release_here(options.distro)))
+    _write(options, seen_plan(seen)._replace(release=made.release))
     return DONE
 
 

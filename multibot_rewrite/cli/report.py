@@ -5,19 +5,26 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
+from multibot_rewrite.base.findings.selection import (
+    Selection,
+    fails,
+    grouped,
+    selected,
+)
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
 TEXT = "text"
+FEW_NOTES = 3
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
@@ -81,10 +88,30 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
         return False
     if options.format == TEXT:
         colour = is_coloured(options.color, sys.stderr)
-        sys.stderr.write(_text(options, findings, about, NO_RULES, colour=colour))
+        shown = findings if options.verbose else list(_few_notes(findings))
+        sys.stderr.write(_text(options, shown, about, NO_RULES, colour=colour))
     else:
         print_bytes(_text(options, findings, about, NO_RULES, colour=False).encode())
     return fails(findings, options.fail_on)
+
+
+def _few_notes(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """The findings; of many notes of one kind in one file the first ones, and the lines of the rest."""
+    lines: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for it in findings:
+        if it.level == NOTE and it.line:
+            lines[it.code, it.file].append(it.line)
+    many = {key: at[FEW_NOTES:] for key, at in lines.items() if len(at) > FEW_NOTES + 1}
+    met: Counter[tuple[str, str]] = Counter()
+    for it in findings:
+        key = (it.code, it.file)
+        met[key] += it.level == NOTE and it.line > 0
+        if key not in many or it.level != NOTE or met[key] <= FEW_NOTES:
+            yield it
+        elif met[key] == FEW_NOTES + 1:
+            rest = ", ".join(map(str, many[key]))
+            message = f"there are {len(many[key])} more such notes in the file, at lines {rest}"
+            yield it._replace(message=message, hint="see them with --verbose")
 
 
 def _text(

@@ -12,13 +12,12 @@ from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.release_said import BUILD, MANIFEST
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
-MANIFEST = "manifest.json"
 # The manifest of a build in progress that replaces files one by one.
 NOTE = ".manifest.next.json"
-FORMAT = "multibot build 1"
 NOTHING: Mapping[str, str] = {}
 
 
@@ -43,7 +42,7 @@ def manifest(
 ) -> OutputFile:
     """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
     data = {
-        "format": FORMAT,
+        "format": BUILD,
         "distro": plan.file.distro,
         "robots": {it.spec.namespace: it.spec.name for it in plan.robots},
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
@@ -76,7 +75,7 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
     """The hashes of what a build wrote, by path; InputError for a file that is not a manifest."""
     try:
         found = load_json(data)
-        if found["format"] != FORMAT:
+        if found["format"] != BUILD:
             raise ValueError(found["format"])
         outputs = {str(path): str(hash_) for path, hash_ in found["outputs"].items()}
         # Files that are named here may be deleted, so none may be outside of the folder.

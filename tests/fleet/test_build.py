@@ -29,7 +29,8 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.manifest import MANIFEST, NOTE, read_manifest
+from multibot_rewrite.description.sources.release_said import MANIFEST
+from multibot_rewrite.fleet.manifest import NOTE, read_manifest
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
 

@@ -231,3 +231,43 @@ def test_a_description_is_launched_by_the_name_that_is_written(tmp_path: Path) -
     assert (out / "robot1" / "arm.urdf").exists()
     assert "text(f'{name}/arm.urdf')" in (out / "fleet.launch.py").read_text()
     assert main(["check-launch", str(out / "fleet.launch.py")]) in (0, 3)
+
+
+DRIVE = """<robot name="rover"><link name="base_link"/><link name="laser"/>
+<joint name="to_laser" type="fixed"><parent link="base_link"/><child link="laser"/></joint></robot>"""
+FILTER = "{}:\n  ros__parameters: {{odom_frame: odom, base_link_frame: base_link, odom0: wheels}}\n"
+LATER = ["ax_max", "ax_min", "ay_max", "ay_min", "az_max"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stack", ["robot_localization, ", ""])
+def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
+    stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """odom -> base_link is sent by the filter alone (robot_localization ros_filter.cpp); Humble's MPPI
+    has none of the five limits of Jazzy's (nav2_mppi_controller optimizer.cpp)."""
+    (tmp_path / "config").mkdir()
+    (tmp_path / "fleet").mkdir()
+    (tmp_path / "config" / "rover.urdf").write_text(DRIVE)
+    (tmp_path / "config" / "ukf.yaml").write_text(FILTER.format("ukf_filter_node"))
+    mppi = "\n".join(f"      {it}: 3.0" for it in LATER)
+    (tmp_path / "config" / "nav2.yaml").write_text(
+        "controller_server:\n  ros__parameters:\n    controller_plugins: [FollowPath]\n"
+        f"    FollowPath:\n      plugin: nav2_mppi_controller::MPPIController\n{mppi}\n"
+    )
+    files = "".join(f"../config/{it}, " for it in ("ukf.yaml", "nav2.yaml"))
+    fleet = tmp_path / "fleet" / "fleet.yaml"
+    fleet.write_text(
+        f"distro: humble\nlayout: tf-per-robot\nsimulator: none\nstack: [{stack}navigation, "
+        "slam_toolbox]\ndescription: ../config/rover.urdf\n"
+        f"companions: {{params: [{files}]}}\nrobots: [{{name: robot1}}, {{name: robot2}}]\n"
+    )
+    out = tmp_path / "out"
+    assert main(["build", str(fleet), "-o", str(out)]) == 0
+    said = capsys.readouterr().err
+    started = "executable='ukf_node'" in (out / "fleet.launch.py").read_text()
+    assert (started, "MG406" in said) == (bool(stack), not stack)
+    assert f"{tmp_path}/config/nav2.yaml:" in said
+    assert f"{tmp_path}/fleet/.." not in said
+    assert "there are 2 more such notes in the file, at lines 9, 10 " in said
+    assert max(map(len, (out / "fleet.launch.py").read_text().splitlines())) < 100

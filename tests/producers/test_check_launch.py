@@ -13,11 +13,11 @@ import pytest
 import yaml
 from launched_nodes import AT
 
-from multibot_rewrite.cli import check_launch
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -288,7 +288,7 @@ def test_the_command_reports_and_compares(
         orders.append(order)
         return graphs[dict(order.arguments)["as"]]  # type: ignore[attr-defined]
 
-    monkeypatch.setattr(check_launch, "launch_graph", read)
+    monkeypatch.setattr(child, "launch_graph", read)
 
     def code(*words: str) -> int:
         return main([words[0], *words[1:], "--distro", "jazzy"])
@@ -504,6 +504,19 @@ def test_a_port_that_two_robots_open(
     assert [it.message.rpartition(": ")[2] for it in told] == found
 
 
+def test_a_port_in_a_file_for_all_is_that_of_the_nodes_that_read_it(run: Graph) -> None:
+    """Nav2's nodes declare what they read, and no node of it a port or a device."""
+    servers = ("nav2_map_server/map_saver_server", "nav2_controller/controller_server", BRIDGE)
+    made = run(
+        *(
+            node(it, f"n{at}", space, port=9090, video_device="/dev/video0")
+            for space in ("/robot1", "/robot2")
+            for at, it in enumerate(servers)
+        )
+    )
+    assert {it.node for it in made.addresses} == {"/robot1/n2", "/robot2/n2"}
+
+
 @pytest.mark.parametrize(("address", "levels"), [("10.0.0.2", ["warning"]), ("10.0.0.3", [])])
 def test_an_arm_that_two_robots_command(address: str, levels: list[str], run: Graph) -> None:
     made = run(
@@ -533,3 +546,23 @@ def test_classic_makes_a_manager_beside_its_plugins(run: Graph) -> None:
     ends = run(state, spawn)
     assert "/robot1/controller_manager" in {it.name for it in ends.nodes}
     assert all(it.role for it in ends.ends)
+
+
+@pytest.mark.parametrize(
+    ("release", "second"), [("humble", "/robot1/odom"), ("jazzy", "/robot2/odom")]
+)
+def test_rules_of_the_process_are_those_of_the_first_robot(release: str, second: str) -> None:
+    """gazebo_ros2_control_plugin.cpp of humble sets the global arguments of the process; each manager
+    of jazzy has its own (gz_ros2_control_plugin.cpp)."""
+    nodes = []
+    for robot in ("robot1", "robot2"):
+        rule = f"<remapping>~/odom:=/{robot}/odom</remapping></ros>"
+        text = CLASSIC.replace("</ros></plugin>\n</gazebo>", f"{rule}</plugin></gazebo>")
+        words = ("-entity", robot, "-topic", f"/{robot}/robot_description")
+        state = publisher(f"/{robot}", robot_description=text.replace("/robot1<", f"/{robot}<"))
+        nodes += [state, node("gazebo_ros/spawn_entity.py", "spawn", arguments=words)]
+    known = Knowledge(built_in(release).nodes, load_known_nodes("", release), release)
+    made = launched(LaunchGraph(tuple(nodes)), known).nodes
+    rules = {it.full_name: dict(it.rules).get("~/odom") for it in made}
+    assert rules["/robot1/controller_manager"] == "/robot1/odom"
+    assert rules["/robot2/controller_manager"] == second

@@ -139,7 +139,7 @@ def _changed(
             f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
             "they were the same topic"
         )
-        hint = "write both the same way"
+        hint = f"write both the same way, or {BESIDE}"
         yield Problem(_element(document, it), message, None, hint, (), PARTED)
     for it, *pair in undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
@@ -150,7 +150,8 @@ def _changed(
 
 def _alike(reading: Reading, robot: str) -> bool:
     """Are there topics that differ in the place of the robot's name alone?"""
-    topics = {it.name for it in reading.names if it.kind in (TOPIC, SERVICE)}
+    every = (*reading.names, *reading.other_ends)
+    topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
     return len(bare) < len(topics)
 

@@ -32,7 +32,8 @@ OPENED = "MB412"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
-_ALLOW = "rename it for each robot, or allow it with --shared-topics"
+_ALLOWED = "allow it with --shared-topics"
+_ALLOW = f"rename it for each robot, or {_ALLOWED}"
 _ADVICE = {
     TWO_NODES: "give each robot's node a name or namespace of its own",
     TWO_SERVERS: _ALLOW,
@@ -115,15 +116,7 @@ def code_of(name: RuntimeName) -> str:
         from multibot_rewrite.system.words import is_order  # nothing is shared in most files
 
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA
-    others = {
-        TRANSFORMS: DATA,
-        NODE: TWO_NODES,
-        FRAME: FRAMES,
-        ADDRESS: OPENED,
-        FILE: OPENED,
-        RELATIVE: TWO_NODES,
-    }
-    return others.get(name.kind, LOOKUP)
+    return _CODES.get(name.kind, LOOKUP)
 
 
 def said(who: str, *names: RuntimeName) -> str:
@@ -143,6 +136,8 @@ def advice(name: RuntimeName) -> str:
         return "ROS 1 has one /tf: use --layout frames-per-robot"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
+    if name.path.startswith("/") and code_of(name) in _ADVICE:
+        return f"it is in the code of the plugin, so no description moves it: {_ALLOWED}"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

@@ -26,6 +26,7 @@ from multibot_rewrite.description.readback.parameters import sends_odometry, swi
 from multibot_rewrite.description.readback.wired import wired_of
 from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
@@ -253,8 +254,13 @@ def _by_themselves(
 
 def holds_topic(site: Site) -> bool:
     """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
-    whole = site.form == "whole" and site.role != "keep"
+    whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
+
+
+def is_of_others(site: Site) -> bool:
+    """Is its value a topic that the robot does not have for itself: of the world, or left as it is?"""
+    return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 
 
 def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:

@@ -17,6 +17,7 @@ from multibot_rewrite.description.readback.nodes import (
     TOPIC,
     TRANSFORMS,
     holds_topic,
+    is_of_others,
 )
 from multibot_rewrite.description.readback.parameters import switched_off, values_of
 from multibot_rewrite.description.readback.wired import wired_of
@@ -46,21 +47,36 @@ def resolved(
     if above is not None:
         yield from ((TOPIC, _joined(above, word), path) for path, word in words)
     yield from _of_nobody(host, stems)
-    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
         if site.kinds[0] == "subtopic" and stems and above is not None:
             below = _joined(above, words[0][1]) if words else None
-        names = values_of(host, site)
-        for name in map(as_valid_topic, names) if of_gz else names:
-            if name.startswith("/"):
-                yield kind, name, site.path
-            elif name.startswith("~"):
-                continue  # below a node that the simulator names
-            elif below is not None:
-                yield kind, _joined(below, name), site.path
+        yield from ((kind, it, site.path) for it in _full(host, section, site, below))
     yield from _coded(host, section, above)
+
+
+def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+    """Name and parameter of the topics that are the world's or left as they are, below the namespace
+    that the plugin puts in front; relative ones only where that is no model."""
+    of_model = "model" in section.opens or any(it.kinds[:1] == ("stem",) for it in section.sites)
+    above = None if of_model else _namespace(host, section)
+    for site in filter(is_of_others, section.sites):
+        yield from ((it, site.path) for it in _full(host, section, site, above))
+
+
+def _full(
+    host: _Element, section: VocabularySection, site: Site, above: str | None
+) -> Iterator[str]:
+    """The full names that a site holds, below what is put in front of relative ones; without those that
+    are below a node or model which the simulator names."""
+    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
+    names = values_of(host, site)
+    for name in map(as_valid_topic, names) if of_gz else names:
+        if name.startswith("/"):
+            yield name
+        elif above is not None and not name.startswith("~"):
+            yield _joined(above, name)
 
 
 def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str, str]]:
@@ -88,10 +104,8 @@ def _coded(
     for wired, path in wired_of(host, section):
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
-            if wired.name in TF_TOPICS:
-                kind = TRANSFORMS
             name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
-            yield kind, name, path or wired.name
+            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:

@@ -16,10 +16,11 @@ Place = tuple[str, int, str, str, int]
 
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
-    """Each end that lost the first of those that it met, with that one, as they are now."""
-    now = _by_place(after.names)
+    """Each end that lost the first of those that it met, with that one, as they are now: what is left
+    as it was by the vocabulary counts as well."""
+    now = _by_place((*after.names, *after.other_ends))
     of_topic: dict[tuple[str, str], list[Place]] = defaultdict(list)
-    for place, name in _by_place(before.names).items():
+    for place, name in _by_place((*before.names, *before.other_ends)).items():
         if place in now:
             of_topic[name.kind, name.name].append(place)
     for places in of_topic.values():

@@ -15,13 +15,14 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
 
 MODEL = "{model}/"
 
 
 def values_of(host: _Element, site: Site) -> list[str]:
     """Its values, in order, or the default; none where an empty element means something else."""
-    if site.when and not _applies(host, site):
+    if site.when not in ("", SENT) and not _applies(host, site):
         return []
     given = list(values_at(host, site.path))
     if not any(given) and (not given or site.empty == "default"):

@@ -16,7 +16,7 @@ from multibot_rewrite.description.readback.nodes import (
     frames_of,
     node_of,
 )
-from multibot_rewrite.description.readback.other_topics import resolved
+from multibot_rewrite.description.readback.other_topics import of_others, resolved
 from multibot_rewrite.description.readback.parameters import (
     MODEL,
     around,
@@ -58,12 +58,15 @@ class RuntimeName(NamedTuple):
 class Reading(NamedTuple):
     """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
     as its number among the plugins and its library; ``missed`` the frames below a model's name, which
-    are in the tree of no robot, though nothing else of the model sends their transform."""
+    are in the tree of no robot, though nothing else of the model sends their transform;
+    ``other_ends`` those of topics that are the world's or left as they are, and of what is below a
+    word that ``names`` have."""
 
     nodes: tuple[ReadNode, ...]
     names: tuple[RuntimeName, ...]
     unknown: tuple[tuple[int, str], ...]
     missed: tuple[RuntimeName, ...] = ()
+    other_ends: tuple[RuntimeName, ...] = ()
 
 
 class _Host(NamedTuple):
@@ -98,7 +101,9 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     names += _of_elements(root, vocabulary)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
-    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts))
+    below = (end for it in nodes for end in _endpoints(it, below=True))
+    ends = (*_of_others(hosts), *below)
+    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
 
 
 def _of_first_senders(
@@ -131,20 +136,31 @@ def _gives_frames(host: _Host) -> bool:
     return any(any(values_at(host.element, it.path)) for it in _frame_sites(host))
 
 
+def _of_others(hosts: list[_Host]) -> Iterator[RuntimeName]:
+    for it in hosts:
+        for name, path in of_others(it.element, it.section):
+            yield RuntimeName(TOPIC, name, "plugin", it.number, path)
+
+
 def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         if node.name:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         if node.helper:
             yield RuntimeName(NODE, node.helper, "plugin", node.number, "its own node")
-        above = {path for path, _ in node.stems}
-        for it in node.endpoints:
-            # What is below a stem is named by it.
-            if not it.off and it.parameter not in above:
-                path, of = it.parameter or it.name, it.of_controllers
-                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of, it.type)
+        # What is below a stem is named by it.
+        yield from _endpoints(node, below=False)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)
+
+
+def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
+    """Those that are on and ``below`` one of its stems, or the others."""
+    stems = {path for path, _ in node.stems}
+    for it in node.endpoints:
+        if not it.off and (it.parameter in stems) == below:
+            path, of = it.parameter or it.name, it.of_controllers
+            yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of, it.type)
 
 
 def _of_plugins(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which ROS 2 release a description is for, where nobody said it: by the libraries that it loads, else
-by the CI and the packages of its repository.
+"""Which ROS 2 release a description or a launch file is for, where nobody said it: by the build that
+wrote it, by the libraries that it loads, else by the CI and the packages of its repository.
 
 Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com ".gitlab-ci.yml"; REP
 149 (package.xml); for the packages REP 2000 and gazebosim.org/docs, "Installing Gazebo with ROS".
@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.bounded import load_json, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.record import NamedTuple
@@ -19,12 +19,14 @@ from multibot_rewrite.base.releases import ENDED, NEWEST_LTS, OF_OLD, RELEASES, 
 
 # Folders above a description in which the top of its repository is looked for.
 HIGHEST = 6
+# What a build writes into its folder says for which release it did; a robot's files are one below.
+MANIFEST, BUILD = "manifest.json", "multibot build 1"
 _CI = (".github/workflows", ".gitlab-ci.yml")
 _LINE = lazy_compile(rb"(?i)[^\n]*(?:ros|distro)[^\n]*")
 _RELEASE = lazy_compile(rb"(?i)\b(?:" + "|".join((*RELEASES, *ENDED)).encode() + rb")\b")
-_PACKAGE = lazy_compile(
-    rb"depend>\s*(gazebo_(?:ros|plugins|ros_pkgs|ros2_control)|ign_ros2_control|ros_ign\w*)\s*<"
-)
+_OLD_PACKAGE = r"(gazebo_(?:ros|plugins|ros_pkgs|ros2_control)|ign_ros2_control|ros_ign\w*)"
+_STARTED = lazy_compile(_OLD_PACKAGE)
+_PACKAGE = lazy_compile(rb"depend>\s*" + _OLD_PACKAGE.encode() + rb"\s*<")
 _NEW_PACKAGE = lazy_compile(rb"depend>\s*(?:ros_gz\w*|gz_ros2_control|gz-\w+)\s*<")
 
 
@@ -39,10 +41,23 @@ def release_said(told: str, text: bytes, file: str) -> SaidRelease:
     """The release that was ``told``, else that of a description's text, else of its repository."""
     if told:
         return SaidRelease(told)
+    if built := _release_of_build(file):
+        return SaidRelease(built, f"{MANIFEST} says so")
     if library := evidence(text):
         return SaidRelease(OF_OLD, f"it loads {library}")
     named, _, why = release_in_repository(file).partition(" ") if file else ("", "", "")
     return SaidRelease(named or NEWEST_LTS, why)
+
+
+def release_of_launch(
+    told: str, packages: Iterable[str], texts: Iterable[str], file: str
+) -> SaidRelease:
+    """The same for a launch file: by the packages that it starts and the texts that its nodes get."""
+    said = release_said(told, "\n".join(texts).encode(), file)
+    old = next(filter(_STARTED.fullmatch, packages), "")
+    if said.why or told or not old:
+        return said
+    return SaidRelease(OF_OLD, f"it starts {old}")
 
 
 def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
@@ -55,6 +70,26 @@ def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
         if it.why
     }
     return said.popitem()[1] if len(said) == 1 else SaidRelease(NEWEST_LTS)
+
+
+@outside
+def _release_of_build(file: str) -> str:
+    """The release for which a build wrote a file; empty for a file of nobody's build."""
+    here = os.path.dirname(os.path.abspath(file))
+    for path in (os.path.join(it, MANIFEST) for it in (here, os.path.dirname(here))):
+        if os.path.isfile(path):
+            found = _manifest(path)
+            said = found.get("distro") if found.get("format") == BUILD else ""
+            return said if isinstance(said, str) and said in RELEASES else ""
+    return ""
+
+
+def _manifest(path: str) -> dict[str, object]:
+    try:
+        found = load_json(_bytes_of(path))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 @outside

@@ -9,7 +9,13 @@ from lxml import etree
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim, InputError, Site
-from multibot_rewrite.base.naming import DECLARED_KINDS, DEFAULT_LAYOUT, Layout, find_layout
+from multibot_rewrite.base.naming import (
+    DECLARED_KINDS,
+    DEFAULT_LAYOUT,
+    TOPIC_KINDS,
+    Layout,
+    find_layout,
+)
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import names_in_topics
@@ -23,6 +29,7 @@ from multibot_rewrite.description.rewriters.spelling import (
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
 from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
@@ -72,7 +79,7 @@ def collect(
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
     release = tree.vocabulary.release
-    claims = below_models(claims, document.source, release)
+    claims = _of_the_robot(below_models(claims, document.source, release))
     # No word of ROS is one that topics of Gazebo are made of.
     of_gz = claims
     if not layout.namespaced:
@@ -141,8 +148,18 @@ def _text_claim(site: Site, element: etree._Element, start: int) -> list[Claim]:
     return [Claim(site, element, start, "", text)] if is_name else []
 
 
+def _of_the_robot(claims: list[Claim]) -> list[Claim]:
+    """Without the topics of the world that nothing else in the document has."""
+    heard = [it for it in claims if it.site.when == SENT]
+    if not heard:
+        return claims
+    topics = (it for it in claims if it.site.when != SENT and it.site.kinds[0] in TOPIC_KINDS)
+    sent = {it.value.strip("/ ") for it in topics}
+    return [it for it in claims if it.site.when != SENT or it.value.strip("/ ") in sent]
+
+
 def _applies(site: Site, element: etree._Element) -> bool:
-    if not site.when:
+    if site.when in ("", SENT):
         return True
     sibling, _, text = site.when.partition("=")
     parent = element.getparent()

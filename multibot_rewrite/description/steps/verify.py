@@ -66,6 +66,11 @@ class Evidence(NamedTuple):
     found: list[tuple[Claim, Names]]
     added: list[tuple[Claim, Names]]
 
+    @property
+    def file(self) -> str:
+        """The name of the source in messages."""
+        return self.inventory.document.file
+
 
 @gc_paused()
 def verify(
@@ -191,8 +196,7 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
     """Does this name lead nowhere now, though there was something called so?"""
-    kinds = () if name.kind else name.kinds
-    return any(name.text in inventory.declared.get(kind, ()) for kind in kinds)
+    return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
 
 def robots_own(it: Evidence) -> None:
@@ -200,8 +204,9 @@ def robots_own(it: Evidence) -> None:
     for name, reach in _inserted_names(it):
         # What must be declared and is not is of no kind: it is another robot's, or nobody's.
         if not name.kind or removal(it.naming, it.robot, name.kind, name.text, reach) is None:
-            file = it.inventory.document.file
-            raise ProofError(f"{file}: {name.text!r} was inserted, which is not {it.robot}'s own")
+            raise ProofError(
+                f"{it.file}: {name.text!r} was inserted, which is not {it.robot}'s own"
+            )
 
 
 def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
@@ -218,9 +223,8 @@ def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
 def nothing_to_add(it: Evidence) -> None:
     """No plugin is left with a default or hard-wired topic that another robot would share."""
     for item in insertions(it.result.served, it.result.declared, it.naming):
-        file = it.inventory.document.file
         raise ProofError(
-            f"{file}: {without(item, it.inventory.release)} {item.old!r}: nothing was inserted"
+            f"{it.file}: {without(item, it.inventory.release)} {item.old!r}: nothing was inserted"
         )
 
 
@@ -238,8 +242,7 @@ def _once(it: Evidence, added: list[etree._Element], beside: list[etree._Element
     there = Counter(map(_key, beside))
     for element in added:
         if there[_key(element)] > 1:
-            file = it.inventory.document.file
-            raise ProofError(f"{file}: <{element.tag}> was inserted and is there already")
+            raise ProofError(f"{it.file}: <{element.tag}> was inserted and is there already")
 
 
 def _key(element: etree._Element) -> tuple[str, str | None, str]:
@@ -250,24 +253,22 @@ def _key(element: etree._Element) -> tuple[str, str | None, str]:
 
 def as_decided(it: Evidence) -> None:
     """What the plan decided to insert is what its edits write."""
-    output, file, robot = it.result.document.source, it.inventory.document.file, it.robot
+    output, robot, every = it.result.document.source, it.robot, it.plan.insertions
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
-    for item in it.plan.insertions:
+    for item in every:
         if not item.step and item.xml.replace(ROBOT_SLOT, robot).encode() not in inserted:
-            raise ProofError(f"{file}: {item.old!r} was to be replaced by {item.xml}")
-    filled = (item.new for item in it.plan.insertions if item.step)
-    wanted = sorted(text.replace(ROBOT_SLOT, robot) for text in filled)
+            raise ProofError(f"{it.file}: {item.old!r} was to be replaced by {item.xml}")
+    wanted = sorted(item.new.replace(ROBOT_SLOT, robot) for item in every if item.step)
     if sorted(_filled(it)) != wanted:
-        raise ProofError(f"{file}: empty elements were to be filled with {', '.join(wanted)}")
+        raise ProofError(f"{it.file}: empty elements were to be filled with {', '.join(wanted)}")
 
 
 def _filled(it: Evidence) -> Iterator[str]:
     """The texts of the elements that the markers say were empty."""
     for marker in it.markers:
         parent = marker.comment.getparent()
-        if parent is not None:
-            found = (parent.find(query(step)) for step in marker.filled)
-            yield from (text_of(element) for element in found if element is not None)
+        found = () if parent is None else (parent.find(query(step)) for step in marker.filled)
+        yield from (text_of(element) for element in found if element is not None)
 
 
 def as_planned(it: Evidence) -> None:
@@ -293,8 +294,7 @@ def a_slot_each(it: Evidence) -> None:
     wanted = values + len(list(_inserted_names(it))) + len(it.markers)
     wanted += sum(_is_own_namespace(claim, it) for claim, _ in it.added)
     if it.slots != wanted:
-        file = it.inventory.document.file
-        raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
+        raise ProofError(f"{it.file}: {it.robot} is named {wanted} times, in {it.slots} slots")
 
 
 def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
@@ -307,9 +307,8 @@ def strips_to_source(it: Evidence) -> None:
     own = own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
     if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):
-        file = it.inventory.document.file
         raise ProofError(
-            f"{file}: stripping {it.robot} from the output does not give the input back"
+            f"{it.file}: stripping {it.robot} from the output does not give the input back"
         )
 
 

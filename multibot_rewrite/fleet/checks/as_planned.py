@@ -20,13 +20,13 @@ from multibot_rewrite.rules.system import (
     names,
     relays,
     sharing,
-    tf_topics,
+    tf_pieces,
     transforms,
 )
 from multibot_rewrite.spelling.ways import SPAWNER
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import Environment, Node, Place, System
+from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names.
@@ -40,7 +40,7 @@ _OF_SOURCES = frozenset(
     )
 )
 # What a simulator may give that the launch file does not start.
-_OF_OTHERS = frozenset((clocks.no_clock.code, tf_topics.tf_tree_in_pieces.code))
+_OF_OTHERS = clocks.no_clock.code
 # What a node of the launch file has is known, whatever else runs.
 _OF_NODES = frozenset(
     it.code for it in (nodes.missing_node, nodes.missing_robot, endpoints.missing_endpoint)
@@ -75,13 +75,22 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     """Empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
         return ERROR if _is_of_launch(it, planned, seen, started) else ""
-    if it.level != ERROR or it.code in _OF_OTHERS:
+    if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
+    if it.code == tf_pieces.tf_tree_in_pieces.code:
+        return WARNING if _sender_left(it, planned, started) else ""
     if it.code in _OF_SOURCES:
         return WARNING
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     return "" if it.code in ABSENCE and doubts(seen) else ERROR
+
+
+def _sender_left(it: Finding, planned: System, started: Set[str]) -> bool:
+    """Is the transform between the pieces that of a node that may be missing and is not started? A
+    simulator may send any other."""
+    senders = {name for one in planned.edges if one.child in it.names for name in one.publishers}
+    return any(one.name in senders - started and one.sure != RUNS for one in planned.nodes)
 
 
 def _is_read(seen: System) -> bool:

@@ -25,7 +25,7 @@ from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_che
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
 PATHS = (
-    *("include", "description", "simulated", "srdf", "nodes", "vocabulary"),
+    *("include", "description", "simulated", "srdf", "rviz", "nodes", "vocabulary"),
     "simulator_world",
 )
 # The parts of a robot.
@@ -66,7 +66,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
 
     def resolve(value: Any) -> Any:
         if isinstance(value, str):
-            return os.path.join(folder, value)
+            return _joined(folder, value)
         return value if isinstance(value, dict) else [resolve(it) for it in value]
 
     result = dict(data)
@@ -92,7 +92,14 @@ def _launch_path(folder: str, text: str) -> str:
     if _of_package(text):
         return text
     file, blank, arguments = text.partition(" ")
-    return f"{os.path.join(folder, file)}{blank}{arguments}"
+    return f"{_joined(folder, file)}{blank}{arguments}"
+
+
+def _joined(folder: str, path: str) -> str:
+    """A path below a folder, without ``..`` where no link makes that another place."""
+    found = os.path.join(folder, path)
+    short = os.path.normpath(found) if os.pardir in found else found
+    return short if os.path.realpath(short) == os.path.realpath(found) else found
 
 
 def _of_package(text: str) -> bool:

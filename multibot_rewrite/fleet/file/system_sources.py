@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.policy import Policy
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import release_here, release_told
 from multibot_rewrite.description.sources.read import Source, read_file
+from multibot_rewrite.description.sources.release_said import release_of_launch
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected, known_nodes, make_fleet
@@ -27,8 +29,13 @@ from multibot_rewrite.spelling.plan_file import is_plan, read_plan
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, questions
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import Caveat, System
 
+if TYPE_CHECKING:
+    from multibot_rewrite.producers.launch.launched import Launched
+    from multibot_rewrite.producers.launch.records import LaunchOrder
+
+RELEASE = "release"
 NO_ARGUMENTS: Mapping[str, str] = {}
 AS_USUAL: Policy = {}
 Path = str | os.PathLike[str]
@@ -71,16 +78,36 @@ def system_of_launch(
 ) -> System:
     """What a launch file would start. It is a program: name one that you trust. ``roots`` are folders
     with the sources of packages. Raises InputError for a file that cannot be read."""
-    from multibot_rewrite.producers.launch.child import launch_graph
     from multibot_rewrite.producers.launch.records import LaunchOrder
-    from multibot_rewrite.producers.launch.running import Knowledge
-    from multibot_rewrite.producers.launch.snapshot import would_run
 
-    release = release_here(distro)
     order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trusted=True)
-    library = known_nodes(None, release, ()).library
-    known = Knowledge(library.nodes, load_known_nodes("", release), release)
-    return would_run(launch_graph(order), known)
+    return launched_by([order], release_told(distro)).system
+
+
+def launched_by(
+    orders: Sequence[LaunchOrder],
+    told: str = "",
+    nodes: str | None = None,
+    nodl: Sequence[str] = (),
+) -> Launched:
+    """What launch files would start, together, in the release that was ``told``, else in the one that
+    they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError for a
+    file that cannot be read."""
+    from multibot_rewrite.producers.launch.child import launch_graph
+    from multibot_rewrite.producers.launch.records import joined
+    from multibot_rewrite.producers.launch.running import Knowledge
+    from multibot_rewrite.producers.launch.snapshot import launched
+
+    graph = joined([launch_graph(it) for it in orders])
+    said = release_of_launch(told, graph.packages, graph.texts, orders[0].file)
+    library = known_nodes(nodes, said.release, nodl).library
+    parameters = load_known_nodes(nodes or "", said.release)
+    made = launched(graph, Knowledge(library.nodes, parameters, said.release))
+    seen = made.system.environment
+    why = said.why or "the newest long-term release, as nothing says which; see --distro"
+    which = Caveat(RELEASE, False, f"read for ROS 2 {said.release}: {why}")
+    environment = seen._replace(caveats=(*([] if told else [which]), *seen.caveats))
+    return made._replace(system=made.system._replace(environment=environment))
 
 
 def system_of_folder(path: Path, *, distro: str = "") -> System:

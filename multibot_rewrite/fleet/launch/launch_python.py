@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from textwrap import wrap
 
 from multibot_rewrite.fleet.launch.each_robot import Written, functions
-from multibot_rewrite.fleet.launch.python_actions import group, process, quoted, value
+from multibot_rewrite.fleet.launch.python_actions import group, list_between, process, quoted, value
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
@@ -213,9 +213,11 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     for name, why in it.left:
         if why:
             text = f"Not started: {name} ({why})"
-            yield from (f"    # {line}" for line in wrap(text, WIDTH - 6))
+            lines = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
+            yield from (f"    # {line}" for line in lines)
     if it.files:
-        yield f"    params = [{', '.join(value(File(path)) for path in it.files)}]"
+        files = [value(File(path)) for path in it.files]
+        yield from (f"    {line}" for line in list_between("params = [", files, "]"))
     own = tuple(File(path) for path in it.files)
     yield "    return ["
     for start in it.starts:

@@ -84,14 +84,19 @@ def _given(
 
 
 def _list(key: str, items: Sequence[str]) -> Iterator[str]:
-    """A keyword with a list: in one line where that is short, whatever the names of robots are."""
-    line = f"{key}=[{', '.join(items)}],"
+    """A keyword with a list."""
+    yield from list_between(f"{key}=[", items, "],")
+
+
+def list_between(start: str, items: Sequence[str], end: str) -> Iterator[str]:
+    """A list in one line where that is short, whatever the names of robots are."""
+    line = f"{start}{', '.join(items)}{end}"
     if _is_short(line):
         yield line
         return
-    yield f"{key}=["
+    yield start
     yield from (f"    {line}" for it in items for line in _item(it))
-    yield "],"
+    yield end
 
 
 def _is_short(text: str) -> bool:

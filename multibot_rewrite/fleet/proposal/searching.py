@@ -15,7 +15,7 @@ from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.fleet.manifest import MANIFEST
+from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
 
 # Files that are looked at; of a larger one nothing is read.

@@ -127,13 +127,18 @@ def nodes_of(
     files say whether they run.
     """
     sections = {it.name: _section_of(it, given) for it in stack}
-    left, kept = _left_out(stack, given, sections)
+    left, kept = _left_out(stack, given, sections, known)
     either = {**alternatives(given, known), **spawned}
     nodes = [_of_stack(it, sections[it.name], known, either, spawned) for it in kept]
     names = {it.name for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.name in names}
     sent = {child for node in kept for child in children_of(node)}
+    other = [it for it in stack if it not in kept]
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
+        meant = next((one for one in other if _stands_for(it, one, known)), None)
+        if meant and not it.manager:
+            nodes.append(filled(known[it.known], it)._replace(when=meant.when))
+            continue
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
@@ -153,6 +158,7 @@ def _left_out(
     stack: Sequence[NodeFacts],
     given: Sequence[GivenNode],
     sections: Mapping[str, GivenNode | None],
+    known: Mapping[str, NodeFacts],
 ) -> tuple[list[Finding], list[NodeFacts]]:
     """Notes of the nodes that the files contradict, and the other nodes of the stacks."""
     controllers = [it for it in given if it.manager]
@@ -161,10 +167,19 @@ def _left_out(
     for node in stack:
         if sections[node.name] is None and node.host == MANAGER and controllers:
             findings += [] if node.when else [_not_declared(node, controllers[0])]
-        # A file may have it under another name, as ekf_node for ekf_filter_node.
-        elif sections[node.name] or not any(it.known == node.name for it in given):
+        elif sections[node.name] or not any(_stands_for(it, node, known) for it in given):
             kept.append(node)
     return findings, kept
+
+
+def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
+    """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
+    another program of the package that sends the same, as ukf_filter_node?"""
+    if given.known == node.name:
+        return True
+    entry = known.get(given.known)
+    same = entry is not None and entry.package == node.package and entry.sends == node.sends
+    return same and bool(node.sends)
 
 
 def children_of(node: NodeFacts) -> Iterator[str]:

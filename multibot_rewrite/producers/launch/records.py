@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.tool_nodes import is_viewer
 
 Rules = tuple[tuple[str, str], ...]
 
@@ -112,6 +113,17 @@ class LaunchGraph(NamedTuple):
         """Are these all nodes?"""
         return all(it.parameters for it in self.notes)
 
+    @property
+    def packages(self) -> set[str]:
+        """The packages whose nodes are started."""
+        return {it.package for it in self.nodes}
+
+    @property
+    def texts(self) -> Iterator[str]:
+        """The texts that nodes get, and those of files that are read for them."""
+        yield from (it.text for _, it in self.files)
+        yield from (it.text for node in self.nodes for it in node.parameters)
+
 
 class RunningNode(NamedTuple):
     """A node as a launch starts it.
@@ -142,6 +154,11 @@ class RunningNode(NamedTuple):
     def full_name(self) -> str:
         """Namespace and name."""
         return expand(self.name, self.namespace, "")
+
+    @property
+    def is_known(self) -> bool:
+        """Is known what it does, or that it only looks on?"""
+        return self.facts is not None or is_viewer(self.name)
 
     def value(self, name: str) -> object:
         """What a parameter is set to; None where nothing sets it."""

@@ -20,6 +20,7 @@ from multibot_rewrite.base.rosnames import (
 )
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.knowledge.conditions import chosen_type
+from multibot_rewrite.knowledge.declared import is_known
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
@@ -76,6 +77,7 @@ from multibot_rewrite.system.records import (
     Lookup,
     Node,
     Parameter,
+    Place,
     System,
 )
 
@@ -110,6 +112,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
+        release=known.release,
         parameters=tuple(_clocks(nodes, graph.notes)),
         lookups=tuple(it for node in nodes for it in _lookups(node)),
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
@@ -178,7 +181,11 @@ def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Ad
     """What a node has alone: by its parameters, and by the hardware of its description, if that is no
     model in a simulator."""
     node = known.parameters.nodes.get(it.facts.known) if it.facts else None
-    yield from of_parameters(it.full_name, node.params if node else {}, it.values)
+    params = node.params if node else {}
+    # One file is often given to all nodes; what these read is known, but for that of their plugins.
+    whole = is_known(it.program.partition("/")[0])
+    own = {name: value for name, value in it.values.items() if name in params or "." in name}
+    yield from of_parameters(it.full_name, params, own if whole else it.values)
     text = it.value(DESCRIPTION)
     root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
@@ -206,10 +213,14 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
+    # What several nodes lack is said once, where the first one does.
+    first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
-        yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
+        first.setdefault(note.message, note.place)
+    for message, place in first.items():
+        yield Caveat(NOT_WHOLE, True, f"{place}: {message}")
     unknown = [
-        f"{it.full_name} ({it.program})" for it in nodes if it.facts is None and not is_bridge(it)
+        f"{it.full_name} ({it.program})" for it in nodes if not it.is_known and not is_bridge(it)
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)

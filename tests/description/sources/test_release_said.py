@@ -7,7 +7,11 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.sources.release_said import release_of_all, release_said
+from multibot_rewrite.description.sources.release_said import (
+    release_of_all,
+    release_of_launch,
+    release_said,
+)
 
 PLAIN = b'<robot name="r"><link name="a"/></robot>'
 CLASSIC = (
@@ -79,3 +83,42 @@ def test_adapters_of_moveit_say_the_release() -> None:
     assert release_said("", old, "").release == "humble"
     new = b"[default_planning_request_adapters/CheckForStackedConstraints] # not " + old
     assert release_said("", new, "").release == NEWEST_LTS
+
+
+@pytest.mark.parametrize(
+    ("manifest", "told", "release"),
+    [
+        ('{"format": "multibot build 1", "distro": "kilted"}', "", "kilted"),
+        ('{"format": "multibot build 1", "distro": "kilted"}', "jazzy", "jazzy"),
+        # Files of others, and what a person made of ours.
+        ('{"format": "nothing of ours", "distro": "kilted"}', "", "humble"),
+        ('{"format": "multibot build 1", "distro": ["kilted"]}', "", "humble"),
+        ('{"format": "multibot build 1"}', "", "humble"),
+        ("[1]", "", "humble"),
+        ("{", "", "humble"),
+    ],
+)
+def test_a_built_folder_says_its_release(
+    manifest: str, told: str, release: str, tmp_path: Path
+) -> None:
+    (tmp_path / "robot1").mkdir()
+    (tmp_path / "manifest.json").write_text(manifest)
+    for file in ("fleet.launch.py", "robot1/r.urdf"):
+        assert release_said(told, CLASSIC, str(tmp_path / file)).release == release
+
+
+@pytest.mark.parametrize(
+    ("packages", "texts", "said"),
+    [
+        (["rviz2", "gazebo_ros"], [], ("humble", "it starts gazebo_ros")),
+        (["ros_gz_sim"], [CLASSIC.decode()], ("humble", "it loads libgazebo_ros_p3d.so")),
+        (["ros_gz_sim", "my_gazebo_ros"], [PLAIN.decode()], (NEWEST_LTS, "")),
+        ([], [], (NEWEST_LTS, "")),
+    ],
+)
+def test_a_launch_file_says_its_release(
+    packages: list[str], texts: list[str], said: tuple[str, str], tmp_path: Path
+) -> None:
+    file = str(tmp_path / "two.launch.py")
+    assert release_of_launch("", packages, texts, file) == said
+    assert release_of_launch("jazzy", packages, texts, file) == ("jazzy", "")

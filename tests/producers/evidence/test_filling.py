@@ -8,6 +8,7 @@ import pytest
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.programs import program_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.filling import filled
@@ -174,6 +175,28 @@ def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> N
 def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
     found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given(EKF), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == ["ekf_node"]
+    assert [it.when for it in found.nodes] == [""]
+
+
+def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:
+    """ukf_node of robot_localization sends what ekf_node sends (ros_filter.cpp is of both)."""
+    known = load_nodes("jazzy")
+    stack = (known["ekf_filter_node"],)
+    for name in ("ukf_filter_node", "ukf_node"):
+        (node,) = nodes_of(stack, given(EKF.replace("ekf_node", name)), known).nodes
+        program = program_of(node, "jazzy")
+        assert program and (node.name, program.executable, node.when) == (name, "ukf_node", "")
+    beside = EKF + EKF.replace("ekf_node", "ukf_node")
+    assert {it.name for it in nodes_of(stack, given(beside), known).nodes} == {
+        "ekf_node",
+        "ukf_node",
+    }
+    # navsat_transform_node is of the package, and no filter.
+    other = nodes_of(stack, given("navsat_transform_node:\n  ros__parameters: {}\n"), known)
+    assert {it.name: bool(it.when) for it in other.nodes} == {
+        "ekf_filter_node": False,
+        "navsat_transform_node": True,
+    }
 
 
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:

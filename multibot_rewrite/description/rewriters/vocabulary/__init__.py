@@ -32,6 +32,7 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
                        the canonical link, ``{sensor}`` the sensor around, ``{topic}`` the text there
     fill=TEXT          what is written in place of a default below ``{model}/``, if not what is behind
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
+    when=sent          a topic of the world, as its wind, but where something in this file has it, too
     empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
                        if it was not there (usual for a namespace: the root); ``model``, the model's
                        name; ``itself``, the empty text (usual for the rest)

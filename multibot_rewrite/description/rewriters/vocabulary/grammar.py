@@ -59,6 +59,8 @@ ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
 OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
 RELEASES = "releases="
+# A topic that comes from outside: the robot's own only where something in the file sends it.
+SENT = "sent"
 EMPTY = ("default", "model", "itself")
 FORMS = (
     *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
