@@ -151,7 +151,7 @@ _FRICTION = ("mu1", "mu", "mu2")
     "wheel-without-grip",
     WARNING,
     what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block, without the "
-    "<fdir1> of wheels with rollers, and no plugin is there that moves the body of the robot itself.",
+    "<fdir1> of wheels with rollers. No plugin moves the body of the robot itself.",
     why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
     fix="Write 1.0 or so for both.",
     bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
