@@ -233,7 +233,7 @@ FINGERS = """\
 GRIPPER_RVIZ = f"""\
 Visualization Manager:
   Displays:
-{ROBOT_MODEL.format(link="palm")}{"".join(f"    {it}" for it in FINGERS.splitlines(True))}\
+{ROBOT_MODEL.format(link="palm").replace("/robot", "robot")}{"".join(f"    {it}" for it in FINGERS.splitlines(True))}\
   Global Options:
     Fixed Frame: root
 """
