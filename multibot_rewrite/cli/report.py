@@ -16,7 +16,6 @@ from multibot_rewrite.base.findings.selection import (
     Selection,
     fails,
     grouped,
-    robot_of,
     selected,
 )
 from multibot_rewrite.base.model import UsageError
@@ -24,7 +23,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
-TEXT, JSON = "text", "json"
+TEXT = "text"
 FEW_NOTES = 3
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
@@ -115,11 +114,6 @@ def _few_notes(findings: Sequence[Finding]) -> Iterator[Finding]:
             yield it._replace(message=message, hint="see them with --verbose")
 
 
-def _with_robot(it: Finding, robots: Mapping[str, str]) -> Finding:
-    """A finding that others share, with the robot that it is written for."""
-    return it._replace(robot=robot_of(it, robots)) if it.others else it
-
-
 def _text(
     options: argparse.Namespace,
     findings: Sequence[Finding],
@@ -129,8 +123,6 @@ def _text(
     colour: bool,
 ) -> str:
     shown = findings if options.verbose else grouped(findings, about.robots)
-    if options.format == JSON:
-        shown = [_with_robot(it, about.robots) for it in shown]
     if options.format != TEXT and not rules:
         from multibot_rewrite.lint.catalogue import rules as all_rules  # it imports every check
 

@@ -73,7 +73,7 @@ def finding_list(
 def _head(row: FindingRow, link: str) -> str:
     finding = row.finding
     level = safe(finding.level)
-    who = ", ".join(_robots(row))
+    who = ", ".join(finding.robots or filter(None, (finding.robot,))) or ", ".join(row.robots)
     named = shorten(who.split(", "))
     hint = f"<small>{safe(finding.hint)}</small>" if finding.hint else ""
     place = f"<code>{safe(finding.node)}</code>" if finding.node else "show"
@@ -86,12 +86,6 @@ def _head(row: FindingRow, link: str) -> str:
     )
 
 
-def _robots(row: FindingRow) -> Sequence[str]:
-    """The robots that a finding is about; one of a file has none of its own."""
-    finding = row.finding
-    return (finding.robot, *finding.others) if finding.robot else row.robots
-
-
 def _body(row: FindingRow, sources: Sources) -> str:
     """Where, why, and the line of the description if it is known."""
     finding = row.finding
@@ -99,7 +93,7 @@ def _body(row: FindingRow, sources: Sources) -> str:
     names = ", ".join(filter(None, (finding.node, *finding.names)))
     parts = [
         ("Where", safe(shorten(dict.fromkeys(names.split(", ")), SEVERAL * 4))) if names else None,
-        ("Robots", safe(", ".join(_robots(row)))) if finding.others else None,
+        ("Robots", safe(", ".join(finding.robots))) if len(finding.robots) > 1 else None,
         ("Why it matters", with_code(rule.why)) if rule else None,
         ("What to do", with_code(rule.fix)) if rule else None,
         ("Written in", f"<code>{safe(row.place)}</code>") if row.place else None,

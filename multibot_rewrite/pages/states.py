@@ -121,7 +121,7 @@ def robots_of(plan: Index, finding: Finding) -> set[str]:
     in_tf = finding.code.startswith(TF_CODES)
     of_name = plan.of_frames.robot if in_tf else plan.of_names.robot
     words = words_of(finding.message)
-    found = {finding.robot, *finding.others, *map(of_name, finding.names)}
+    found = {finding.robot, *finding.robots, *map(of_name, finding.names)}
     found |= {plan.robot(it) for it in (finding.node, *words) if it.startswith("/")}
     found |= {it for it in words if it in plan.declared} - plan.of_names.ambiguous_words
     return found & plan.declared.keys()
