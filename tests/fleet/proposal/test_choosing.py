@@ -7,8 +7,14 @@ from typing import Any
 
 import pytest
 import yaml
+from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal.fitting import fitting
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.system.records import NOWHERE
 
 PACKAGE = "<package><name>{}</name></package>"
 
@@ -329,3 +335,29 @@ def test_the_arguments_of_the_srdf_alone_are_given(tmp_path: Path) -> None:
     fleet = taken(tmp_path, "--force")
     assert "srdf" not in fleet
     assert "arguments" not in fleet
+
+
+# Node, parameter, value -> is it a name that the robot has not? It has base_link, turn, /front/scan.
+NAMES = (
+    ("amcl", "base_frame_id", "base_link", False), ("amcl", "base_frame_id", "chassis", True),
+    ("amcl", "odom_frame_id", "odom", False), ("amcl", "base_frame_id", "$(var tf)base", False),
+    ("amcl", "scan_topic", "front/scan", False), ("amcl", "scan_topic", "/rear/scan", True),
+    ("amcl", "scan_topic", "scan", False), ("amcl", "laser_model_type", "beam", False),
+    ("joint_trajectory_controller", "joints", ["turn"], False),
+    ("joint_trajectory_controller", "joints", ["turn", "lift"], True),
+    # A body in the world that the node itself makes.
+    ("static_transform_publisher", "child_frame_id", "camera", False), ("driver", "base", "x", False),
+)  # fmt: skip
+
+
+def test_names_in_parameters_are_held_against_the_description() -> None:
+    known = load_known_nodes("", "jazzy")
+    text = (
+        '<robot name="r"><link name="base_link"/><joint name="turn"/><gazebo><topic>/front/scan'
+        "</topic></gazebo></robot>"
+    )
+    looked = Looked("r.urdf", root=etree.fromstring(text))
+    for node, name, value, strange in NAMES:
+        given = GivenNode(node, node, "", {name: Given(value, NOWHERE)}, NOWHERE)  # type: ignore[arg-type]
+        found = fitting(looked, "p.yaml", [given], known, ())
+        assert (found.nodes, bool(found.strange)) == ({node}, strange), (name, value)
