@@ -11,7 +11,7 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
-from multibot_rewrite.rules.system.tf_topics import (
+from multibot_rewrite.rules.system.tf_pieces import (
     is_of_description,
     publishes_description,
     root_of,
