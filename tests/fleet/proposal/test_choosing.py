@@ -10,8 +10,10 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal.choosing import may_be_partners
 from multibot_rewrite.fleet.proposal.fitting import fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.system.records import NOWHERE
@@ -361,3 +363,26 @@ def test_names_in_parameters_are_held_against_the_description() -> None:
         given = GivenNode(node, node, "", {name: Given(value, NOWHERE)}, NOWHERE)  # type: ignore[arg-type]
         found = fitting(looked, "p.yaml", [given], known, ())
         assert (found.nodes, bool(found.strange)) == ({node}, strange), (name, value)
+
+
+def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
+    tmp_path: Path,
+) -> None:
+    launch = tmp_path / "a.launch.py"
+    launch.write_text("xacro = 'car.urdf.xacro'; model = 'van/model.sdf'\n")
+    every = (
+        "bus.urdf",
+        "bus/model.sdf",
+        "car.sdf",
+        "car.urdf.xacro",
+        "car/model.sdf",
+        "van/model.sdf",
+    )
+    found = Found(every=every, launch=(str(launch),))
+    for path, partners in (
+        ("car.urdf.xacro", ["car.sdf", "car/model.sdf", "van/model.sdf"]),
+        ("bus.urdf", ["bus/model.sdf"]),
+        ("car.sdf", ["car.urdf.xacro"]),
+        ("truck.sdf", []),
+    ):
+        assert [*may_be_partners(path, found)] == partners, path
