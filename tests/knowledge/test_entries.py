@@ -249,7 +249,7 @@ def test_the_whole_record_of_a_stack() -> None:
         known="plain",
         releases="kilted",
         plugin="p",
-        usual=(("rate", "5"),),
+        usual=(("rate", 5),),
     )
     driver = LIBRARY.nodes["costmap/driver"]
     cell = Stack("what it is", ("base",), (driver, renamed), "jazzy+", "box")
