@@ -138,4 +138,4 @@ def _frame_targets(plan: Index, finding: Finding, topics: Sequence[str]) -> Iter
 
 def words_of(message: str) -> set[str]:
     """The words of a message, without punctuation."""
-    return {word.strip(",:;?()") for word in message.split()}
+    return {word.strip(",:;?()'") for word in message.split()}

@@ -29,15 +29,29 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
         for it in check(parts.get(number, plan), view)
         if not _is_planned_elsewhere(it, number, plan)
     ]
-    if parts:
+    if parts and len(seen) > 1:
         found += _across(plan, seen, {name for it in found for name in it.names})
     return sorted(found, key=lambda it: it.code)
 
 
 def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterator[Finding]:
-    """In what robots of several domains differ."""
-    together = check(plan._replace(domains=()), side_by_side(seen)) if len(seen) > 1 else ()
-    return (it for it in together if it.code in COMPARED and told.isdisjoint(it.names))
+    """In what robots of several domains differ. The copies that bridges send are left out: beside
+    what they are copies of they would be a second sender."""
+    whole, together = (_without_bridges(it, plan) for it in (plan, side_by_side(seen)))
+    found = check(whole._replace(domains=()), together)
+    return (it for it in found if it.code in COMPARED and told.isdisjoint(it.names))
+
+
+def _without_bridges(system: System, plan: System) -> System:
+    own = _bridges(plan)
+    return system._replace(
+        nodes=tuple(it for it in system.nodes if it.name not in own),
+        ends=tuple(it for it in system.ends if it.node not in own),
+    )
+
+
+def _bridges(plan: System) -> set[str]:
+    return {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
 
 
 def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
@@ -63,8 +77,7 @@ def in_domain(it: Finding, number: int) -> Finding:
 
 def _of_bridge(it: Finding, plan: System) -> Finding:
     """Without a bridge that is missing on one side nothing crosses."""
-    own = {one.name for one in plan.nodes if one.stack == DOMAIN_BRIDGE}
-    if it.code != missing_node.code or it.node not in own:
+    if it.code != missing_node.code or it.node not in _bridges(plan):
         return it
     level = ERROR if it.level == WARNING else it.level
     hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"

@@ -313,6 +313,24 @@ def test_a_plugin_is_where_its_simulator_is(tmp_path: Path) -> None:
     assert faults(tmp_path, "simulator: gazebo\ndomains: {robot1: 0, robot2: 0}\n") == []
 
 
+@pytest.mark.more
+def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_path: Path) -> None:
+    """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
+    for stack, numbers, told in (
+        ("nav2_composed", (11, 12), True),
+        ("slam_toolbox", (11, 12), True),
+        ("slam_toolbox", (11, 11), False),
+        ("nav2", (11, 12), False),
+    ):
+        domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
+        (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
+        made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+        found = [it for it in made.findings if it.code == "MF849"]
+        assert [it.line for it in found] == [5] * told, stack
+
+
 NODES = """\
 nodes:
   planner:

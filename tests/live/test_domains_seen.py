@@ -24,6 +24,7 @@ from multibot_rewrite.system.records import (
     End,
     Environment,
     Node,
+    Parameter,
     System,
 )
 
@@ -33,7 +34,10 @@ NUMBERS = {"": 10, "robot1": 11, "robot2": 12}
 
 def plan() -> System:
     """Two robots that read the map of all, and whose odometry a monitor of all reads."""
-    robots = [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in ("robot1", "robot2")]
+    robots = [
+        PlannedRobot(it, [f"/{it}/{node}" for node in ("drive", "lidar", "imu")], (), f"/{it}/tf")
+        for it in ("robot1", "robot2")
+    ]
     ends = [
         planned_end("/map_server", TOPIC, PUBLISHES, "/map", MAP, "/map"),
         *(
@@ -122,6 +126,18 @@ def test_a_robot_in_the_domain_of_another_is_told_once() -> None:
     hints = {it.hint for it in about if it.code in ("MG101", "MG109")}
     assert hints == {"it runs in domain 11: start it with ROS_DOMAIN_ID=12"}
     assert not [it for it in found_in(seen) if it.code == "MG108"]
+
+
+def test_robots_of_several_domains_are_held_against_each_other() -> None:
+    """With the domain of all or without it; of one domain alone there is nothing to compare."""
+    seen = as_planned()
+    for number, node, speed in ((11, "/robot1/drive", "1.0"), (12, "/robot2/drive", "5.0")):
+        seen[number] = seen[number]._replace(parameters=(Parameter(node, "max_vel", speed),))
+    both = {number: seen[number] for number in (11, 12)}
+    for view in (seen, both):
+        (told,) = (it for it in found_in(view) if it.names)
+        assert (told.code, {*told.names}) == ("MG328", {"max_vel"})
+    assert found_in({11: seen[11]}) == []
 
 
 def saved(folder: Path, seen: dict[int, System]) -> list[str]:

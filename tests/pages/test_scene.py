@@ -406,6 +406,7 @@ def test_targets_of_several_findings_are_each_once() -> None:
         (found("MG401", "", "r2/base"), {"r2"}),
         (found("MG301", "/s", message="as /r1/a, and r2: do"), {"r1", "r2"}),
         (found("MG301", "/s", robot="r9"), set()),
+        (found("MF701", "", message="robot 'r1': a pose", robots=("r1", "r2")), {"r1", "r2"}),
     ],
 )
 def test_robots_that_a_finding_concerns(finding: Finding, robots: set[str]) -> None:

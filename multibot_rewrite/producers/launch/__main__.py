@@ -33,6 +33,7 @@ OF_THE_FILE = (
         "AttributeError: module 'launch_file'",
     ),
     *("the environment variable", "it ends itself", "it starts the program"),
+    "it has to be given",
 )
 
 

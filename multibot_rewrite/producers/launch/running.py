@@ -61,7 +61,7 @@ UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
 _STATIC = "static_transform_publisher"
-_CLASSIC_SPAWNER = "spawn_entity.py"
+_CLASSIC_SPAWNER, _INIT = "spawn_entity.py", "gazebo_ros_init"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 
@@ -165,14 +165,20 @@ def _plugins(model: Model) -> Iterator[RunningNode]:
 def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
     """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
     passes it on."""
-    for it in graph.nodes:
-        # Who spawns has the simulator running, if in another launch file.
-        if it.package == CLASSIC and it.executable in (SIMULATOR, _CLASSIC_SPAWNER):
-            clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
-            facts = NodeFacts("gazebo", it.package, (clock,))
-            names = (facts.name, "/", (), (), "/")
-            yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
-            return
+    classic = [it for it in graph.nodes if it.package == CLASSIC]
+    # Who spawns has the simulator running, if in another launch file.
+    started = [it for it in classic if it.executable == SIMULATOR]
+    started = started or [it for it in classic if it.executable == _CLASSIC_SPAWNER]
+    for it in [one for one in started if _has_clock(one.arguments)][:1]:
+        clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
+        facts = NodeFacts("gazebo", it.package, (clock,))
+        names = (facts.name, "/", (), (), "/")
+        yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
+
+
+def _has_clock(words: Sequence[str]) -> bool:
+    """Is its plugin for the clock loaded? Its launch files load it, a command line may not."""
+    return "-s" not in words or any(_INIT in it for it in words)
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:

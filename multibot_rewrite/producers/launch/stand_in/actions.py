@@ -206,6 +206,9 @@ class LaunchDescription:
     def get_sub_entities(self) -> list[Any]:
         return self.entities
 
+    def get_launch_arguments_with_include_launch_description_actions(self) -> list[Declared]:
+        return declared(self.entities)
+
     def add_action(self, action: Any) -> None:
         self.entities.append(action)
 
@@ -233,7 +236,7 @@ class IncludeLaunchDescription(Action):
         folder = {"current_launch_file_directory": os.path.dirname(path)}
         context.extend_locals({"current_launch_file_path": path, **folder})
         given = [text_of(context, name) for name, _ in self.launch_arguments]
-        for it, above in declared(description.entities):
+        for it, above in description.get_launch_arguments_with_include_launch_description_actions():
             _ask_for(it, [*given, *(name for one in above for name in one.names_without_context())])
         told = [SetLaunchConfiguration(*it) for it in self.launch_arguments]
         return [*told, description]
