@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from fnmatch import fnmatchcase
 from types import ModuleType
 
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
@@ -113,7 +114,20 @@ def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
         found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
-        return differing.unexplained(_of_readers(found))
+        return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+
+
+def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
+    """Where nothing joins a robot with the map, its map in the frame `map` is no fault of its own."""
+    lost = {it.robot for it in found if it.code == localized.map_not_joined.code}
+    unknown = frame_ids.frame_id_unknown.code
+    return [
+        it
+        for it in found
+        if it.code != unknown
+        or it.robot not in lost
+        or not {*WORLD_FRAMES}.issuperset(map(seen.plain_frame, it.names))
+    ]
 
 
 def _of_readers(found: Sequence[Finding]) -> list[Finding]:
