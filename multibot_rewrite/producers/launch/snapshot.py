@@ -53,6 +53,7 @@ from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, R
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
     DESCRIPTION,
+    SIMULATED,
     Knowledge,
     bound_of,
     running_nodes,
@@ -109,7 +110,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
         tuple(_nodes(nodes, parts)),
-        tuple(end for part in parts for end in part.endpoints),
+        tuple(_without_own_time([end for part in parts for end in part.endpoints])),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
         release=known.release,
@@ -299,6 +300,13 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
     for end, _ in bridged_by(it):
         full = resolve_bound(end.name, end.kind, bound)
         yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
+
+
+def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
+    """Without those who wait for a time that nobody sends, and have it of the simulator around them
+    (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
+    sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends)
+    yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
