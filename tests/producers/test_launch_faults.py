@@ -247,6 +247,30 @@ def test_a_system_of_the_world_in_two_models(
     assert any(it["code"] == "MB416" for it in found) is (len(loading) > 1)
 
 
+@pytest.mark.parametrize("bridged", ["pose", "tf"])
+def test_what_another_kind_of_robot_sends_need_not_be_bridged(
+    bridged: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """multirobotplayground/Jazzy-Multi-Robot-Sandbox: the poses of a drone, and a base's tf, which a
+    node of its own sends; of two bases both are brought."""
+    drive, poses = (
+        SYSTEM.format("diff-drive", "DiffDrive"),
+        SYSTEM.format("pose-publisher", "PosePublisher"),
+    )
+    last = drive if bridged == "tf" else poses
+    (tmp_path / "r1.urdf").write_text(ROBOT.format("r1", f"{drive}/>"))
+    (tmp_path / "r2.urdf").write_text(
+        ROBOT.format("r2", f"{last}><publish_link_pose>true</publish_link_pose></plugin>")
+    )
+    row = f"/model/r2/{bridged}@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
+    bridge = f'Node(package="ros_gz_bridge", executable="parameter_bridge", arguments=["{row}"])'
+    (tmp_path / LAUNCH).write_text(SPAWN.replace('one("r2", "3")', f'one("r2", "3"), {bridge}'))
+    _, found = found_in(tmp_path, capsys)
+    assert ("/model/r1/tf" in str([it for it in found if it["code"] == "MG707"])) is (
+        bridged == "tf"
+    )
+
+
 STATE = """\
 from launch import LaunchDescription
 from launch.substitutions import Command
