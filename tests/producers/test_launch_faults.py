@@ -449,6 +449,7 @@ _MIXED = (
     'Node(package="ros_gz_bridge", executable="parameter_bridge", '
     'arguments=["/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"])',
 )
+_ROW = 'Node(package="ros_gz_bridge", executable="parameter_bridge", arguments=["{}"])'
 _DRIVER = 'Node(package="acme", executable="driver", name="driver")'
 _GAZEBO = 'ExecuteProcess(cmd=["gzserver", {}"-s", "libgazebo_ros_factory.so"])'
 # The code, whether it is found, a child that is included, and what the file starts.
@@ -477,6 +478,17 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     # slam_toolbox jazzy src/*.cpp
     "a parameter that it has not": ("MB111", True, "", (_SLAM.format("position_threshold"),)),
     "a parameter that it has": ("MB111", False, "", (_SLAM.format("minimum_time_interval"),)),
+    # ros_gz_bridge jazzy parameter_bridge.cpp prints its usage, and ends.
+    "a row without a type of Gazebo": (
+        *("MG729", True, ""),
+        (_ROW.format("/odom@nav_msgs/msg/Odometry"),),
+    ),
+    "a row": ("MG729", False, "", (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry"),)),
+    "a service": ("MG729", False, "", (_ROW.format("/w/c@ros_gz_interfaces/srv/ControlWorld"),)),
+    "types that no bridge converts": (
+        *("MB874", True, ""),
+        (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.IMU"),),
+    ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
     # Nothing that is not known changes what a parameter says.

@@ -65,6 +65,12 @@ def _line(error: BaseException) -> str:
     return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
 
 
+def lost_file(error: BaseException) -> str:
+    """What to do about a file that is not there; nothing for another error."""
+    lost = isinstance(error.__cause__ or error, FileNotFoundError)
+    return "; put it there, or source the built workspace that has it" if lost else ""
+
+
 def _variable(error: BaseException) -> str:
     """The environment variable that os.environ has not; empty for another fault."""
     # launch has an error of its own around it.
