@@ -112,6 +112,9 @@ FAULTS = {
         ROVER, "robot2/odom</frame_id>", "robot1/odom</frame_id>", "MG414"
     ),
     "a wheel without mass": Fault(ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "MB603", ROVER),
+    "a mass below nothing": Fault(
+        ROVER, '<mass value="0.5"/>', '<mass value="-0.5"/>', "MB125", ROVER
+    ),
     "a robot without mass": Fault(ROVER, "<mass value=", "<mass kg=", "MB115", ROVER),
     "a joint of the other robot": Fault(
         ROVER, "<left_joint>robot2", "<left_joint>robot1", "MB211", ROVER
@@ -172,6 +175,19 @@ def found_in(
 def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert found_in(healthy, capsys) == (0, [])
+
+
+def test_an_include_of_the_simulator_takes_all_that_its_launch_files_declare(
+    healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """ros_gz_sim gz_sim.launch.py of Humble and later."""
+    folder, words = tmp_path / "out", ("gz_version", "ign_version", "debugger", "on_exit_shutdown")
+    shutil.copytree(healthy, folder)
+    text, old = (folder / LAUNCH).read_text(), "launch_arguments=["
+    more = "".join(f"('{it}', 'false'), " for it in words)
+    (folder / LAUNCH).write_text(text.replace(old, old + more))
+    capsys.readouterr()
+    assert old in text and found_in(folder, capsys) == (0, [])
 
 
 @pytest.mark.sample(5)

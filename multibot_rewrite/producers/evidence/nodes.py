@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.plugin_classes import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
@@ -126,6 +127,8 @@ def nodes_of(
     ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of which launch
     files say whether they run.
     """
+    # No supported release has a node that is called as before: nothing reads its section.
+    given = [it for it in given if it.name.rpartition("/")[2] not in plugin_bases()[NODE].older]
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections, known)
     either = {**alternatives(given, known), **spawned}
@@ -137,7 +140,8 @@ def nodes_of(
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
         meant = next((one for one in other if _stands_for(it, one, known)), None)
         if meant and not it.manager:
-            nodes.append(filled(known[it.known], it)._replace(when=meant.when))
+            entry = known[it.known]
+            nodes.append(filled(entry, it)._replace(when=meant.when, known=entry.kind))
             continue
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
