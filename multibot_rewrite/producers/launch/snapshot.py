@@ -323,11 +323,17 @@ def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterat
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
     are known; a value that only a run tells is untold. What sends transforms that hold for ever needs
     no time, and a bridge passes on the time that is in the data."""
-    unknown = {it.place for it in notes if it.parameters}
+    notes = [it for it in notes if it.parameters]
+    # A file that is lost is told where components are loaded, not at each of them.
+    unknown, lost = {it.place for it in notes}, {it.place.file for it in notes if it.file}
     for it in nodes:
         given = it.value(SIM_TIME)
         # An empty text is the output of a program that is not run here.
-        untold = SIM_TIME in it.untold or given == "" or (given is None and it.place in unknown)
+        untold = (
+            SIM_TIME in it.untold
+            or given == ""
+            or (given is None and (it.place in unknown or it.place.file in lost))
+        )
         if is_bridge(it):
             continue
         if untold:

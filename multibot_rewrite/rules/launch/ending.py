@@ -29,8 +29,8 @@ _NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
     "MG729",
     "program-ends-at-once",
     what="A program that a launch file starts ends at once. That is a robot_state_publisher "
-    "without a description or with its path, a node name that ROS refuses, a bridge with a row "
-    "that it cannot read, or a spawner with an unreadable pose.",
+    "without a description or with its path, or a node name that ROS refuses. A spawner does with an "
+    "unreadable pose, a bridge with an unreadable row.",
     why="The launch goes on without it: there is no tf of the robot, or no robot in the simulator.",
     fix="Give robot_description the text, such as `Command(['xacro ', path])`; write names with "
     "letters, digits and underscores, and a pose with numbers.",
