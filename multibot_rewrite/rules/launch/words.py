@@ -15,7 +15,7 @@ from math import isclose, pi
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
-from multibot_rewrite.description.sources.packages import package_of, packages_below, sources_around
+from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
@@ -202,7 +202,7 @@ _NAMED = ("config_file", "yaml_filename")
 
 def _is_ours(path: str) -> bool:
     """May it be judged here? What another machine has, or a program makes, may not."""
-    return os.path.isdir(os.path.dirname(path)) or package_of(path) is not None
+    return os.path.isdir(os.path.dirname(path))
 
 
 def _files(it: RunningNode) -> Iterator[str]:
