@@ -61,6 +61,7 @@ from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, ind
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
 from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
+from multibot_rewrite.system.records import clocks as time_by_node
 from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
@@ -216,10 +217,13 @@ def _without_planned(plan: Index, graph: System) -> System:
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
-    """The findings; those about something missing are inconclusive in an incomplete view."""
+    """The findings; those about something missing are inconclusive in an incomplete view. What a
+    parameter says of the time of a node is known there, too."""
     if not doubts(graph):
         return found
-    return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
+    told, mixed = time_by_node(graph), clocks.clocks_mixed.code
+    sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
+    return [it if it in sure else _inconclusive(it) for it in found]
 
 
 def doubts(graph: System) -> tuple[Caveat, ...]:
