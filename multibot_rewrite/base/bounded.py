@@ -52,7 +52,7 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
         size = min(os.fstat(file.fileno()).st_size, limit)
         data = file.read(size + 1)
         if size < len(data) <= limit:  # it grows, or has no size, as a device
-            data += file.read(limit + 1 - len(data))
+            data += file.read(limit)
     if len(data) > limit:
         raise OSError(errno.EFBIG, f"it is over the limit of {limit:,} bytes", path)
     return data

@@ -94,7 +94,7 @@ def did_you_mean_one_of(word: str, choices: Iterable[str]) -> str:
     """The same for a word of a short list: less alike will do, and the beginning of one."""
     words = list(choices)
     begun = (it for it in words if len(word) >= _BEGINNING and it.startswith(word))
-    return _hint(next(begun, "") or nearest(word, words, CHOICE))
+    return _hint(min(begun, key=len, default="") or nearest(word, words, CHOICE))
 
 
 def _hint(near: str) -> str:

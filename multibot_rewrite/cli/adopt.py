@@ -28,10 +28,12 @@ def run(options: argparse.Namespace) -> int:
         many = plural(len(made.proved), "description")
         if made.configurations:
             many += f" and {plural(len(made.configurations), 'other configuration')}"
-        note(
-            options,
-            f"argument {made.argument}: {many} in {plural(len(made.after), 'file')}; proved",
-        )
+        end = "proved" if made.proved else "not proved, see what is left"
+        where = plural(len(made.after), "file")
+        note(options, f"argument {made.argument}: {many} in {where}; {end}")
+    if made.namespace:
+        where = plural(len(made.spaced), "description")
+        note(options, f"argument {made.namespace}: what ROS names in {where}; proved")
     for it in made.launches:
         note(options, f"{it}: it hands {made.argument} on; proved")
     for path, name in made.already.items():

@@ -44,17 +44,18 @@ ONE_VIEW: Mapping[int, System] = {}
 
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
+    options, several = live.by_domain(options)
     if options.plan is None:
         from multibot_rewrite.cli import unplanned  # a check with a plan needs none of it
 
-        return unplanned.run(options)
+        return unplanned.run(options, several)
     _check_use(options)
     plan = plan_of(options)
-    parts = by_domain(plan)
+    parts = _looked_at(options, plan, several)
     if parts and not options.bag:
         if not options.watch:
             return _apart(options, plan, parts)
-        plan = _part(options, parts)
+        options, plan = _only(options, parts)
     if options.watch:
         return _watch(options, _with_files(options, plan) if options.state else plan)
     if options.bag:
@@ -65,20 +66,35 @@ def run(options: argparse.Namespace) -> int:
     return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
 
 
-def _part(options: argparse.Namespace, parts: Mapping[int, System]) -> System:
-    """The part of the plan that is in the domain that the options name."""
-    known = ", ".join(map(str, parts))
-    if options.domain is None:
+def _looked_at(
+    options: argparse.Namespace, plan: System, several: Sequence[int]
+) -> Mapping[int, System]:
+    """What is planned for each domain that is looked at; empty where there is one for all. A plan of
+    one domain holds for each that is named: of robots alike, which have no names."""
+    parts = by_domain(plan)
+    if not parts:
+        return dict.fromkeys(several, plan)
+    asked = several or [it for it in (options.domain,) if it is not None]
+    for it in asked:
+        if it not in parts:
+            known = ", ".join(map(str, parts))
+            raise UsageError(f"--domain {it}: the plan has no node there; it has {known}")
+    return {it: parts[it] for it in asked} or parts
+
+
+def _only(
+    options: argparse.Namespace, parts: Mapping[int, System]
+) -> tuple[argparse.Namespace, System]:
+    """The options and the plan for the one domain that is watched."""
+    if len(parts) > 1:
+        known = ", ".join(map(str, parts))
         raise UsageError(f"--watch looks at one domain: give one with --domain ({known})")
-    if options.domain not in parts:
-        raise UsageError(f"--domain {options.domain}: the plan has no node there; it has {known}")
-    return parts[options.domain]
+    ((domain, plan),) = parts.items()
+    return live.at(options, domain), plan
 
 
 def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
     """The same of a plan whose robots are in several domains: all are looked at, side by side."""
-    if options.domain is not None:
-        parts = {options.domain: _part(options, parts)}
     seen = live.graphs(options, parts)
     if options.state or any(map(answering, seen.values())):
         plan = _with_files(options, plan)

@@ -135,7 +135,7 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
-        release = release_of(robots, wanted)
+        release = release_of(robots, seen.found, wanted)
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]

@@ -19,7 +19,7 @@ from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
 
 # Options that are written for each part.
-_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "moveit", "one_system")
+_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "moveit", "rviz", "one_system")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -52,7 +52,8 @@ def _join(options: argparse.Namespace) -> int:
 def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
     """The description, with the files that belong to it beside it."""
     moveit = ((f"_{name}", data) for name, data in made.moveit.items())
-    beside = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), *moveit)
+    first = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), (".rviz", made.rviz))
+    beside = (*first, *moveit)
     more = [(ending, data) for ending, data in beside if data]
     if more and not goes_to_file(options):
         raise UsageError("several files are made: name the description with -o robot.urdf")
@@ -108,11 +109,12 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     srdfs = _of_each("--srdf", options.srdf, many)
     controllers = _of_each("--controllers", options.controllers, many)
     moveit = _of_each("--moveit", options.moveit, many)
-    every = zip(files, ends, poses, prefixes, srdfs, controllers, moveit, strict=True)
-    for (file, given), at, pose, prefix, srdf, yaml, plans in every:
+    rviz = _of_each("--rviz", options.rviz, many)
+    every = zip(files, ends, poses, prefixes, srdfs, controllers, moveit, rviz, strict=True)
+    for (file, given), at, pose, prefix, srdf, yaml, plans, window in every:
         where = at, _numbers(pose), prefix
         some, others = (tuple(filter(None, it.split(","))) for it in (yaml, plans))
-        yield Part(file, *where, "", given, srdf or None, some, options.one_system, others)
+        yield Part(file, *where, "", given, srdf or None, some, options.one_system, others, window)
 
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:

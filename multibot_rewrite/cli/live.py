@@ -103,9 +103,17 @@ def so_far(seen: System, judge: Judge | None) -> str:
     return f"{nodes}; {first.code} {first.message}{more}"
 
 
-def at(options: argparse.Namespace, domain: int) -> argparse.Namespace:
+def at(options: argparse.Namespace, domain: int | None) -> argparse.Namespace:
     """The options, for another domain."""
     return argparse.Namespace(**{**vars(options), "domain": domain})
+
+
+def by_domain(options: argparse.Namespace) -> tuple[argparse.Namespace, list[int]]:
+    """The options for the domain of which ``--domain`` names one, or none; and all where it names
+    several, to be looked at side by side."""
+    asked = list(dict.fromkeys(options.domain or []))
+    one = at(options, asked[0] if len(asked) == 1 else None)
+    return one, asked if len(asked) > 1 else []
 
 
 def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, System]:

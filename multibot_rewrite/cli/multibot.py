@@ -44,11 +44,20 @@ def find_command(word: str) -> Command:
     if word in COMMANDS:
         return COMMANDS[word]
     if word.startswith("-"):
-        raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
+        raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
     if word in other_words.COMMANDS:
         raise UsageError(f"there is no command {word!r}; use {other_words.COMMANDS[word]}")
     near = did_you_mean_one_of(word, COMMANDS)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
+
+
+def _with_option(word: str) -> str:
+    """A command line with the option, of the first command that has it."""
+    option = word.partition("=")[0]
+    groups = ((it, group) for it in COMMANDS.values() for group in it.groups)
+    has = (it for it, group in groups if any(option in one.names for one in group.options))
+    command = next(has, None)
+    return f"multibot {command.name} {word}" if command else "multibot check"
 
 
 def overview(colour: str) -> str:

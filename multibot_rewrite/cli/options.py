@@ -93,7 +93,7 @@ def several(
     metavar: str,
     about: str,
     default: list[str] | None = None,
-    read: Callable[[str], list[str]] = values.names,
+    read: Callable[[str], list[Any]] = values.names,
 ) -> Option:
     """An option with a list: commas and repetition mean the same."""
     return Option(

@@ -20,6 +20,7 @@ from multibot_rewrite.live.rehearsal import (
     bridge_stub,
     domain_bridge_stubs,
     stub_nodes,
+    with_own_types,
     with_substitutes,
 )
 from multibot_rewrite.live.staged import staged, stages
@@ -44,7 +45,10 @@ def run(options: argparse.Namespace) -> int:
     seen, replaced = _played(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
-    plan = with_substitutes(plan, replaced)
+    seen = {it: with_own_types(own, plan, replaced) for it, own in seen.items()}
+    plan = with_own_types(with_substitutes(plan, replaced), plan, replaced)
+    if any(it.bridge for it in plan.topics):
+        note(options, "note: no simulator runs: the rehearsal has what its bridge brings")
     graph = side_by_side(seen) if plan.domains else seen[ONE]
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])

@@ -12,7 +12,12 @@ from types import MappingProxyType
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
+from multibot_rewrite.base.findings.selection import (
+    Selection,
+    fails,
+    grouped,
+    selected,
+)
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural

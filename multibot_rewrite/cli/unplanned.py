@@ -25,7 +25,7 @@ from multibot_rewrite.cli.report import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
-from multibot_rewrite.live.diagnose import Diagnosis, diagnose, survey
+from multibot_rewrite.live.diagnose import Diagnosis, diagnose, diagnose_domains, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
@@ -42,22 +42,48 @@ WORDS = {
 }
 
 
-def run(options: argparse.Namespace) -> int:
-    """Look, report, sum up; returns the exit code."""
-    _check_use(options)
-    return _watch(options) if options.watch else report_on(options, _diagnosis(options))
-
-
-def _diagnosis(options: argparse.Namespace) -> Diagnosis:
+def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
+    """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
+    _check_use(options, domains)
+    if options.watch:
+        return _watch(options)
     if options.bag:
         recording = read_bag(options.bag)
-        return diagnose(as_snapshot(recording), counted(recording))
-    seen = live.graph(options, judge=lambda it: diagnose(it).findings)
-    return diagnose(live.with_states(options, seen))
+        return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
+    views = live.graphs(options, domains) if domains else _saved(options)
+    if len(views) > 1:
+        return _report_on_domains(options, views)
+    saved = next(iter(views.values()), None)
+    seen = saved or live.graph(options, judge=lambda it: diagnose(it).findings)
+    return report_on(options, diagnose(live.with_states(options, seen)))
 
 
-def _check_use(options: argparse.Namespace) -> None:
+def _saved(options: argparse.Namespace) -> Mapping[int, System]:
+    """The snapshots of several files by domain; empty for the live graph or one file."""
+    if len(options.snapshot) < 2:
+        return {}
+    from multibot_rewrite.producers.snapshot_file import read_by_domain
+
+    return read_by_domain(options.snapshot)
+
+
+def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System]) -> int:
+    each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
+    for domain, one in each.items():
+        note(options, f"domain {domain}: {next(survey(one))}")
+    return _report(options, diagnose_domains(each), [*_empty(each)])
+
+
+def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
+    for domain, one in each.items():
+        yield from (f"domain {domain}: {it}" for it in _nothing_seen(one.graph))
+
+
+def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
     live.check_source(options)
+    for name in ("watch", "suggest") if domains else ():
+        if vars(options)[name]:
+            raise UsageError(f"--{name} is for one domain: give one with --domain")
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
@@ -78,9 +104,14 @@ def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
     """Say what is seen, report the findings, write what is asked for; the exit code."""
     for line in survey(seen):
         note(options, line)
+    return _report(options, seen, [*_nothing_seen(seen.graph)])
+
+
+def _report(options: argparse.Namespace, seen: Diagnosis, empty: Sequence[str]) -> int:
+    """The findings, and what is asked for; ``empty`` says that there was nothing to see."""
     findings = chosen(options, seen.findings)
-    failed = _report(options, seen, findings)
-    unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
+    failed = _listed(options, seen, findings)
+    unsure = [caveat.message for caveat in doubts(seen.graph)] or empty
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
@@ -121,7 +152,7 @@ def _write(
         note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
 
 
-def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
+def _listed(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
     about = About(options.snapshot, by_themselves(seen.whose.robots))
     return report_first(options, findings, about)
 
@@ -144,7 +175,7 @@ def _watch(options: argparse.Namespace) -> int:
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
     if options.output:
-        _report(options, diagnose(last.graph), last.findings)
+        _listed(options, diagnose(last.graph), last.findings)
     _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
     note(options, f"{counted_findings(last.findings)}: {in_words(last, _words(last.findings))}")
     return live.CODES[final(last)]

@@ -103,6 +103,11 @@ def domain(text: str) -> int:
     return int(text)
 
 
+def domains(text: str) -> list[int]:
+    """``1,2`` as two domains."""
+    return [domain(it) for it in names(text)]
+
+
 def count(text: str) -> int:
     """A number, 0 or more."""
     if not text.isdecimal():

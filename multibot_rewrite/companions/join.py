@@ -13,6 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit, part_moveit
 from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
+from multibot_rewrite.companions.rviz.joined import JoinedRviz, joined_rviz, part_rviz
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
@@ -41,8 +42,8 @@ from multibot_rewrite.description.steps.document import read_document
 
 class Joined(NamedTuple):
     """One robot of several descriptions. ``srdf`` is the SRDF of all that have one, ``controllers``
-    the one file of their controllers' parameters, ``moveit`` MoveIt's files by name, one of each kind;
-    they are empty where no part has them. ``parts`` are
+    the one file of their controllers' parameters, ``moveit`` MoveIt's files by name, one of each kind,
+    ``rviz`` the one RViz config; they are empty where no part has them. ``parts`` are
     their names; ``notes`` are what was left out and what two parts have in the running system,
     ``findings`` are about names without the prefix."""
 
@@ -53,6 +54,7 @@ class Joined(NamedTuple):
     notes: tuple[str, ...]
     findings: tuple[Finding, ...]
     moveit: Mapping[str, bytes] = MappingProxyType({})
+    rviz: bytes = b""
 
     @property
     def text(self) -> str:
@@ -114,10 +116,13 @@ def _with_beside(
     files = _controllers(given, made, tree)
     moveit = joined_moveit(_moveit(given, made, tree, trust))
     names = tuple(it.part.name for it in made.parts)
-    told = (f"{file}: {what}" for file, what in moveit.notes)
+    rviz = _rviz(given, made, tree)
+    told = (f"{file}: {what}" for file, what in (*moveit.notes, *rviz.notes))
     notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told)
     notes = (*notes, *_met(made, tree))
-    return Joined(made.data, semantics.data, files.data, names, notes, made.findings, moveit.files)
+    return Joined(
+        made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
+    )
 
 
 @checked
@@ -181,6 +186,16 @@ def _moveit(
             said = collect(document, tree, before.declared).declared
         for at in it.moveit:
             yield part_moveit(read_file(at), at, before, said, part.prefix)
+
+
+def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedRviz:
+    found = []
+    for it, mounted in zip(given, made.parts, strict=True):
+        part = mounted.part
+        if it.rviz:
+            before = collect(read_document(part.data, part.file), tree)
+            found.append(part_rviz(read_file(it.rviz), it.rviz, before, part.name, part.prefix))
+    return joined_rviz(found) if found else JoinedRviz(b"", ())
 
 
 def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:

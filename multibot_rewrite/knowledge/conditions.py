@@ -8,6 +8,7 @@ Alternatives are joined by ``or``, what must hold together by ``and``. A term as
                                another parameter; the class of a plugin may lack its namespace
     PARAMETER != VALUE         it has none of them; so has one that is not set
     PARAMETER has VALUE        it is a list, or a text of several words, that holds one of them
+    PARAMETER lacks VALUE      it is a list that holds none of them
     PARAMETER set, unset       it has a value that is not empty, or none
     PARAMETER names VALUE      it is the path of a file in which one of them is written
 
@@ -73,13 +74,13 @@ _SAID = {
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"
-    r"(?:\s*(?P<how>!=|=|\b(?:has|names)\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
+    r"(?:\s*(?P<how>!=|=|\b(?:has|lacks|names)\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
 )
 
 
 class Condition(NamedTuple):
-    """One term: ``how`` is ``=``, ``!=``, ``has``, ``names``, ``set`` or ``unset`` for a parameter, and
-    ``:`` for what no parameter says, whose kind is the ``parameter``."""
+    """One term: ``how`` is ``=``, ``!=``, ``has``, ``lacks``, ``names``, ``set`` or ``unset`` for a
+    parameter, and ``:`` for what no parameter says, whose kind is the ``parameter``."""
 
     parameter: str
     how: str
@@ -204,11 +205,11 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
     if it.how in ("set", "unset"):
         return any(one not in (None, "", []) for one in given) == (it.how == "set")
     wanted = {word for value in it.values for word in _wanted(value, value_of)}
-    if it.how == "has":
+    if it.how in ("has", "lacks"):
         # MoveIt splits a text (moveit2 move_group.cpp configureCapabilities).
         texts = (one.split() if isinstance(one, str) else one for one in given)
         lists = (one for one in texts if isinstance(one, list))
-        return any(wanted & _spellings(one) for its in lists for one in its)
+        return any(wanted & _spellings(one) for its in lists for one in its) == (it.how == "has")
     return any(wanted & _spellings(one) for one in given) == (it.how == "=")
 
 

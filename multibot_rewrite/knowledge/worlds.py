@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The systems of gz-sim that a world needs. Source: the names in gz-sim8 src/systems, and
-include/gz/sim/server.config for those of a world that names none."""
+"""The systems of gz-sim that a world needs, and what they send. Source: the names in gz-sim8
+src/systems, and include/gz/sim/server.config for those of a world that names none;
+SceneBroadcaster.cc SetupTransport, SimulationRunner.cc for the topics, which are below /world/NAME."""
 
 from __future__ import annotations
 
@@ -8,6 +9,18 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 DEFAULTS = ("physics", "user-commands", "scene-broadcaster")
+SENT_BY_ANY: Mapping[str, str] = MappingProxyType({"clock": "Clock", "stats": "WorldStatistics"})
+SENT_BY: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {
+        "scene-broadcaster": {
+            "pose/info": "Pose_V",
+            "dynamic_pose/info": "Pose_V",
+            "scene/info": "Scene",
+            "scene/deletion": "UInt32_V",
+            "state": "SerializedStepMap",
+        },
+    }
+)
 _CAMERAS = "sensors", "Sensors"
 # The library and the class, by the type of a sensor.
 SYSTEMS: Mapping[str, tuple[str, str]] = MappingProxyType(

@@ -113,6 +113,7 @@ HOMES: tuple[Home, ...] = (
         (
             "rules.system.transforms",
             "rules.system.tf_topics",
+            "rules.system.tf_pieces",
             "rules.system.frame_ids",
             "rules.system.lookups",
             "rules.system.localized",

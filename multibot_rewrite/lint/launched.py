@@ -49,8 +49,10 @@ _REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
 _LEFT_OUT = ("MB211", "MB603", "MB610")
 # What is wrong as soon as a second model has it, too.
 _AGAIN = "MB416"
-# Names that are like one that the node has, and values of another type.
-_OF_VALUES = ("MB110", "MB120")
+# What has no effect in this simulator and this ROS.
+_NO_EFFECT = "MB163"
+# Names that the node has not, and values of another type.
+_OF_VALUES = ("MB110", "MB111", "MB120")
 _FOR_ALL = "/**:"
 # A description is no parameter to look into.
 _TEXT = re.compile(r"<\?xml|<robot|<sdf")
@@ -69,14 +71,13 @@ def named_findings(launched: Launched) -> list[Finding]:
 def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file = file_of(launched.graph, it.text)
-        codes = (*_REFUSED, *_LEFT_OUT) if it.spawned else _REFUSED
+        codes = (*_REFUSED, *_LEFT_OUT, _NO_EFFECT) if it.spawned else _REFUSED
         settings = Settings(select=codes, distro=launched.release, simulated=it.spawned)
         for one in lint_data(file or "robot.urdf", it.text.encode(), settings):
-            if one.level == ERROR or (
-                it.spawned and one.code in _LEFT_OUT and one.level == WARNING
-            ):
+            sure = one.level == ERROR or (one.code in _LEFT_OUT and one.level == WARNING)
+            if sure or one.code == _NO_EFFECT:
                 told = one if file else _at_launch(one, it.place)
-                yield told._replace(level=ERROR)
+                yield told._replace(level=ERROR if sure else WARNING)
 
 
 def _loaded_again(launched: Launched) -> Iterator[Finding]:
@@ -120,11 +121,13 @@ def _values(launched: Launched) -> Iterator[Finding]:
         running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
         given = _given(it) if running else {}
         if running and given:
-            own = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
+            text = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
             # Descriptions of the package of the launch file are beside it.
             beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
-            for one in lint_data(beside, own.encode(), settings):
-                yield one._replace(file=it.place.file, line=it.place.line, column=1)
+            for one in lint_data(beside, text.encode(), settings):
+                level = WARNING if one.level == NOTE else one.level
+                own = one._replace(level=level, column=1)
+                yield own._replace(file=it.place.file, line=it.place.line)
 
 
 def _given(it: LaunchedNode) -> dict[str, object]:

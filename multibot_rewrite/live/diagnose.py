@@ -11,11 +11,18 @@ from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
-from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
+from multibot_rewrite.rules.check import ABSENCE, inconclusive_where_in_doubt, judge
+from multibot_rewrite.rules.domains import in_domain
+from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.equal_robots import less_than_another_robot
+from multibot_rewrite.system.domains import named, side_by_side, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
-from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, index
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
+from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, index
+from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, System
 from multibot_rewrite.system.tf_copies import tree_topic
+
+# Rules that hold robots against each other, which they are in whatever domain.
+BETWEEN_ROBOTS = frozenset((*COMPARED, less_than_another_robot.code))
 
 
 class Diagnosis(NamedTuple):
@@ -42,6 +49,36 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
     found = inconclusive_where_in_doubt(judge(seen), graph)
     tf = tuple(_tf_senders(graph))
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
+
+
+def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
+    """What is seen of several ROS domains: each by itself, and their robots held against each other.
+    The robot of a domain where none has a name is called by its number."""
+    views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
+    together = diagnose(side_by_side(views))
+    found = {at: [in_domain(it, at) for it in one.findings] for at, one in each.items()}
+    told = {name for own in found.values() for it in own for name in it.names}
+    compared = [unnamed(it) for it in together.findings if it.code in BETWEEN_ROBOTS]
+    every = [
+        *(_sent_elsewhere(it, together, each, at) for at, own in found.items() for it in own),
+        *(_sent_elsewhere(it, together, each) for it in compared if told.isdisjoint(it.names)),
+    ]
+    return together._replace(findings=tuple(sorted(every, key=lambda it: it.code)))
+
+
+def _sent_elsewhere(
+    it: Finding, together: Diagnosis, each: Mapping[int, Diagnosis], at: int | None = None
+) -> Finding:
+    """The finding; where what is missing is a robot's by its name, and another domain has it, with that
+    as the cause."""
+    missed = [name for name in it.names if it.code in ABSENCE and together.whose.robot(name)]
+    for other, seen in each.items():
+        ends = (end for name in missed if other != at for end in ends_of(seen.whose, name))
+        sender = next((end.node for end in ends if end.role in (PUBLISHES, SERVES)), "")
+        if sender:
+            hint = f"{sender} of domain {other} has it: start both in one domain, or bridge it"
+            return it._replace(hint=hint)
+    return it
 
 
 def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:

@@ -106,9 +106,10 @@ def stub_nodes(
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
-    """The bridge to a simulator that a plan needs, if it needs one."""
+    """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
+    serves, too."""
     rows = [
-        StubEndpoint(TOPIC, role, topic.name, topic.type, False)
+        StubEndpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type, False)
         for topic in topics
         for role in topic.bridge
     ]
@@ -192,6 +193,25 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
     else:
         also = tuple(replaced.get(type_, type_) for type_ in planned.also)
         yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)
+
+
+def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> System:
+    """What was seen, or ``with_substitutes``, with the types of the plan: by substitutes all topics are
+    of one type. Of an end with another name than planned its node's code tells it."""
+    types: dict[tuple[str, ...], str] = {(TOPIC, one.name): one.type for one in plan.topics}
+    for end in plan.ends:
+        last = end.code_name.rpartition("/")[2]
+        types.setdefault((end.node, end.kind, end.role, last), end.type)
+        types.setdefault((end.kind, end.name), end.type)
+        types[end.node, end.kind, end.role, end.name] = end.type
+
+    def own(end: End) -> End:
+        who, last = (end.node, end.kind, end.role), end.name.rpartition("/")[2]
+        keys = ((*who, end.name), (end.kind, end.name), (*who, last))
+        type_ = next((types[key] for key in keys if key in types), "")
+        return end._replace(type=type_) if replaced.get(type_) == end.type else end
+
+    return it._replace(ends=tuple(map(own, it.ends)), topics=plan.topics)
 
 
 def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:

@@ -73,7 +73,7 @@ def finding_list(
 def _head(row: FindingRow, link: str) -> str:
     finding = row.finding
     level = safe(finding.level)
-    who = ", ".join(filter(None, (finding.robot, *finding.others))) or ", ".join(row.robots)
+    who = ", ".join(finding.robots or filter(None, (finding.robot,))) or ", ".join(row.robots)
     named = shorten(who.split(", "))
     hint = f"<small>{safe(finding.hint)}</small>" if finding.hint else ""
     place = f"<code>{safe(finding.node)}</code>" if finding.node else "show"
@@ -91,10 +91,9 @@ def _body(row: FindingRow, sources: Sources) -> str:
     finding = row.finding
     rule = sources.rules.get(finding.code)
     names = ", ".join(filter(None, (finding.node, *finding.names)))
-    robots = (finding.robot, *finding.others)
     parts = [
         ("Where", safe(shorten(dict.fromkeys(names.split(", ")), SEVERAL * 4))) if names else None,
-        ("Robots", safe(", ".join(robots))) if finding.others else None,
+        ("Robots", safe(", ".join(finding.robots))) if len(finding.robots) > 1 else None,
         ("Why it matters", with_code(rule.why)) if rule else None,
         ("What to do", with_code(rule.fix)) if rule else None,
         ("Written in", f"<code>{safe(row.place)}</code>") if row.place else None,

@@ -121,7 +121,7 @@ def robots_of(plan: Index, finding: Finding) -> set[str]:
     in_tf = finding.code.startswith(TF_CODES)
     of_name = plan.of_frames.robot if in_tf else plan.of_names.robot
     words = words_of(finding.message)
-    found = {finding.robot, *finding.others, *map(of_name, finding.names)}
+    found = {finding.robot, *finding.robots, *map(of_name, finding.names)}
     found |= {plan.robot(it) for it in (finding.node, *words) if it.startswith("/")}
     found |= {it for it in words if it in plan.declared} - plan.of_names.ambiguous_words
     return found & plan.declared.keys()
@@ -138,4 +138,4 @@ def _frame_targets(plan: Index, finding: Finding, topics: Sequence[str]) -> Iter
 
 def words_of(message: str) -> set[str]:
     """The words of a message, without punctuation."""
-    return {word.strip(",:;?()") for word in message.split()}
+    return {word.strip(",:;?()'") for word in message.split()}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
+from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -17,6 +18,8 @@ from multibot_rewrite.system.records import (
     NOWHERE,
     PUBLISHES,
     RUNS,
+    SERVES,
+    SERVICE,
     SUBSCRIBES,
     TOPIC,
     End,
@@ -63,15 +66,18 @@ def plugin_ends(reading: Reading) -> Iterator[End]:
 
 def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
     """The ROS ends of the rows of a ros_gz_bridge file that runs in the namespace ``above``; a row for
-    both ways has no role."""
+    both ways has no role, one of a service serves it."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
-        name = values.get(BOTH) or values.get(ROS) or values.get(GZ)
+        service = values.get(SERVICE_ROW)
+        name = service or values.get(BOTH) or values.get(ROS) or values.get(GZ)
         if name is None:
             continue
         words = {key: str(value.value) for key, value in values.items()}
         full = f"/{below(str(name.value), above).lstrip('/')}"
-        role = _ROLES.get(words.get("direction", ""), "")
-        own = (TOPIC, role, full, words.get("ros_type_name", ""), "", f"/{BRIDGE_NODE}", None, "")
-        yield End(*own, full, place=Place(document.file, line_of(name)))
+        role = SERVES if service else _ROLES.get(words.get("direction", ""), "")
+        own = (role, full, words.get("ros_type_name", ""), "", f"/{BRIDGE_NODE}", None, "")
+        yield End(
+            SERVICE if service else TOPIC, *own, full, place=Place(document.file, line_of(name))
+        )

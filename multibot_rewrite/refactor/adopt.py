@@ -4,12 +4,15 @@
 Which values hold names of the robot is what a rewrite with ``--affix prefix`` asks, too. ``${prefix}``
 goes where a name is used, into the xacro sources; where one place makes names of the robot and others,
 it goes where the name is made. Proved by expansion: with an empty prefix nothing changes, with
-``robot1_`` the result is what the rewrite makes. The name of the robot itself stays."""
+``robot1_`` the result is what the rewrite makes. The name of the robot itself stays. Beside it stands
+an argument for a namespace where plugins and sensors have names of ROS (``namespaces.py``)."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import redirect_stderr
+from io import StringIO
 from itertools import chain
 from types import MappingProxyType
 
@@ -35,9 +38,14 @@ from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.refactor.configurations import configurations
-from multibot_rewrite.refactor.declaring import declared, free_name
+from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
+from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import with_launches
-from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
+from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
+from multibot_rewrite.refactor.namespaces import (
+    namespaced,
+    space_proved,
+)
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -50,6 +58,7 @@ from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     Change,
+    SourceEdit,
     change_of,
     edited,
     expected,
@@ -67,7 +76,8 @@ class Adopted(NamedTuple):
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
     those that have such an argument, with its name: they stay. ``launches`` are the launch files that
     are proved to hand it on, ``configurations`` those that were proved besides the one by default, as
-    ``robot.urdf.xacro gripper:=true``."""
+    ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
+    nothing needs one, ``spaced`` the descriptions that take it."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -78,6 +88,8 @@ class Adopted(NamedTuple):
     already: Mapping[str, str] = MappingProxyType({})
     launches: tuple[str, ...] = ()
     configurations: tuple[str, ...] = ()
+    namespace: str = ""
+    spaced: tuple[str, ...] = ()
 
 
 @checked
@@ -96,7 +108,8 @@ def adopt(
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     unread = dict(package.unread)
-    already = {it.path: name for it in package.descriptions if (name := _has(it, tree, how))}
+    arguments = {it.path: _arguments(it, tree, how) for it in package.descriptions}
+    already = {path: name for path, its in arguments.items() if (name := _first(its, _is_prefix))}
     others = [it for it in package.descriptions if it.path not in already]
     found = list(_as_xacros(others, tree, how, unread))
     if not found and not already:
@@ -105,7 +118,8 @@ def adopt(
     if not found:
         return Adopted("", {}, {}, (), (), unread, already)
     found = list(_configured(found, how, tree, unread))
-    made = _made(found, free_name(found), how)
+    own = {it.path: _first(arguments.get(it.path, ()), _is_space) for it in found}
+    made = _with_namespace(found, own, how, tree)
     made = _with_files_beside(made, folder, package.found, found, trust)
     return made._replace(unread=unread, already=already)
 
@@ -117,11 +131,15 @@ def _with_files_beside(
     names = set(_names(found))
     urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
     filled = fillable(there.params, urdfs, names, made.argument, TRIED)
-    launches = with_launches(folder, there.launch, made.argument, made.after, TRIED, trust, filled)
+    space = Space(made.namespace or SPACES[0], bool(made.namespace))
+    launches = with_launches(
+        folder, there.launch, made.argument, made.after, TRIED, trust, filled, space
+    )
     # A plain description that becomes a xacro is one of them.
     files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
     files |= {it.path for it in filled.values() if it.path in launches.after}
-    elsewhere = named_elsewhere(folder, names, set(map(os.path.realpath, files)))
+    elsewhere = [*named_elsewhere(folder, names, set(map(os.path.realpath, files)))]
+    elsewhere += root_sections(there.params) if made.namespace else ()
     return made._replace(
         before={**made.before, **{path: read_file(path) for path in launches.after}},
         after={**made.after, **launches.after},
@@ -141,30 +159,67 @@ def _configured(
         yield from own
 
 
-def _made(found: Sequence[Description], argument: str, how: Expanding) -> Adopted:
-    """The descriptions with the argument, and what was proved of them."""
-    texts = {os.path.realpath(path): data for it in found for path, data in _sources(it).items()}
-    made = placed(found, [list(_changes(it)) for it in found], argument)
-    edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument)}
+def _made(
+    found: Sequence[Description],
+    texts: Mapping[str, bytes],
+    argument: str,
+    how: Expanding,
+    more: Collection[SourceEdit] = (),
+) -> tuple[Adopted, Mapping[str, bytes]]:
+    """The descriptions with the argument and what was proved of them, beside ``more`` edits; and the
+    files that change, by their real paths."""
+    word = b"${%s}" % argument.encode()
+    asked = [list(_changes(it)) for it in found]
+    made = placed(found, asked, lambda _: word)
+    edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument), *more}
     after = edited(texts, edits)
     every = zip(found, made.changes, strict=True)
     faults = [(it, _fault(it, changes, after, argument, how)) for it, changes in every]
     wrong = [(it, why) for it, why in faults if why]
     paths = dict.fromkeys(it.path for it in found)
-    proved = tuple(path for path in paths if path not in {it.path for it, _ in wrong})
-    if not proved:
+    if len({it.path for it, _ in wrong}) == len(paths):
         it, why = wrong[0]
         raise InputError(f"{it.words}: {_ALONE}; {why}")
+    # One with a name that is left has some without the prefix.
+    unmade = {found[at].path for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
+    unmade |= {it.path for it, _ in wrong}
+    proved = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
         *(Left(it.words, f"its names are not proved: {why}") for it, why in wrong),
     )
-    after = as_named(after, found)
-    before = {path: data for path, data in as_named(texts, found).items() if path in after}
+    named = as_named(after, found)
+    before = {path: data for path, data in as_named(texts, found).items() if path in named}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
     others = tuple(it.words for it, why in faults if it.arguments and not why)
-    return Adopted(argument, before, after, proved, left, {}, configurations=others)
+    return Adopted(argument, before, named, proved, left, {}, configurations=others), after
+
+
+def _with_namespace(
+    found: Sequence[Description], own: Mapping[str, str], how: Expanding, tree: Tree
+) -> Adopted:
+    """With the argument for a namespace, too, where one changes names alone; ``own`` are arguments that
+    descriptions have for that already, by their paths."""
+    texts = {os.path.realpath(path): data for it in found for path, data in _sources(it).items()}
+    prefix = free_name(found)
+    has = (
+        Left(path, f"it has an argument for a namespace: {it}") for path, it in own.items() if it
+    )
+    space = namespaced([] if any(own.values()) else found, texts, tree)
+    left = (*space.left, *has)
+    if space.argument:
+        try:
+            made, after = _made(found, texts, prefix, how, space.edits)
+            proved, wrong = space_proved(space, prefix, TRIED, after, how, tree)
+        except InputError as error:
+            proved, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
+        left = (*left, *wrong)
+        if proved:
+            left = (*made.left, *left)
+            return made._replace(left=left, namespace=space.argument, spaced=proved)
+    made, _ = _made(found, texts, prefix, how)
+    return made._replace(left=(*made.left, *left))
 
 
 def _is_srdf(it: Description) -> bool:
@@ -181,12 +236,24 @@ def _is_meant(it: Description) -> bool:
     return it.inventory.format in ("robot", "srdf.robot")
 
 
-def _has(it: Description, tree: Tree, how: Expanding) -> str:
-    """The argument of a xacro that puts a prefix before its links already; empty if it has none."""
+def _arguments(it: Description, tree: Tree, how: Expanding) -> Sequence[Argument]:
+    """The arguments of a xacro that are called as those for a robot's names."""
     if it.read is None or it.inventory.format != "robot":
-        return ""
-    found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
-    return next((one.name for one in found.arguments if _is_prefix(one)), "")
+        return ()
+    # What xacro warns about is not said here.
+    with redirect_stderr(StringIO()):
+        found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
+    return found.arguments
+
+
+def _first(arguments: Iterable[Argument], is_meant: Callable[[Argument], bool]) -> str:
+    """The name of the first one that is meant; empty if there is none."""
+    return next((it.name for it in arguments if is_meant(it)), "")
+
+
+def _is_space(it: Argument) -> bool:
+    """Is it a namespace of plugins, or in one?"""
+    return any(use.kind == "namespace" for use in it.uses)
 
 
 def _is_prefix(it: Argument) -> bool:

@@ -15,11 +15,12 @@ from multibot_rewrite.refactor.package import Description
 from multibot_rewrite.refactor.source_edits import SourceEdit
 
 NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
+SPACES = ("namespace", "robot_namespace", "ros_namespace")
 _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _TAKEN = ("{*}arg", "{*}property", "{*}macro")
 
 
-def free_name(found: Iterable[Description]) -> str:
+def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
     """A name that no argument, property or parameter of a macro has."""
     taken: set[str] = set()
     sources = {file: data for it in found if it.read for file, data in it.read.sources.items()}
@@ -28,9 +29,9 @@ def free_name(found: Iterable[Description]) -> str:
         for element in read_document(data, file).root.iter(*_TAKEN):
             words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
             taken |= {element.get("name", ""), *words}
-    free = next((name for name in NAMES if name not in taken), None)
+    free = next((name for name in names if name not in taken), None)
     if free is None:
-        raise UsageError(f"{', '.join(NAMES)} are all names of its arguments or properties")
+        raise UsageError(f"{', '.join(names)} are all names of its arguments or properties")
     return free
 
 

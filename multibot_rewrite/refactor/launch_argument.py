@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launch file passes a new xacro argument on: declared, with an empty default, and given to
-``xacro``.
+"""A launch file passes new xacro arguments on: declared, with an empty default, and given to
+``xacro``. What belongs to the robot's description runs in the namespace.
 
 Edited is what people write: ``Command(["xacro ", path])`` in a launch file in Python with a literal
 list of its actions, and ``$(command 'xacro ...')`` in XML. What else runs xacro is left for its author.
@@ -29,13 +29,33 @@ _IMPORTS = {
 }
 
 
+# These read or send robot_description and joint_states, or ask the controller_manager, by names that
+# a namespace reaches (robot_state_publisher.cpp, joint_state_publisher.py, spawner.py).
+OF_ROBOT = (
+    *("robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui"),
+    "controller_manager",
+)
+_NODE = rb"<node\b[^>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
+# Spawners of simulators read the topic that follows: in the namespace, if it is relative.
+_TOPIC = "robot_description"
+_OWN_SPACE = re.compile(rb"namespace", re.IGNORECASE)
+
+
+class Space(NamedTuple):
+    """The argument for a namespace; do xacros take it?"""
+
+    name: str
+    of_xacro: bool
+
+
 class LaunchEdit(NamedTuple):
     """A launch file with the argument; ``data`` is None where it is not changed, ``left`` says why.
-    ``filled`` are the parameter files that it fills in now."""
+    ``filled`` are the parameter files that it fills in now; is it ``spaced`` by a namespace?"""
 
     data: bytes | None
     left: tuple[Left, ...]
     filled: tuple[str, ...] = ()
+    spaced: bool = False
 
 
 def with_argument(
@@ -44,41 +64,69 @@ def with_argument(
     argument: str,
     descriptions: Collection[str],
     parameters: Collection[str] = (),
+    space: Space | None = None,
 ) -> LaunchEdit:
     """The launch file with an argument for the descriptions (names of files) that it expands; it fills
-    in those of ``parameters`` (names of files) that it only gives to nodes."""
+    in those of ``parameters`` (names of files) that it only gives to nodes, and puts what belongs to
+    the description into the namespace ``space``."""
     if not any(name.encode() in source for name in descriptions):
         return LaunchEdit(None, ())
+    if space and not space.of_xacro and not any(it.encode() in source for it in OF_ROBOT):
+        space = None
+    own = _OWN_SPACE.search(source) if space else None
+    if own:
+        made = with_argument(path, source, argument, descriptions, parameters)
+        place = f"{path}:{locate(source, own.start())[0]}"
+        left = Left(place, "it has a namespace; give that to its xacro by hand")
+        return made._replace(left=(*made.left, left)) if made.data else made
     if path.endswith(".xml"):
-        return _of_xml(path, source, argument, parameters)
+        return _of_xml(path, source, argument, parameters, space)
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
         return LaunchEdit(None, (Left(path, "it is no Python"),))
-    return _of_python(path, source, tree, argument, parameters)
+    return _of_python(path, source, tree, argument, parameters, space)
 
 
-def _of_xml(path: str, source: bytes, argument: str, parameters: Collection[str]) -> LaunchEdit:
+def _both(argument: str, space: Space | None) -> tuple[list[str], list[str]]:
+    """The arguments to declare, and those that xacro gets."""
+    every = [argument, space.name] if space else [argument]
+    return every, every if space and space.of_xacro else [argument]
+
+
+def _of_xml(
+    path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
+) -> LaunchEdit:
+    every, of_xacro = _both(argument, space)
     commands = list(_COMMAND.finditer(source))
     root = _ROOT.search(source)
     if not commands or not root or b'<arg name="%s"' % argument.encode() in source:
         return LaunchEdit(None, (_left(path, source, b"xacro"),))
-    given = f" {argument}:=$(var {argument})".encode()
+    given = "".join(f" {it}:=$(var {it})" for it in of_xacro).encode()
     edits = [SourceEdit(path, it.start(2), it.start(2), given) for it in commands]
-    declared = f'\n  <arg name="{argument}" default=""/>'.encode()
+    declared = "".join(f'\n  <arg name="{it}" default=""/>' for it in every).encode()
     edits.append(SourceEdit(path, root.end(), root.end(), declared))
+    for it in re.finditer(_NODE, source) if space else ():
+        inside = f' namespace="$(var {space.name})"'.encode() if space else b""
+        edits.append(SourceEdit(path, it.end(), it.end(), inside))
     filled = []
     for name in parameters:
         ends = [it.end() for it in re.finditer(_FROM % re.escape(name.encode()), source)]
         if ends and len(ends) == source.count(name.encode()):
             edits += (SourceEdit(path, end, end, b' allow_substs="true"') for end in ends)
             filled.append(name)
-    return LaunchEdit(edited({path: source}, edits)[path], (), tuple(filled))
+    return LaunchEdit(edited({path: source}, edits)[path], (), tuple(filled), space is not None)
 
 
 def _of_python(
-    path: str, source: bytes, tree: ast.Module, argument: str, parameters: Collection[str]
+    path: str,
+    source: bytes,
+    tree: ast.Module,
+    argument: str,
+    parameters: Collection[str],
+    space: Space | None,
 ) -> LaunchEdit:
+    every, of_xacro = _both(argument, space)
     lines = [0]
     for line in source.splitlines(keepends=True):
         lines.append(lines[-1] + len(line))
@@ -90,13 +138,20 @@ def _of_python(
     actions = next(_lists_of(tree, "LaunchDescription", lambda _: True), None)
     if not commands or actions is None or not actions.elts:
         return LaunchEdit(None, (_left(path, source, b"xacro"),))
-    given = f', " {argument}:=", LaunchConfiguration("{argument}")'.encode()
+    given = "".join(f', " {it}:=", LaunchConfiguration("{it}")' for it in of_xacro).encode()
     ends = [at(it.elts[-1].end_lineno, it.elts[-1].end_col_offset) for it in commands]
     edits = [SourceEdit(path, end, end, given) for end in ends]
     first = at(actions.elts[0].lineno, actions.elts[0].col_offset)
     gap = source[at(actions.lineno, actions.col_offset) + 1 : first]
-    declared = f'DeclareLaunchArgument("{argument}", default_value=""),'.encode() + (gap or b" ")
-    edits.append(SourceEdit(path, first, first, declared))
+    gap = gap or b" "
+    declared = [f'DeclareLaunchArgument("{it}", default_value=""),'.encode() + gap for it in every]
+    edits.append(SourceEdit(path, first, first, b"".join(declared)))
+    for package in _nodes_of_robot(tree) if space else ():
+        end = at(package.end_lineno, package.end_col_offset)
+        indent = source[lines[package.lineno - 1] : at(package.lineno, package.col_offset)]
+        gap = b" " if indent.strip() else b"\n" + indent
+        inside = b',%snamespace=LaunchConfiguration("%s")' % (gap, every[-1].encode())
+        edits.append(SourceEdit(path, end, end, inside))
     given_files = {it: found for it in parameters if (found := list(_given(tree, it)))}
     for it in chain.from_iterable(given_files.values()):
         begin, end = at(it.lineno, it.col_offset), at(it.end_lineno, it.end_col_offset)
@@ -104,7 +159,20 @@ def _of_python(
         edits.append(SourceEdit(path, end, end, b", allow_substs=True)"))
     used = [*_IMPORTS, *(["ParameterFile"] if given_files else [])]
     edits += _imports(path, tree, at, used)
-    return LaunchEdit(edited({path: source}, edits)[path], (), tuple(given_files))
+    data = edited({path: source}, edits)[path]
+    return LaunchEdit(data, (), tuple(given_files), space is not None)
+
+
+def _nodes_of_robot(tree: ast.Module) -> Iterator[ast.keyword]:
+    """The package of each node that belongs to the description, as it is written there."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call) or _called(node) != "Node":
+            continue
+        package = next((it for it in node.keywords if it.arg == "package"), None)
+        if package and isinstance(package.value, ast.Constant):
+            words = [it.value for it in ast.walk(node) if isinstance(it, ast.Constant)]
+            if package.value.value in OF_ROBOT or ("-topic" in words and _TOPIC in words):
+                yield package
 
 
 def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:
@@ -171,12 +239,15 @@ def _lists_of(
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not node.args:
             continue
-        name = (
-            node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-        )
         first = node.args[0]
-        if name == called and isinstance(first, ast.List) and is_meant(first):
+        if _called(node) == called and isinstance(first, ast.List) and is_meant(first):
             yield first
+
+
+def _called(node: ast.Call) -> str:
+    """The last word of what is called."""
+    named = node.func.attr if isinstance(node.func, ast.Attribute) else node.func
+    return named if isinstance(named, str) else getattr(named, "id", "")
 
 
 def _runs_xacro(words: ast.List) -> bool:

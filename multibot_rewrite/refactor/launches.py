@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import zip_longest
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
@@ -25,7 +26,8 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
-from multibot_rewrite.refactor.launch_argument import LaunchEdit, with_argument
+from multibot_rewrite.refactor.launch_argument import OF_ROBOT, LaunchEdit, Space, with_argument
+from multibot_rewrite.refactor.namespaces import TRIED_SPACE
 from multibot_rewrite.refactor.parameters import Filled
 from multibot_rewrite.refactor.placing import Left
 
@@ -38,6 +40,17 @@ class Launches(NamedTuple):
     after: Mapping[str, bytes]
     proved: tuple[str, ...]
     left: tuple[Left, ...]
+
+
+class _Trial(NamedTuple):
+    """How a launch file is tried: the argument and a value of it, whether the file may run, the
+    parameter files that it may fill in, by their names, and its namespace."""
+
+    argument: str
+    prefix: str
+    trust: bool
+    parameters: Mapping[str, Filled]
+    space: Space | None
 
 
 class _Verdict(NamedTuple):
@@ -55,10 +68,12 @@ def with_launches(
     prefix: str,
     trust: bool,
     parameters: Mapping[str, Filled] = MappingProxyType({}),
+    space: Space | None = None,
 ) -> Launches:
     """The launch files that expand a description of ``after``, files by their paths. One that does not
     hand the argument on, tried with ``prefix``, is left as it was. Of the ``parameters``, by their
-    names, those are filled in that no other file names and that are proved with their launch file."""
+    names, those are filled in that no other file names and that are proved with their launch file; so
+    is a namespace, ``space``, given where it is proved."""
     names = {os.path.basename(it) for it in after}
     texts = {path: read_file(path) for path in launches}
     alone = {
@@ -68,11 +83,15 @@ def with_launches(
     }
     found = Launches({}, (), ())
     for path, text in texts.items():
-        made = with_argument(path, text, argument, names, alone if trust else ())
-        one = _one(folder, path, made, argument, after, prefix, trust, alone)
-        if made.filled and path not in one.after:
-            made = with_argument(path, text, argument, names)
-            one = _one(folder, path, made, argument, after, prefix, trust, {})
+        tries: list[tuple[Mapping[str, Filled], Space | None]]
+        tries = [(alone if trust else {}, space), ({}, space), ({}, None)]
+        one = Launches({}, (), ())
+        for filled, spaced in tries:
+            made = with_argument(path, text, argument, names, filled, spaced)
+            how = _Trial(argument, prefix, trust, filled, spaced if made.spaced else None)
+            one = _one(folder, path, made, after, how)
+            if path in one.after or not (made.filled or made.spaced):
+                break
         found = Launches(*(_both(*it) for it in zip(found, one, strict=True)))
     return found
 
@@ -82,24 +101,18 @@ def _both(one: Any, other: Any) -> Any:
 
 
 def _one(
-    folder: str,
-    path: str,
-    made: LaunchEdit,
-    argument: str,
-    after: Mapping[str, bytes],
-    prefix: str,
-    trust: bool,
-    parameters: Mapping[str, Filled],
+    folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: _Trial
 ) -> Launches:
     """One launch file with what it fills in, as far as it is proved."""
+    argument = how.argument
     if made.data is None:
         return Launches({}, (), made.left)
-    if not trust:
+    if not how.trust:
         why = f"it gets {argument}, which is proved with --trust alone: a launch file is a program"
         return Launches({path: made.data}, (), (*made.left, Left(path, why)))
-    filled = [parameters[it] for it in made.filled]
+    filled = [how.parameters[it] for it in made.filled]
     changed = {path: made.data, **{it.path: it.after for it in filled}}
-    it = _read(folder, {**after, **changed}, path, argument, prefix, filled)
+    it = _read(folder, {**after, **changed}, path, how, filled)
     if it.fault:
         return Launches(
             {}, (), (*made.left, Left(path, f"it does not hand {argument} on: {it.fault}"))
@@ -116,8 +129,7 @@ def _read(
     folder: str,
     files: Mapping[str, bytes],
     path: str,
-    argument: str,
-    prefix: str,
+    how: _Trial,
     filled: Sequence[Filled],
 ) -> _Verdict:
     """A launch file in a copy of the package."""
@@ -126,7 +138,7 @@ def _read(
         root = os.path.join(above, os.path.basename(home))
         _copy(home, root, {os.path.realpath(it): data for it, data in files.items()})
         copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
-        found = _verdict(LaunchOrder(copy, (), (above,), True), argument, prefix, filled)
+        found = _verdict(LaunchOrder(copy, (), (above,), True), how, filled)
         return _Verdict(*(it.replace(f"{root}/", "") for it in found))
 
 
@@ -146,7 +158,8 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _verdict(order: LaunchOrder, argument: str, prefix: str, filled: Sequence[Filled]) -> _Verdict:
+def _verdict(order: LaunchOrder, how: _Trial, filled: Sequence[Filled]) -> _Verdict:
+    argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)
         plain = _links(graph)
@@ -157,14 +170,30 @@ def _verdict(order: LaunchOrder, argument: str, prefix: str, filled: Sequence[Fi
     try:
         other = launch_graph(order._replace(arguments=((argument, prefix),)))
         given = _links(other)
+        spaced = _space_fault(order, graph, how.space)
     except InputError as error:
         return _Verdict(str(error), "")
     for it in filled:
         if not (_gets(graph, it.path, it.before) and _gets(other, it.path, it.tried)):
             return _Verdict(f"{os.path.basename(it.path)} is not what it was, or lacks it", "")
     if given == [it if it == WORLD else f"{prefix}{it}" for it in plain]:
-        return _Verdict("", "")
+        return _Verdict(spaced, "")
     return _Verdict(f"with {argument}:={prefix} its links are {', '.join(given[:3])}", "")
+
+
+def _space_fault(order: LaunchOrder, graph: LaunchGraph, space: Space | None) -> str:
+    """What is wrong with the nodes of the description, or with that, in a namespace."""
+    if space is None:
+        return ""
+    other = launch_graph(order._replace(arguments=((space.name, TRIED_SPACE),)))
+    every = zip_longest(graph.nodes, other.nodes)
+    pairs = [(one, two) for one, two in every if one and two and one.package in OF_ROBOT]
+    wrong = next((two for one, two in pairs if two.namespace != f"/{TRIED_SPACE}"), None)
+    if wrong is not None or len(graph.nodes) != len(other.nodes):
+        name = wrong.executable if wrong else "another number of nodes"
+        return f"with {space.name}:={TRIED_SPACE} it has {name} in another namespace"
+    is_given = any(TRIED_SPACE in it.text for node in other.nodes for it in node.parameters)
+    return "" if is_given or not space.of_xacro else f"its description lacks {TRIED_SPACE}"
 
 
 def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:

@@ -18,6 +18,7 @@ from multibot_rewrite.refactor.placing import Left
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
 _DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
 _SKIPPED = {"build", "install", "log", "node_modules"}
+_SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
 # Of one file so many lines are listed.
 _MOST = 20
 
@@ -37,6 +38,18 @@ def named_elsewhere(
         pattern = literal if path.endswith(_CODE) else word
         why = "its code names" if path.endswith(_CODE) else "it names"
         yield from _lines(path, pattern, why)
+
+
+def root_sections(paths: Collection[str]) -> Iterator[Left]:
+    """Sections of parameter files whose nodes are in no namespace. Source: rcl_yaml_param_parser."""
+    for path in paths:
+        data = read_file(path)
+        found = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
+        if found:
+            line, name = found[0]
+            more = f", and {len(found) - 1} sections more" if len(found) > 1 else ""
+            why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"
+            yield Left(f"{path}:{line}", why)
 
 
 def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from lxml import etree
 
@@ -54,10 +54,12 @@ class _Name(NamedTuple):
 
 
 def placed(
-    found: Sequence[Description], changes: Sequence[Sequence[Change]], argument: str
+    found: Sequence[Description],
+    changes: Sequence[Sequence[Change]],
+    written: Callable[[Change], bytes],
 ) -> Placed:
     """The edits of the sources for the changes of each description. They have sources in common: what
-    one of them needs at a place, the others get."""
+    one of them needs at a place, the others get. ``written`` is what a change is in the source."""
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
     deep = _made_elsewhere(names)
@@ -71,7 +73,7 @@ def placed(
             place = _place(found[name.of], name.change)
             made.left.append(Left(place, f"{name.change.value!r} is put together"))
             continue
-        made.edits.append(SourceEdit(*spot, spot[1], b"${%s}" % argument.encode()))
+        made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
     return made
 

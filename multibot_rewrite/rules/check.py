@@ -48,6 +48,7 @@ from multibot_rewrite.rules.system import (
     sharing,
     stamps,
     states,
+    tf_pieces,
     tf_topics,
     unsent,
 )
@@ -64,6 +65,7 @@ from multibot_rewrite.system.tf_copies import without_bridged
 _SYSTEM = (
     *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
     *(
+        tf_pieces,
         frame_ids,
         lookups,
         localized,

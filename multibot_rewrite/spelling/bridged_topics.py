@@ -18,7 +18,7 @@ from multibot_rewrite.description.rewriters.model_namespaces import is_model_nam
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Topic
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, Topic
 
 # How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
 GZ_LIBRARIES, CLASSIC_LIBRARY = ("gz-", "gz_", "ign_", "ignition-"), "gazebo_ros"
@@ -233,6 +233,6 @@ def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
     found: dict[str, Topic] = {}
     for topic in topics:
         first = found.setdefault(topic.name, topic)
-        roles = tuple(it for it in BOTH if it in {*first.bridge, *topic.bridge})
+        roles = tuple(it for it in (*BOTH, SERVES) if it in {*first.bridge, *topic.bridge})
         found[topic.name] = first._replace(bridge=roles)
     return tuple(found.values())

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE
+from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE, is_from_outside
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
@@ -55,11 +55,13 @@ def bridge_name(robot: str) -> str:
 
 def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
     """The plan with a bridge for each robot that has something to bring; ``given`` are topics of each
-    robot that go to the domain of all robots, besides what nodes of the plan need.
+    robot that cross besides what nodes of the plan need: to the domain of all robots, or from it what
+    people and planners send to a robot, such as ``cmd_vel``.
 
     Raises UsageError for one that no robot has.
     """
-    found = crossings(plan, given)
+    # One without a type ends the bridge: it loads what its type is called (bridge_topic).
+    found = [it for it in crossings(plan, given) if it.type]
     numbers, nodes, ends = domain_of(plan), [*plan.nodes], [*plan.ends]
     for robot in dict.fromkeys(it.robot for it in found):
         name, own = bridge_name(robot), [it for it in found if it.robot == robot]
@@ -71,6 +73,13 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
             ends.append(planned_end(from_, TOPIC, SUBSCRIBES, it.name, it.type, it.name))
             ends.append(planned_end(to, TOPIC, PUBLISHES, it.name, it.type, it.name))
     return plan._replace(nodes=tuple(nodes), ends=tuple(ends))
+
+
+def beyond(plan: System) -> dict[str, str]:
+    """The nodes that robots' bridges have in the domain of all robots, each with its robot."""
+    shared = domain_of(plan).get("")
+    names = {f"/{bridge_name(it.name)}_{shared}": it.name for it in plan.robots}
+    return {it.name: names[it.name] for it in plan.nodes if it.name in names}
 
 
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
@@ -106,11 +115,15 @@ def _type_of(*ends: End) -> str:
 def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
     robot_of = {it.name: it.robot for it in plan.nodes}
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
+    sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}
     for it in plan.ends:
         robot = robot_of[it.node]
         if it.kind == TOPIC and it.type and robot and numbers[robot] != numbers[""]:
+            # A sensor's driver need not be in the plan.
+            out = (robot, it.name) in sent or not is_from_outside(it.name)
+            crossing = Crossing(robot, it.name, it.type, out)
             for word in (it.name, it.code_name.removeprefix("~").strip("/")):
-                known[word].setdefault(robot, Crossing(robot, it.name, it.type, True))
+                known[word].setdefault(robot, crossing)
     for word in given:
         own = known.get(word) or known.get(word.strip("/"))
         if own is None:

@@ -23,7 +23,7 @@ from multibot_rewrite.spelling.plan_value import (
     TOPIC_KEYS,
 )
 from multibot_rewrite.system.environment import MAX_DOMAIN
-from multibot_rewrite.system.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
+from multibot_rewrite.system.records import KINDS, PUBLISHES, ROLES, SERVES, SUBSCRIBES
 
 Schema = dict[str, Any]
 _TEXT: Schema = {"type": "string"}
@@ -100,7 +100,7 @@ def _said(value: Schema, about: str) -> Schema:
 
 
 def _topic() -> Schema:
-    either = {"enum": [PUBLISHES, SUBSCRIBES]}
+    either = {"enum": [PUBLISHES, SUBSCRIBES, SERVES]}
     known = {
         "senders": _TEXTS,
         "one_sender": {"type": "boolean"},

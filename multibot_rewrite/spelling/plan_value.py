@@ -31,6 +31,7 @@ from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,
     RUNS,
+    SERVES,
     SUBSCRIBES,
     Domain,
     Edge,
@@ -278,7 +279,7 @@ def _read_domains(given: object, robots: Sequence[str], file: str) -> Iterator[D
         yield Domain("" if name == KEYS[1] else str(name), number)
 
 
-_ENDS = [[PUBLISHES], [SUBSCRIBES], [PUBLISHES, SUBSCRIBES]]
+_ENDS = [[PUBLISHES], [SUBSCRIBES], [PUBLISHES, SUBSCRIBES], [SERVES]]
 _RIGHT: Mapping[str, Callable[[Any], bool]] = {
     "one_sender": lambda it: isinstance(it, bool),
     "qos": lambda it: isinstance(it, dict) and all(isinstance(word, str) for word in it.values()),
@@ -288,7 +289,7 @@ _RIGHT: Mapping[str, Callable[[Any], bool]] = {
 _FORMS = {
     "one_sender": "true or false",
     "qos": "words, as {durability: transient_local}",
-    "bridge": "[publishes], [subscribes] or both",
+    "bridge": "[publishes], [subscribes], both, or [serves]",
     "type": "a type, as sensor_msgs/msg/LaserScan",
 }
 

@@ -256,5 +256,7 @@ def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
     elif running.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
+        if node.namespace != "/":
+            hint = "write a relative target in the rule, which ends up in each robot's namespace"
     place = {"robot": node.robot, "node": node.node, "names": tuple(kept)}
     return NOT_TAKEN.finding(message, hint, **place)

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plan whose robots are in several ROS domains -> the plan of each: nodes of two domains never meet,
-so what has one name in two of them is no clash. Pure."""
+so what has one name in two of them is no clash. What was seen of them -> one view. Pure."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Set
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Environment, System
 
 # That of nodes of all robots, where a plan does not say another.
 USUAL_DOMAIN = 0
+# What robots without names are called where those of several domains are in one view.
+_WORD = "domain_"
+_FULL, _SHORT = re.compile(rf"/{_WORD}(\d+)(/[\w/]+)"), re.compile(rf"\b{_WORD}(\d+)\b")
 
 
 def domain_of(plan: System) -> dict[str, int]:
@@ -67,6 +72,39 @@ def side_by_side(seen: Mapping[int, System]) -> System:
         controllers=tuple(it for one in views for it in one.controllers),
         environment=_around(seen),
     )
+
+
+def named(view: System, domain: int) -> System:
+    """What was seen of a robot without a name, below a name for its domain."""
+    space = f"/{_WORD}{domain}"
+    ends = (it._replace(name=space + it.name, node=space + it.node) for it in view.ends)
+    edges = (
+        it._replace(topic=space + it.topic, publishers=tuple(space + one for one in it.publishers))
+        for it in view.edges
+    )
+    return view._replace(
+        nodes=tuple(it._replace(name=space + it.name) for it in view.nodes),
+        ends=tuple(ends),
+        edges=tuple(edges),
+        heard=tuple(it._replace(topic=space + it.topic) for it in view.heard),
+        parameters=tuple(it._replace(node=space + it.node) for it in view.parameters),
+        controllers=tuple(it._replace(manager=space + it.manager) for it in view.controllers),
+    )
+
+
+def unnamed(it: Finding) -> Finding:
+    """A finding about such a view, in the names that run: ``/amcl of domain 11``."""
+    return it._replace(
+        message=_said(it.message),
+        hint=_said(it.hint),
+        robot=_said(it.robot),
+        node=_FULL.sub(r"\2", it.node),
+        names=tuple(_FULL.sub(r"\2", name) for name in it.names),
+    )
+
+
+def _said(text: str) -> str:
+    return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))
 
 
 def _around(seen: Mapping[int, System]) -> Environment:

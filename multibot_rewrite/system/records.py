@@ -255,7 +255,7 @@ class Topic(NamedTuple):
     ``senders`` are patterns of the nodes that may publish it, empty where any may; with
     ``one_sender`` only one node at a time does. ``qos`` are policies with the word that each publisher
     offers, both as in ``Qos``. ``bridge`` is what a ros_gz_bridge does with it: publishes,
-    subscribes, both, or nothing; ``type`` is its type then.
+    subscribes, both, or nothing; ``type`` is its type then. It serves a service.
     """
 
     name: str

@@ -27,7 +27,7 @@ def rule(code: str, name: str, level: str = ERROR) -> dict[str, object]:
 RULES = rule("MB101", "bad-name")
 IN_FILE = Finding(
     "MB101", ERROR, "is 100% bad", "do: it", "a b.urdf", 3, 5, ("m.xacro:7: wheel",), "side:=left",
-    (Edit(0, 1, b"x", b"y"),), others=("r2",), robot="r1",
+    (Edit(0, 1, b"x", b"y"),), robots=("r1", "r2"), robot="r1",
 )  # fmt: skip
 IN_GRAPH = Finding("MG102", INCONCLUSIVE, "may be lost", robot="r1", node="/r1/a", names=("/r1/t",))
 NOTED = Finding("MB101", NOTE, "is odd", file="c.urdf")
@@ -66,7 +66,7 @@ def test_json() -> None:
     made = json.loads(rendered("json", FOUND, REPORT))
     first, second, third = made.pop("findings")
     assert made == {
-        "version": 2, "tool": "multibot lint", "distro": "jazzy", "files": 2,
+        "version": 3, "tool": "multibot lint", "distro": "jazzy", "files": 2,
         "counts": {"error": 1, "warning": 0, "note": 1, "inconclusive": 1},
     }  # fmt: skip
     assert first == {
@@ -74,7 +74,7 @@ def test_json() -> None:
         "hint": "do: it",
         "file": "a b.urdf", "line": 3, "column": 5,
         "calls": [{"file": "m.xacro", "line": 7, "macro": "wheel"}], "arguments": "side:=left",
-        "robot": "r1", "node": "", "names": [], "others": ["r2"],
+        "robot": "r1", "robots": ["r1", "r2"], "node": "", "names": [],
         "edits": [{"start": 0, "end": 1, "text": "xy"}],
     }  # fmt: skip
     assert (second["name"], second["file"], second["line"], second["column"]) == (

@@ -236,7 +236,7 @@ def test_where_a_finding_is() -> None:
     assert it._replace(node="/a", robot="r").place == "/a"
     assert it._replace(node="a", robot="r").place == "r: a"
     assert it._replace(robot="r").place == "r" and it._replace(file="").place == "graph"
-    others = it._replace(others=("b", "c", "d"), hint="")
+    others = it._replace(robots=("a", "b", "c", "d"), hint="")
     assert same_for(others) == "; the same for b and 2 more" and same_for(it) == ""
     assert str(others) == "f.urdf:3:4: error: M1 is bad; the same for b and 2 more"
     assert by_place(it) == ("f.urdf", 3, 4, "M1", "is bad", "")
@@ -254,6 +254,6 @@ def test_the_longer_beginning_counts() -> None:
 
 
 def test_a_text_is_said_of_another_robot() -> None:
-    it = Finding("M1", "error", "", robot="r1", others=("r2",))
+    it = Finding("M1", "error", "", robots=("r1", "r2"))
     assert said_of("/r1/a of r11", it, "r2") == "/r2/a of r11"
     assert said_of("/r1/a", it, "r3") == "/r1/a"

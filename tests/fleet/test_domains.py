@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 import yaml
 from nav2_graphs import ROVER
+from plans import PlannedRobot, planned
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
@@ -15,8 +18,11 @@ from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.spelling.domain_bridge import bridge_files, with_bridges
+from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Domain
 
 FLEET = f"""\
 layout: {{layout}}
@@ -56,10 +62,96 @@ def text(made: Outputs, path: str) -> str:
     return next(it.text for it in made.files if it.path == path)
 
 
+class Bridged(NamedTuple):
+    """A topic as domain_bridge takes it."""
+
+    topic: str
+    type: str
+    start: int
+    end: int
+    qos: dict[str, object]
+
+
+def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
+    """The name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
+    domain_bridge.cpp (c2523e1); what these throw at, or leave out, fails here."""
+    root = yaml.compose(text)
+    (topics,) = [value for key, value in root.value if key.value == "topics"]
+    keys = [key.value for key, _ in topics.value]
+    assert len(keys) == len({*keys}), "of one topic only one is bridged"
+    config = yaml.safe_load(text)
+    assert config.get("mode", "normal") == "normal"
+    found = []
+    for topic, own in config["topics"].items():
+        assert isinstance(own, dict) and "services" not in own
+        ends = [own.get(it, config.get(it)) for it in ("from_domain", "to_domain")]
+        assert all(type(it) is int and 0 <= it <= 232 for it in ends), "as<std::size_t>"
+        assert ends[0] != ends[1], "Domain IDs must be different"
+        assert isinstance(topic, str) and re.fullmatch(r"(/[A-Za-z_][A-Za-z0-9_]*)+", topic)
+        # rosbag2_cpp get_typesupport_library: PACKAGE/msg/TYPE.
+        assert isinstance(own["type"], str) and re.fullmatch(r"\w+/msg/\w+", own["type"])
+        qos = own.get("qos", {})
+        assert isinstance(qos, dict)
+        assert qos.get("reliability", "reliable") in ("reliable", "best_effort")
+        assert qos.get("durability", "volatile") in ("volatile", "transient_local")
+        assert qos.get("history", "keep_last") in ("keep_last", "keep_all")
+        assert type(qos.get("depth", 10)) is int
+        known = {"type", "from_domain", "to_domain", "qos", "remap", "bidirectional", "reversed"}
+        assert own.keys() <= known and qos.keys() <= {"reliability", "durability", "depth"}
+        found.append(Bridged(topic, own["type"], ends[0], ends[1], qos))
+    # A node of this name and the domain's number is made in each of both.
+    assert re.fullmatch(r"[A-Za-z_]\w*", config["name"])
+    return config["name"], found
+
+
+@pytest.mark.slow
+def test_domain_bridge_takes_what_is_written(made: Outputs) -> None:
+    """Also of names with a slash, and of a topic that the robot only reads."""
+    for robot in ("robot1", "robot2"):
+        name, topics = as_domain_bridge_reads(text(made, f"domain_bridge/{robot}_bridge.yaml"))
+        assert name == f"{robot}_bridge" and topics
+        in_plan = {
+            (it.node, it.role, it.name, it.type) for it in made.planned.ends if name in it.node
+        }
+        by_file = {
+            end
+            for it in topics
+            for end in (
+                (f"/{name}_{it.start}", SUBSCRIBES, it.topic, it.type),
+                (f"/{name}_{it.end}", PUBLISHES, it.topic, it.type),
+            )
+        }
+        assert in_plan == by_file
+
+
+def test_what_a_robot_only_reads_comes_from_the_domain_of_all() -> None:
+    names = ("robot1", "fleet/robot2")
+    robots = [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in names]
+    ends = [
+        planned_end(f"/{it}/drive", TOPIC, role, f"/{it}/{word}", type_, word)
+        for it in names
+        for role, word, type_ in (
+            (PUBLISHES, "odom", "nav_msgs/msg/Odometry"),
+            (SUBSCRIBES, "cmd_vel", "geometry_msgs/msg/Twist"),
+            (PUBLISHES, "odd", ""),
+        )
+    ]
+    ends.append(planned_end("/monitor", TOPIC, SUBSCRIBES, "/robot1/odd", "", "/robot1/odd"))
+    plan = planned("both", robots, ("/monitor",), (), (), tuple(ends))
+    domains = tuple(Domain(*it) for it in (("", 0), ("robot1", 1), ("fleet/robot2", 2)))
+    plan = with_bridges(plan._replace(domains=domains), ["odom", "cmd_vel"])
+    found = dict(as_domain_bridge_reads(data.decode()) for _, data in bridge_files(plan))
+    assert {name: [it[:4] for it in own] for name, own in found.items()} == {
+        f"{name.replace('/', '_')}_bridge": [
+            (f"/{name}/cmd_vel", "geometry_msgs/msg/Twist", 0, number),
+            (f"/{name}/odom", "nav_msgs/msg/Odometry", number, 0),
+        ]
+        for number, name in enumerate(names, 1)
+    }
+
+
 @pytest.mark.slow
 def test_the_bridge_of_a_robot_has_what_crosses(made: Outputs) -> None:
-    """As domain_bridge reads it (parse_domain_bridge_yaml_config.cpp): topics is a mapping, each topic
-    has a type and both domains, words of qos are those that it knows."""
     bridge = yaml.safe_load(text(made, "domain_bridge/robot1_bridge.yaml"))
     assert (bridge["name"], bridge["from_domain"], bridge["to_domain"]) == ("robot1_bridge", 11, 10)
     kept = {"reliability": "reliable", "durability": "transient_local", "depth": 100}
@@ -97,6 +189,37 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
         "map_frame": "map",
         "robot_frame": "robot1/base_footprint",
     }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layout", ["both", "tf-per-robot"])
+def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path) -> None:
+    """As nav2_robot_adapter.py and fleet_adapter.py (002505f): names have the robot's before them, and
+    so have all frames that come on its tf, among which map -> robot_frame is looked up."""
+    made = written(tmp_path, layout)
+    robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
+    edges = [it for it in made.planned.edges if not it.static]
+    for robot, told in robots.items():
+        assert told["navigation_stack"] == 2 and told["initial_map"]
+        allow = yaml.safe_load(text(made, f"free_fleet/{robot}.json5").partition("\n")[2])[
+            "plugins"
+        ]["ros2dds"]["allow"]
+        assert not any(own for what, own in allow.items() if what not in ALLOWED)
+        for what, words in ALLOWED.items():
+            wanted = {f"/{it}/{word}" for it in robots for word in words}
+            passed = {it for it in wanted if any(re.fullmatch(own, it) for own in allow[what])}
+            assert passed == {f"/{robot}/{word}" for word in words}
+        # A driver that nobody names moves the base; amcl joins its odometry with the map.
+        own = {it.parent for it in edges if f"/{robot}/amcl" in it.publishers}
+        assert own == {told.get("map_frame", "map")}
+        (there,) = (it for it in made.planned.robots if it.name == robot)
+        assert told.get("robot_frame", "base_footprint") in there.frames
+
+
+ALLOWED = {
+    "publishers": ("tf", "battery_state"),
+    "action_servers": ("navigate_to_pose",),
+}
 
 
 @pytest.mark.slow
@@ -141,8 +264,8 @@ def test_the_plan_has_the_bridge_on_both_sides_and_comes_back_from_a_file(made: 
         ("crossing: [odom]\n", "crossing: write domains as well"),
         ("free_fleet: {router: tcp/a:7447, map: L1}\n", "free_fleet: write domains as well"),
         (
-            "domains: {robot1: 1, robot2: 2}\nzenoh: {router: tcp/a:7447}\n",
-            "zenoh are for one domain",
+            "domains: {robot1: 1, robot2: 2}\nzenoh: {router: 'tcp/a:7447', domain: 3}\n",
+            "leave out that of zenoh",
         ),
     ],
 )
@@ -184,10 +307,28 @@ def faults(folder: Path, fleet: str) -> list[Finding]:
 @pytest.mark.slow
 def test_a_plugin_is_where_its_simulator_is(tmp_path: Path) -> None:
     (found,) = faults(tmp_path, "simulator: gazebo\ndomains: {robot1: 11, robot2: 12}\n")
-    assert (found.level, found.line, found.others) == ("error", 4, ("robot2",))
+    assert (found.level, found.line, found.robots) == ("error", 4, ("robot1", "robot2"))
     assert faults(tmp_path, "simulator: none\ndomains: {robot1: 11, robot2: 12}\n") == []
     # All in the simulator's domain.
     assert faults(tmp_path, "simulator: gazebo\ndomains: {robot1: 0, robot2: 0}\n") == []
+
+
+@pytest.mark.more
+def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_path: Path) -> None:
+    """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
+    for stack, numbers, told in (
+        ("nav2_composed", (11, 12), True),
+        ("slam_toolbox", (11, 12), True),
+        ("slam_toolbox", (11, 11), False),
+        ("nav2", (11, 12), False),
+    ):
+        domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
+        (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
+        made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+        found = [it for it in made.findings if it.code == "MF849"]
+        assert [it.line for it in found] == [5] * told, stack
 
 
 NODES = """\

@@ -95,6 +95,20 @@ def test_the_sensors_of_the_robots_run_in_it(fleet: Path) -> None:
 
 
 @pytest.mark.more
+def test_what_stands_before_all_links_is_the_name_that_it_is_spawned_by(fleet: Path) -> None:
+    """As in vrx_urdf's wamv_gazebo: wamv/base_link, wamv/gps_link; here with a part of a part."""
+    model = fleet.parent / "boat" / "model.sdf"
+    named = BOAT.replace('"hull"', '"wamv/hull"').replace('"mast"', '"wamv/mast/top"')
+    model.write_text(named)
+    world = fleet.parent / "lake.sdf"
+    world.write_text(WORLD.replace("<vehicle>boat", "<vehicle>wamv"))
+    assert _texts(_built(fleet), "vehicle") == ["r1"]
+    # A link of another word in front: it is no name.
+    model.write_text(named.replace("wamv/mast", "mast"))
+    assert _texts(_built(fleet), "vehicle") == ["wamv"]
+
+
+@pytest.mark.more
 def test_what_is_said_of_it(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _built(fleet)
     said = capsys.readouterr().err

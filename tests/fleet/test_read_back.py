@@ -236,7 +236,7 @@ def test_a_description_is_launched_by_the_name_that_is_written(tmp_path: Path) -
 DRIVE = """<robot name="rover"><link name="base_link"/><link name="laser"/>
 <joint name="to_laser" type="fixed"><parent link="base_link"/><child link="laser"/></joint></robot>"""
 FILTER = "{}:\n  ros__parameters: {{odom_frame: odom, base_link_frame: base_link, odom0: wheels}}\n"
-LATER = "ax_max ax_min ay_max ay_min az_max".split()
+LATER = ["ax_max", "ax_min", "ay_max", "ay_min", "az_max"]
 
 
 @pytest.mark.slow

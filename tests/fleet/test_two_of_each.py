@@ -20,6 +20,8 @@ from multibot_rewrite.fleet.checks.two_of_each import two_of_each
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 
+pytestmark = pytest.mark.more
+
 # The robots with the faults are last: the others of their sort are read in their place.
 NAMES = ("robot3", "robot4", "robot5", "robot1", "robot2")
 
@@ -41,13 +43,11 @@ def left(edit: Edit | None = None, names: tuple[str, ...] = NAMES) -> frozenset[
     return two_of_each(made, [it.spec for it in plan.robots])[1]
 
 
-@pytest.mark.more
 def test_two_are_read_of_robots_that_differ_in_names_and_poses() -> None:
     assert left() == {"robot5", "robot1", "robot2"}
     assert read_back(*five(*NAMES), OUT) == []
 
 
-@pytest.mark.more
 def test_what_is_read_has_no_word_of_the_others() -> None:
     plan, made = five(*NAMES)
     few, _ = two_of_each(made, [it.spec for it in plan.robots])
@@ -71,7 +71,6 @@ def test_a_robot_with_another_text_is_read(edit: Edit) -> None:
     assert left(edit) == {"robot5", "robot2"}
 
 
-@pytest.mark.more
 def test_all_are_read_where_names_are_within_each_other() -> None:
     assert left(names=("arm", "arm_left", "arm_right")) == frozenset()
 
@@ -84,7 +83,6 @@ def test_all_are_read_where_the_launch_file_has_another_form(old: str, new: str)
     assert left(in_file(LAUNCH, old, new)) == frozenset()
 
 
-@pytest.mark.more
 def test_a_robot_that_all_others_obey_is_read() -> None:
     def edit(path: str, text: str) -> str:
         return text.replace("scan_topic: scan", "scan_topic: /robot5/scan")
@@ -95,7 +93,6 @@ def test_a_robot_that_all_others_obey_is_read() -> None:
     assert {it.node for it in found} >= {f"/{name}/amcl" for name in NAMES if name != "robot5"}
 
 
-@pytest.mark.more
 def test_a_file_of_all_robots_may_name_one_that_is_left_out() -> None:
     """Two bridges send one robot's scan."""
     plan, made = five(*NAMES)
@@ -105,7 +102,6 @@ def test_a_file_of_all_robots_may_name_one_that_is_left_out() -> None:
     assert "/robot5/scan" in {name for it in read_back(plan, spoiled, OUT) for name in it.names}
 
 
-@pytest.mark.more
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", BUILT)
 def test_a_fault_of_a_robot_that_would_be_left_out_is_found(name: str) -> None:

@@ -7,6 +7,7 @@ nav2_bringup's launch files, the numbers those of lifecycle_msgs msg/Transition.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -127,6 +128,31 @@ def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
     assert (state.package, state.executable) == ("robot_state_publisher",) * 2
     assert "robot_description" in "".join(it.text for it in state.parameters)
     assert len(nodes) == 2 * (len(NAV2) + len(MANAGERS) + 1)
+
+
+@pytest.mark.more
+def test_each_process_has_the_level_of_the_log_and_shows_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """rcl's --log-level; the words of output are those of launch/logging/__init__.py."""
+    given: dict[str, dict[str, Any]] = {}
+
+    def noted(make: Callable[..., Any]) -> Callable[..., Any]:
+        def made(name: str, **options: Any) -> Any:
+            given[name] = options
+            return make(name, **options)
+
+        return made
+
+    for make in ("node", "lifecycle_node", "container"):
+        monkeypatch.setattr(nav2, make, noted(getattr(nav2, make)))
+    read(tmp_path, ("robot_state_publisher", "true"))
+    read(tmp_path, layout="both", stack="nav2_composed", more="relayed: true")
+    assert {"amcl", "nav2_container", "robot_state_publisher", "tf_relay"} <= given.keys()
+    assert {it["output"] for it in given.values()} == {"screen"}
+    for name in ("amcl", "nav2_container"):
+        *_, ros, option, level = given[name]["arguments"]
+        assert (ros, option, level.variable_name) == ("--ros-args", "--log-level", "log_level")
 
 
 @pytest.mark.more

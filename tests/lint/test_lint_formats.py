@@ -242,13 +242,13 @@ JSON_FINDING = object_of(
     calls=list_of(object_of(file=STRING, line=PLACE, macro=STRING)),
     arguments=STRING,
     robot=STRING,
+    robots=list_of(STRING),
     node=STRING,
     names=list_of(STRING),
-    others=list_of(STRING),
     edits=list_of(object_of(start=NUMBER, end=NUMBER, text=STRING)),
 )
 JSON = object_of(
-    version={"const": 2},
+    version={"const": 3},
     tool=STRING,
     files=NUMBER,
     distro={"type": ["string", "null"]},

@@ -526,3 +526,24 @@ def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
     chunks.cache_clear()
     assert codes("") == []
     assert chunks.cache_info().currsize == 0
+
+
+# Where sdformat's parser_urdf.cc reads each tag of a <gazebo>: of a joint, a link or both.
+READ_IN = {
+    "joint": "stopCfm stopErp fudgeFactor provideFeedback springReference springStiffness "
+    "implicitSpringDamper cfmDamping",
+    "link": "mu1 mu2 kp kd maxVel minDepth maxContacts selfCollide laserRetro",
+    "": "dampingFactor preserveFixedJoint disableFixedJointLumping static canonicalBody",
+}
+
+
+def test_a_tag_of_a_joint_has_no_effect_in_a_link_and_the_reverse() -> None:
+    for home, reference in (("link", "a"), ("joint", "j")):
+        for belongs, tags in READ_IN.items():
+            inside = "".join(f"<{it}>1</{it}>\n" for it in tags.split())
+            text = (
+                f'<robot name="r">{LINK}<gazebo reference="{reference}">{inside}</gazebo></robot>'
+            )
+            seen = lint_data("r.urdf", text.encode(), NEW._replace(distro="jazzy"))
+            told = [it for it in seen if it.message.endswith("has no effect")]
+            assert len(told) == (len(tags.split()) if belongs not in ("", home) else 0), told

@@ -69,13 +69,14 @@ def test_what_later_repositories_showed_is_on_the_page() -> None:
         assert f"| {words} | {' | '.join(map(str, sums))} |" in page
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_the_page_is_up_to_date() -> None:
-    """It has the planted defects and healthy oddities as the lint finds them now."""
+    """It has the planted defects and healthy oddities as the lint finds them now: each is a row of a
+    test of its own, too."""
     assert f"#{precision_page().strip()}\n" in (ROOT / "docs" / "measurements.md").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_enough_defects_are_planted_and_found() -> None:
     counts = [planted(it) for it in PLANTED]
     assert sum(it.found for it in counts) >= LEAST_DEFECTS

@@ -226,3 +226,20 @@ def test_the_cost_of_wrong_names_grows_with_their_number_and_not_faster(tmp_path
         return lambda: lint(tmp_path, links + blocks)
 
     assert growth(prepared, 50, 200) < 1.5
+
+
+# Both tags of each value, sdformat parser_urdf.cc (ParseSDFExtension).
+PROPERTIES = (
+    "material", "mu1", "mu2", "kp", "kd", "gravity", "dampingFactor", "maxVel max_vel",
+    "minDepth min_depth", "maxContacts max_contacts", "laserRetro laser_retro",
+    "selfCollide self_collide", "stopCfm stop_cfm", "stopErp stop_erp", "fudgeFactor fudge_factor",
+    "implicitSpringDamper implicit_spring_damper", "provideFeedback provide_feedback",
+)  # fmt: skip
+
+
+def test_each_property_is_known_by_all_its_tags(tmp_path: Path) -> None:
+    for at in (0, -1):
+        pairs = [(words.split()[at], words.split()[-1 - at]) for words in PROPERTIES]
+        blocks = (f"<{one}>1</{one}>\n<{other}>2</{other}>" for one, other in pairs)
+        seen = lint(tmp_path, ROBOT + BLOCK.format("tip", "".join(blocks)), ("MB210",))
+        assert [it.message.split()[0] for it in seen] == [other for _, other in pairs]

@@ -9,6 +9,7 @@ from plans import PlannedRobot, planned
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
 from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import planned_end
@@ -23,6 +24,7 @@ from multibot_rewrite.system.records import (
     End,
     Environment,
     Node,
+    Parameter,
     System,
 )
 
@@ -32,7 +34,10 @@ NUMBERS = {"": 10, "robot1": 11, "robot2": 12}
 
 def plan() -> System:
     """Two robots that read the map of all, and whose odometry a monitor of all reads."""
-    robots = [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in ("robot1", "robot2")]
+    robots = [
+        PlannedRobot(it, [f"/{it}/{node}" for node in ("drive", "lidar", "imu")], (), f"/{it}/tf")
+        for it in ("robot1", "robot2")
+    ]
     ends = [
         planned_end("/map_server", TOPIC, PUBLISHES, "/map", MAP, "/map"),
         *(
@@ -123,6 +128,18 @@ def test_a_robot_in_the_domain_of_another_is_told_once() -> None:
     assert not [it for it in found_in(seen) if it.code == "MG108"]
 
 
+def test_robots_of_several_domains_are_held_against_each_other() -> None:
+    """With the domain of all or without it; of one domain alone there is nothing to compare."""
+    seen = as_planned()
+    for number, node, speed in ((11, "/robot1/drive", "1.0"), (12, "/robot2/drive", "5.0")):
+        seen[number] = seen[number]._replace(parameters=(Parameter(node, "max_vel", speed),))
+    both = {number: seen[number] for number in (11, 12)}
+    for view in (seen, both):
+        (told,) = (it for it in found_in(view) if it.names)
+        assert (told.code, {*told.names}) == ("MG328", {"max_vel"})
+    assert found_in({11: seen[11]}) == []
+
+
 def saved(folder: Path, seen: dict[int, System]) -> list[str]:
     words = []
     for number, view in seen.items():
@@ -152,3 +169,83 @@ def test_saved_snapshots_are_told_apart_by_their_domains(
     assert "the plan has no node there; it has 10, 11, 12" in capsys.readouterr().err
     assert main([*words, "--watch"]) == 2
     assert "give one with --domain (10, 11, 12)" in capsys.readouterr().err
+
+
+SCAN, TWIST = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist"
+
+
+def running(number: int, space: str = "", left_out: str = "") -> System:
+    """A whole robot, without plan: in its namespace, or without one."""
+    ends = [
+        End(TOPIC, role, f"{space}/{name}", type_, "", f"{space}/{node}", None, node)
+        for node, role, name, type_ in (
+            ("driver", PUBLISHES, "odom", ODOM),
+            ("driver", SUBSCRIBES, "cmd_vel", TWIST),
+            ("lidar", PUBLISHES, "scan", SCAN),
+            ("safety", SUBSCRIBES, "scan", SCAN),
+            ("planner", SUBSCRIBES, "odom", ODOM),
+            ("planner", PUBLISHES, "cmd_vel", TWIST),
+        )
+        if node != left_out
+    ]
+    nodes = tuple(Node(it, it) for it in dict.fromkeys(it.node for it in ends))
+    around = Environment(domain=number, rmw="rmw_fastrtps_cpp", participants=len(nodes))
+    return System(nodes, tuple(ends), environment=around)
+
+
+@pytest.mark.parametrize("spaces", [("", ""), ("/robot1", "/robot2")])
+def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_others(
+    spaces: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two robots with the same names in two domains, as they come from their makers, and two with
+    names."""
+    healthy = {at: running(at, it) for at, it in zip((11, 12), spaces, strict=True)}
+    assert main(["check", *saved(tmp_path, healthy)]) == 0
+    shown = capsys.readouterr().err
+    assert "domain 11: " in shown and "0 findings: nothing wrong seen" in shown
+    broken = {**healthy, 12: running(12, spaces[1], "lidar")}
+    page = tmp_path / "page.html"
+    words = ["check", *saved(tmp_path, broken), "--fail-on", "warning", "--report", str(page)]
+    assert main(words) == 1
+    (line,) = capsys.readouterr().out.splitlines()
+    who, like = (it.strip("/") for it in spaces) if spaces[0] else ("domain 11", "domain 12")
+    lidar = f"{spaces[0]}/lidar" if spaces[0] else "/lidar of domain 11"
+    assert f"{like} has no lidar, as {who} has ({lidar})" in line
+    assert page.read_text()
+
+
+def test_what_a_robot_lacks_and_another_domain_has_is_told_with_it() -> None:
+    """A lidar that was started with another ROS_DOMAIN_ID."""
+    whole = running(12, "/robot2")
+    lost = [it for it in whole.nodes if it.name != "/robot2/lidar"]
+    stray = [it for it in whole.ends if it.node == "/robot2/lidar"]
+    seen = {
+        0: System((Node("/robot2/lidar", "l"),), tuple(stray), environment=Environment(domain=0)),
+        11: running(11, "/robot1"),
+        12: whole._replace(
+            nodes=tuple(lost), ends=tuple(it for it in whole.ends if it not in stray)
+        ),
+    }
+    found = diagnose_domains({it: diagnose(view) for it, view in seen.items()}).findings
+    hints = {it.hint for it in found if "/robot2/scan" in it.names}
+    assert hints == {"/robot2/lidar of domain 0 has it: start both in one domain, or bridge it"}
+
+
+def test_a_plan_of_one_robot_holds_for_each_domain(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Robots without names: the same plan for all."""
+    ends = tuple(planned_end("/drive", TOPIC, PUBLISHES, "/odom", ODOM, "odom") for _ in (1,))
+    one = planned("both", [PlannedRobot("robot", ("/drive",), (), "/tf")], (), (), (), ends)
+    (tmp_path / "plan.yaml").write_text(to_yaml(one))
+    own = tuple(it._replace(code_name="") for it in ends)
+    seen = {
+        at: System((Node("/drive", "p"),), own, environment=Environment(domain=at))
+        for at in (11, 12)
+    }
+    words = ["check", str(tmp_path / "plan.yaml"), "--domain", "11,12"]
+    assert main([*words, *saved(tmp_path, seen)]) == 0
+    seen[12] = seen[12]._replace(ends=())
+    assert main([*words, *saved(tmp_path, seen)]) == 1
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.startswith("/drive: error: MG102") and "in domain 12" in line

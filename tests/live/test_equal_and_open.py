@@ -106,6 +106,32 @@ def test_open_ends_of_one_robot_without_a_name_are_told_with_both_names(what: st
     assert all(name in it.message for name in named)
 
 
+def test_a_node_without_its_namespace_is_told_the_names_of_the_robot_that_lacks_it() -> None:
+    for robot in ("/robot1", "/robot2"):
+        lost = (FIRST + SECOND).replace(f"{robot}/amcl", "/amcl")
+        told = found(lost.replace(f"/amcl subscribes {robot}", "/amcl subscribes "))
+        about = [it.message for it in told if it.node == "/amcl"]
+        assert len(about) == 2 and all(robot in it for it in about), told
+
+
+# Nodes that compare the time of messages with their own, by their code: tf2 buffers and filters.
+COMPARING = (
+    "robot_state_publisher", "amcl", "ekf_filter_node", "ukf_filter_node", "slam_toolbox",
+    "cartographer_node", "bt_navigator", "controller_server", "planner_server", "behavior_server",
+    "map_server", "velocity_smoother", "collision_monitor", "local_costmap", "global_costmap",
+    "navsat_transform", "icp_odometry", "rgbd_odometry",
+)  # fmt: skip
+
+
+def test_each_node_that_compares_times_has_to_be_on_the_clock_of_the_others() -> None:
+    clock = "/clock rosgraph_msgs/msg/Clock"
+    others = f"/ros_gz_bridge publishes {clock}\n/robot1/docking subscribes {clock}\n"
+    for node in (*COMPARING, "driver"):
+        seen = found(f"{others}/robot1/{node} publishes /robot1/x std_msgs/msg/String\n")
+        codes = [it.code for it in seen if it.node == f"/robot1/{node}"]
+        assert ("MG503" in codes) is (node != "driver"), node
+
+
 SINGLE = {
     "compressed and raw": (
         "/camera publishes /image/compressed sensor_msgs/msg/CompressedImage\n"

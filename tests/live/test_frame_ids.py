@@ -133,6 +133,51 @@ def test_systems_whose_headers_are_right(name: str) -> None:
     assert [str(it) for it in findings] == []
 
 
+# Messages with a std_msgs/Header that says where they were measured, and some whose word is none of tf:
+# joint_state_broadcaster, joy, teleop_twist_joy and nmea_navsat_driver write their own.
+MEASURED = (
+    "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseStamped",
+    "stereo_msgs/msg/DisparityImage", "vision_msgs/msg/Detection2DArray", "radar_msgs/msg/RadarScan",
+    "map_msgs/msg/OccupancyGridUpdate", "nav2_msgs/msg/Costmap", "grid_map_msgs/msg/GridMap",
+    "octomap_msgs/msg/Octomap", "visualization_msgs/msg/Marker", JOINTS,
+    "sensor_msgs/msg/MultiDOFJointState", "trajectory_msgs/msg/JointTrajectory",
+)  # fmt: skip
+NOT_MEASURED = (
+    "std_msgs/msg/String", "sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference",
+    "sensor_msgs/msg/BatteryState", "geometry_msgs/msg/TwistStamped",
+    "geometry_msgs/msg/AccelStamped", "tf2_msgs/msg/TFMessage",
+)  # fmt: skip
+
+
+def test_messages_that_say_where_they_were_measured_are_read_sensors_first() -> None:
+    every = enumerate(reversed(MEASURED + NOT_MEASURED))
+    ends = [End(TOPIC, PUBLISHES, f"/t{at}", it, "", "/a", None, "") for at, it in every]
+    read = [it.type for it in sensor_topics(ends)]
+    assert {*read} == {*MEASURED} and read[0].startswith("sensor_msgs/")
+
+
+# What vendors' descriptions call the frame of such a sensor.
+CALLED = {
+    "sensor_msgs/msg/LaserScan": ("laser", "lidar_link", "base_scan"),
+    "sensor_msgs/msg/PointCloud2": ("lidar_link", "velodyne", "ouster", "camera_depth_frame"),
+    "sensor_msgs/msg/Imu": ("imu_link",),
+    "sensor_msgs/msg/Image": ("camera_optical_frame",),
+    "sensor_msgs/msg/NavSatFix": ("gps_link", "gnss", "navsat_link"),
+}
+
+
+def test_the_one_frame_of_such_a_sensor_is_named_as_the_remedy() -> None:
+    for type_, frames in CALLED.items():
+        for frame in frames:
+            text = (
+                f"running: transform robot1/base_link -> robot1/{frame} on /tf\n"
+                f"running: /robot1/driver publishes /robot1/data {type_}\n"
+                "running: frame_id zzzzz on /robot1/data"
+            )
+            (it,) = [it for it in diagnose(read_system(text).system).findings if it.code == "MG412"]
+            assert it.hint.endswith(f" to robot1/{frame}"), it
+
+
 def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
     """A relay of all robots sends robot1's tf, as rmw or a bridge does."""
     text = (

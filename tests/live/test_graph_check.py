@@ -565,6 +565,8 @@ def test_two_versions_of_a_message(hashes: tuple[str, str], clash: bool) -> None
         ({"deadline": 1.0}, {"deadline": 0.0}, ""),
         ({}, {"liveliness": "MANUAL_BY_TOPIC"}, "offers AUTOMATIC"),
         ({"liveliness": "MANUAL_BY_TOPIC"}, {}, ""),
+        ({}, {"liveliness": "MANUAL_BY_NODE"}, "offers AUTOMATIC"),
+        ({"liveliness": "MANUAL_BY_NODE"}, {"liveliness": "MANUAL_BY_TOPIC"}, "MANUAL_BY_NODE"),
         ({}, {"liveliness": "UNKNOWN"}, ""),
         ({"liveliness_lease_duration": 2.0}, {"liveliness_lease_duration": 1.0}, "a lease of 2 s"),
         ({"liveliness_lease_duration": 1.0}, {"liveliness_lease_duration": 2.0}, ""),

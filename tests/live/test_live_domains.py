@@ -86,6 +86,10 @@ def test_each_domain_is_looked_at_and_what_does_not_cross_is_told(tmp_path: Path
             assert f"/robot2_bridge_{ALL}" in done.stdout
             assert f"in domain {ALL}" in done.stdout
             assert "MG301" not in done.stdout
+            alone = ("check", "--domain", f"{FIRST},{SECOND}", *live_commands.PATIENTLY)
+            done = live_commands.multibot(*alone, env=live_fleet.environ(ALL))
+            assert done.returncode == 0, done.stdout + done.stderr
+            assert f"domain {FIRST}: " in done.stderr and f"domain {SECOND}: " in done.stderr
             one = (*words, "--domain", SECOND)
             done = live_commands.multibot(*one, env=live_fleet.environ(ALL))
             assert (done.returncode, done.stdout) == (0, ""), done.stdout + done.stderr

@@ -17,6 +17,8 @@ from live_commands import PATIENTLY, assert_inconclusive, multibot, node, write_
 from network_hosts import Host, discovery_server, hosts, lose_packets, lost_packets
 from paths import ROOT
 
+from multibot_rewrite.system.environment import LOCAL_LIMIT
+
 pytestmark = pytest.mark.live
 pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
 # The hosts are alone in their network, so any will do.
@@ -157,9 +159,9 @@ def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("count", [33, 60])
-def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
-    names = [f"robot{number}" for number in range(1, count + 1)]
+def test_multicast_has_no_limit(tmp_path: Path) -> None:
+    """One more than are found without it."""
+    names = MANY[: LOCAL_LIMIT + 1]
     plan = write_plan(tmp_path / "plan.yaml", names)
     with hosts(2) as (robots, base), crowd(robots, names, **SUBNET):
         done = run(base, "check", plan, "-v", **SUBNET)

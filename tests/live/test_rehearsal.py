@@ -30,6 +30,7 @@ from multibot_rewrite.live.rehearsal import (
     stub_nodes,
     substitute_type,
     to_order,
+    with_own_types,
     with_substitutes,
 )
 from multibot_rewrite.spelling.plan import expect
@@ -176,6 +177,17 @@ def test_the_plan_has_the_substituted_types(layout: str) -> None:
         for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
     ]
     assert not [it for it in played if it.kind == ACTION]
+
+
+def test_what_is_seen_of_substitutes_has_the_types_of_the_plan() -> None:
+    """Also under a name that nobody planned: no two topics are of one type that are not."""
+    replaced = {LASER: substitute_type(TOPIC, LASER)}
+    plan = expect(table("L2"), make_naming("L2"), {})
+    scan = next(it for it in plan.ends if it.type == LASER and "robot1" in it.node)
+    seen = with_substitutes(plan, replaced)
+    astray = scan._replace(name=f"/{scan.code_name}", type=replaced[LASER])
+    own = with_own_types(seen._replace(ends=(*seen.ends, astray)), plan, replaced)
+    assert own.ends == (*plan.ends, astray._replace(type=LASER))
 
 
 def rewritten(layout: str) -> tuple[Inventory, Naming]:

@@ -13,14 +13,12 @@ pytestmark = pytest.mark.slow
 
 PAGE = (ROOT / "docs" / "contributing.md").read_text()
 JOURNEYS = dict(re.findall(r"^## (Add .*)\n((?:(?!## ).*\n)*)", PAGE, re.MULTILINE))
-# The shortest one; each costs a copy of the repository and its tests.
-SHORTEST = "Add a layout"
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(it, marks=[pytest.mark.deep] * (it != SHORTEST)) for it in JOURNEYS]
-)
+@pytest.mark.deep
+@pytest.mark.parametrize("name", JOURNEYS)
 def test_a_journey_works_as_written(name: str, tmp_path: Path) -> None:
+    """Each costs a copy of the repository and its tests."""
     text = JOURNEYS[name]
     steps = guides.steps(text)
     assert text.count("```") == 2 * len(steps)

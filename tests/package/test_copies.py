@@ -70,6 +70,8 @@ def test_a_rewrite_can_be_copied(again: Callable[[Any], Any], source: str | Path
     assert (other.text, other.findings) == (first.text, first.findings)
     assert other.changes == first.changes != []
     assert other != rewrite(source, "r2", layout="both", separators={"link": "_"})
+    assert other.prepared == first.prepared != rewrite(source, "r1").prepared
+    assert first.prepared != source
 
 
 def test_an_srdf_is_copied_with_its_urdf() -> None:

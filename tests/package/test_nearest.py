@@ -63,6 +63,7 @@ def test_the_hint() -> None:
         ("suffix", ("prefix", "postfix", "keep"), "did you mean 'postfix'?"),
         ("frames_per_robot", ("frames-per-robot",), "did you mean 'frames-per-robot'?"),
         ("p", ("postfix", "prefix"), ""),
+        ("pos", ("postfix", "pose"), "did you mean 'pose'?"),
         ("zzz", ("postfix", "prefix"), ""),
     ],
 )

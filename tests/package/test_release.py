@@ -134,7 +134,7 @@ def test_the_readme_is_what_an_index_can_show(archives: Path) -> None:
     assert found.description == (ROOT / "README.md").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_an_installed_wheel_does_the_main_job(archives: Path, tmp_path: Path) -> None:
     """In an environment of its own, far from the sources; libraries come from that of the tests."""
     fresh = tmp_path / "fresh"

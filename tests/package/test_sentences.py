@@ -12,12 +12,13 @@ from paths import ROOT
 from multibot_rewrite.lint import catalogue
 
 MOST = 25
+# Tables of what was measured, and pages that programs write.
+MEASURED = {"measurements", "strangers", "robots", "vendors"}
 PAGES = (
-    ROOT / "README.md",
+    *(ROOT / f"{it}.md" for it in ("README", "CONTRIBUTING", "SECURITY")),
     *sorted(ROOT.glob("examples/*/README.md")),
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
-    *(ROOT / "docs" / f"{it}.md" for it in ("index", "fleet-file", "check", "launch")),
-    *(ROOT / "docs" / f"{it}.md" for it in ("architecture", "coming-from")),
+    *(it for it in sorted((ROOT / "docs").glob("*.md")) if it.stem not in MEASURED),
 )
 # Texts of the code that are no message: XML, Python, the examples of rules, a list of words.
 NO_MESSAGE = re.compile(

@@ -95,7 +95,7 @@ def test_a_finding_with_all_that_is_known_of_it() -> None:
         hint="do <it>",
         node="/r1/a",
         names=("/t", "/u"),
-        others=("r2",),
+        robots=("r1", "r2"),
     )
     assert findings(scene("r1", "r2", rows=(one,))) == (
         '<section id="findings">\n<h2>Findings</h2>\n'
@@ -130,7 +130,9 @@ def test_what_a_finding_is_about_is_named_by_its_ids() -> None:
 
 
 def test_many_robots_and_names_are_shortened() -> None:
-    one = row("r1", names=tuple(f"/t{at}" for at in range(22)), others=("r2", "r3", "r4", "r5"))
+    one = row(
+        "r1", names=tuple(f"/t{at}" for at in range(22)), robots=("r1", "r2", "r3", "r4", "r5")
+    )
     found = findings(scene("r1", rows=(one,)))
     assert '<b class="who" title="r1, r2, r3, r4, r5">r1, r2, r3 and 2 more</b>' in found
     assert "/t19 and 2 more</dd>" in found and "/t20" not in found
@@ -176,7 +178,7 @@ def test_codes_are_explained_once_and_in_order() -> None:
 
 def test_robots_with_findings_are_first_and_equal_ones_are_one_card() -> None:
     rows = (
-        row("r2", "r3", names=("/r2/t",), others=("r3",), node="/r2/a"),
+        row("r2", "r3", names=("/r2/t",), robots=("r2", "r3"), node="/r2/a"),
         row("r2", "r3", code="MX9", level="warning", node="/r2/n"),
     )
     assert cards(scene("r1", "r2", "r3", rows=rows)) == (
@@ -202,7 +204,7 @@ def test_what_is_of_no_robot_has_a_card_where_it_is_found() -> None:
 
 def test_a_card_of_another_robot_has_its_own_names() -> None:
     """r2 has a finding more, so that it has a card of its own."""
-    both = row("r1", "r2", message="of r1", names=("/r1/t",), others=("r2",))
+    both = row("r1", "r2", message="of r1", names=("/r1/t",), robots=("r1", "r2"))
     first, second = re.findall(
         r'title="(.*?)"><b>two nodes</b> <code>(.*?)<',
         cards(scene("r1", "r2", rows=(both, row("r2", code="MX9")))),

@@ -284,7 +284,7 @@ def test_where_the_node_of_a_finding_comes_from(node: Node, place: str) -> None:
 def test_what_is_true_of_two_robots_is_one_row() -> None:
     both = [found("MG101", f"/{it}/a", robot=it) for it in ("r1", "r2")]
     (row,) = scene(*both).rows
-    assert row.robots == ("r1", "r2") and row.finding.others == ("r2",)
+    assert row.robots == ("r1", "r2") and row.finding.robots == ("r1", "r2")
     assert row.targets == Targets(("/r1/a", "/r2/a"), (), ())
     assert len(scene(*both).findings) == 2
 
@@ -401,11 +401,12 @@ def test_targets_of_several_findings_are_each_once() -> None:
     ("finding", "robots"),
     [
         (found("MG301", "/r1/a"), {"r1"}),
-        (found("MG301", "/s", robot="r1", others=("r2",)), {"r1", "r2"}),
+        (found("MG301", "/s", robot="r1", robots=("r1", "r2")), {"r1", "r2"}),
         (found("MG301", "/s", "/r2/t"), {"r2"}),
         (found("MG401", "", "r2/base"), {"r2"}),
         (found("MG301", "/s", message="as /r1/a, and r2: do"), {"r1", "r2"}),
         (found("MG301", "/s", robot="r9"), set()),
+        (found("MF701", "", message="robot 'r1': a pose", robots=("r1", "r2")), {"r1", "r2"}),
     ],
 )
 def test_robots_that_a_finding_concerns(finding: Finding, robots: set[str]) -> None:

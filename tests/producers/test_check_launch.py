@@ -546,3 +546,23 @@ def test_classic_makes_a_manager_beside_its_plugins(run: Graph) -> None:
     ends = run(state, spawn)
     assert "/robot1/controller_manager" in {it.name for it in ends.nodes}
     assert all(it.role for it in ends.ends)
+
+
+@pytest.mark.parametrize(
+    ("release", "second"), [("humble", "/robot1/odom"), ("jazzy", "/robot2/odom")]
+)
+def test_rules_of_the_process_are_those_of_the_first_robot(release: str, second: str) -> None:
+    """gazebo_ros2_control_plugin.cpp of humble sets the global arguments of the process; each manager
+    of jazzy has its own (gz_ros2_control_plugin.cpp)."""
+    nodes = []
+    for robot in ("robot1", "robot2"):
+        rule = f"<remapping>~/odom:=/{robot}/odom</remapping></ros>"
+        text = CLASSIC.replace("</ros></plugin>\n</gazebo>", f"{rule}</plugin></gazebo>")
+        words = ("-entity", robot, "-topic", f"/{robot}/robot_description")
+        state = publisher(f"/{robot}", robot_description=text.replace("/robot1<", f"/{robot}<"))
+        nodes += [state, node("gazebo_ros/spawn_entity.py", "spawn", arguments=words)]
+    known = Knowledge(built_in(release).nodes, load_known_nodes("", release), release)
+    made = launched(LaunchGraph(tuple(nodes)), known).nodes
+    rules = {it.full_name: dict(it.rules).get("~/odom") for it in made}
+    assert rules["/robot1/controller_manager"] == "/robot1/odom"
+    assert rules["/robot2/controller_manager"] == second

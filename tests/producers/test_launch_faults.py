@@ -112,6 +112,9 @@ FAULTS = {
         ROVER, "robot2/odom</frame_id>", "robot1/odom</frame_id>", "MG414"
     ),
     "a wheel without mass": Fault(ROVER, '<mass value="0.5"/>', '<mass value="0"/>', "MB603", ROVER),
+    "a mass below nothing": Fault(
+        ROVER, '<mass value="0.5"/>', '<mass value="-0.5"/>', "MB125", ROVER
+    ),
     "a robot without mass": Fault(ROVER, "<mass value=", "<mass kg=", "MB115", ROVER),
     "a joint of the other robot": Fault(
         ROVER, "<left_joint>robot2", "<left_joint>robot1", "MB211", ROVER
@@ -172,6 +175,19 @@ def found_in(
 def test_the_healthy_fleet_has_none(healthy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert found_in(healthy, capsys) == (0, [])
+
+
+def test_an_include_of_the_simulator_takes_all_that_its_launch_files_declare(
+    healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """ros_gz_sim gz_sim.launch.py of Humble and later."""
+    folder, words = tmp_path / "out", ("gz_version", "ign_version", "debugger", "on_exit_shutdown")
+    shutil.copytree(healthy, folder)
+    text, old = (folder / LAUNCH).read_text(), "launch_arguments=["
+    more = "".join(f"('{it}', 'false'), " for it in words)
+    (folder / LAUNCH).write_text(text.replace(old, old + more))
+    capsys.readouterr()
+    assert old in text and found_in(folder, capsys) == (0, [])
 
 
 @pytest.mark.sample(5)
@@ -374,3 +390,105 @@ def test_a_file_that_is_lost_is_found_behind_the_error_of_launch(tmp_path: Path)
     assert source_packages.add_file(outer, str(tmp_path))
     assert lost.read_bytes() == b""
     assert not source_packages.add_file(RuntimeError("other"), str(tmp_path))
+
+
+_HEAD = """\
+from pathlib import Path
+from launch.actions import *
+from launch.substitutions import LaunchConfiguration
+HERE = Path(__file__).parent
+"""
+_CHILD = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+def late(context):
+    name = LaunchConfiguration("robot").perform(context)
+    return [Node(package="nav2_amcl", executable="amcl", name="amcl", namespace=name)]
+def generate_launch_description():
+    return LaunchDescription([CONTENT])
+"""
+_NEEDS = _CHILD.replace("CONTENT", 'DeclareLaunchArgument("robot"), OpaqueFunction(function=late)')
+_LATE = _CHILD.replace("CONTENT", "OpaqueFunction(function=late)")
+_INCLUDE = 'IncludeLaunchDescription(str(HERE / "child.launch.py"){})'
+_GIVEN = ', launch_arguments=[("robot", "r1")]'
+_GZ = 'IncludeLaunchDescription("/opt/share/ros_gz_sim/launch/gz_sim.launch.py", launch_arguments=[{}])'
+_STATE = (
+    'Node(package="robot_state_publisher", executable="robot_state_publisher", namespace="{0}", '
+    'remappings=[("/tf", "tf"), ("/tf_static", "tf_static")], parameters=[{{"robot_description": '
+    "\"<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
+    "<child link='b'/></joint></robot>\"}}])"
+)
+_STATIC = (
+    'Node(package="tf2_ros", executable="static_transform_publisher", {}arguments=["--frame-id", '
+    '"r1/map", "--child-frame-id", "r1/odom"])'
+)
+_SLAM = (
+    'Node(package="slam_toolbox", executable="async_slam_toolbox_node", name="slam_toolbox", '
+    'parameters=[{{"resolution": 0.05, "{}": 0.1}}])'
+)
+_TIMED = (
+    'Node(package="nav2_map_server", executable="map_server", name="map_server", '
+    'parameters=[{"use_sim_time": True}])'
+)
+_GAZEBO = 'ExecuteProcess(cmd=["gzserver", {}"-s", "libgazebo_ros_factory.so"])'
+# The code, whether it is found, a child that is included, and what the file starts.
+SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
+    # launch jazzy include_launch_description.py, declare_launch_argument.py, launch_configuration.py
+    "without what it has to be given": ("MG721", True, _NEEDS, (_INCLUDE.format(""),)),
+    "with it": ("MG721", False, _NEEDS, (_INCLUDE.format(_GIVEN),)),
+    "late, and not given": ("MG721", True, _LATE, (_INCLUDE.format(""),)),
+    "late, and given": ("MG721", False, _LATE, (_INCLUDE.format(_GIVEN),)),
+    "late, and set before": (
+        *("MG721", False, _LATE),
+        ('DeclareLaunchArgument("robot", default_value="r1")', _INCLUDE.format("")),
+    ),
+    # launch jazzy normalize_to_list_of_substitutions_impl.py: a path is no text.
+    "a path": ("MG721", True, "", (_GZ.format('("gz_args", ["-r ", HERE])'),)),
+    "its text": ("MG721", False, "", (_GZ.format('("gz_args", ["-r ", str(HERE)])'),)),
+    # ros_gz jazzy gz_sim.launch.py.in has six arguments.
+    "no argument": ("MG715", True, "", (_GZ.format('("render_engine", "ogre2")'),)),
+    "an argument": ("MG715", False, "", (_GZ.format('("on_exit_shutdown", "true")'),)),
+    "a tree beside": ("MG405", True, "", (_STATE.format("r1"), _STATIC.format(""))),
+    "a tree of its own": (
+        *("MG405", False, ""),
+        (_STATE.format("r1"), _STATIC.format('remappings=[("/tf_static", "/r1/tf_static")], ')),
+    ),
+    "one tree": ("MG405", False, "", (_STATIC.format(""),)),
+    # slam_toolbox jazzy src/*.cpp
+    "a parameter that it has not": ("MB111", True, "", (_SLAM.format("position_threshold"),)),
+    "a parameter that it has": ("MB111", False, "", (_SLAM.format("minimum_time_interval"),)),
+    # gazebo_ros src/gazebo_ros_init.cpp has the clock.
+    "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
+    "the plugin with the clock": (
+        *("MG501", False, ""),
+        (_TIMED, _GAZEBO.format('"-s", "libgazebo_ros_init.so", ')),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SEEN)
+def test_what_public_bringups_showed(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, wrong, child, actions = SEEN[name]
+    if child:
+        (tmp_path / "child.launch.py").write_text(child)
+    of_nodes(tmp_path, *actions, head=_HEAD)
+    _, found = found_in(tmp_path, capsys)
+    assert any(it["code"] == code for it in found) is wrong, found
+
+
+def test_a_file_says_what_it_has_to_be_given(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An argument, or a launch configuration; given, the file is read."""
+    (tmp_path / LAUNCH).write_text(_NEEDS)
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 2
+    assert "it has to be given robot; write robot:=VALUE after it\n" in capsys.readouterr().err
+    (tmp_path / LAUNCH).write_text(_LATE)
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 3
+    assert "'robot' is not set; give it with robot:=VALUE" in capsys.readouterr().err
+    main(["check-launch", str(tmp_path / LAUNCH), "robot:=r1"])
+    assert "is not set" not in capsys.readouterr().err

@@ -113,7 +113,6 @@ def test_a_node_is_under_the_group_that_has_it(tmp_path: Path) -> None:
     assert "m: y" in found.parameters[3].text.replace("'", "")
 
 
-@in_launch
 def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> None:
     (tmp_path / "inner.launch.xml").write_text(
         '<launch>\n  <arg name="which"/>\n'
@@ -131,6 +130,117 @@ def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> N
     )
     assert (found.executable, found.name, found.namespace) == ("two", "other", "/")
     assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
+
+
+IN_XML = """<launch>
+  <arg name="robot" default="robot1"><choice value="robot1"/><choice value="robot2"/></arg>
+  <let name="rate" value="5.5"/>
+  <set_remap from="scan" to="front/scan"/>
+  <set_parameter name="all" value="1"/>
+  <group scoped="true">
+    <push-ros-namespace namespace="$(var robot)"/>
+    <node pkg="acme" exec="driver" name="d" args="--id $(var robot)_a -v" if="true">
+      <param name="rate" value="$(var rate)"/>
+      <param name="word" value="5" type="str"/>
+      <param name="list" value="1;2" value-sep=";"/>
+      <param name="inner"><param name="on" value="true"/></param>
+      <remap from="tf" to="$(var robot)/tf"/>
+      <env name="A" value="b"/>
+    </node>
+    <node pkg="acme" exec="never" unless="true"/>
+  </group>
+  <timer period="2.0"><node pkg="acme" exec="late"/></timer>
+  <node_container pkg="rclcpp_components" exec="component_container" name="box" namespace="">
+    <composable_node pkg="acme" plugin="acme::Part" name="part">
+      <param name="n" value="2"/></composable_node>
+  </node_container>
+  <executable cmd="ls -l" output="screen"/>
+</launch>
+"""
+IN_YAML = """launch:
+- arg: {name: robot, default: robot1, choice: [{value: robot1}, {value: robot2}]}
+- let: {name: rate, value: "5.5"}
+- set_remap: {from: scan, to: front/scan}
+- set_parameter: {name: all, value: "1"}
+- group:
+    scoped: true
+    children:
+    - push_ros_namespace: {namespace: $(var robot)}
+    - node:
+        pkg: acme
+        exec: driver
+        name: d
+        args: --id $(var robot)_a -v
+        if: "true"
+        param:
+        - {name: rate, value: $(var rate)}
+        - {name: word, value: "5", type: str}
+        - {name: list, value: [1, 2]}
+        - {name: inner, param: [{name: "on", value: true}]}
+        remap: [{from: tf, to: $(var robot)/tf}]
+        env: [{name: A, value: b}]
+    - node: {pkg: acme, exec: never, unless: "true"}
+- timer: {period: 2.0, children: [{node: {pkg: acme, exec: late}}]}
+- node_container:
+    pkg: rclcpp_components
+    exec: component_container
+    name: box
+    namespace: ""
+    composable_node: [{pkg: acme, plugin: "acme::Part", name: part, param: [{name: n, value: 2}]}]
+- executable: {cmd: ls -l, output: screen}
+"""
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.launch.xml", IN_XML), ("a.launch.yaml", IN_YAML)])
+def test_a_launch_file_in_xml_and_in_yaml(name: str, text: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    graph = launch_graph(LaunchOrder(str(tmp_path / name), (("robot", "robot2"),), (), True))
+    driver, _, part, late = graph.nodes
+    assert driver[:4] == ("acme", "driver", "d", "/robot2")
+    assert driver.arguments == ("--id", "robot2_a", "-v")
+    assert driver.remappings == (("scan", "front/scan"), ("tf", "robot2/tf"))
+    given: dict[str, object] = {}
+    for it in driver.parameters:
+        given |= yaml.safe_load(it.text)["/**"]["ros__parameters"]
+    assert given == {"all": 1, "rate": 5.5, "word": "5", "list": [1, 2], "inner.on": True}
+    assert (late.executable, late.namespace, bool(late.later)) == ("late", "/", True)
+    assert (part.executable, part.name, part.container) == ("acme::Part", "part", "/box")
+    assert not graph.notes
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ('<launch><node pkg="a" exec="b" nam="c"/></launch>', "Unexpected attribute"),
+        ('<launch><node pkg="a" exec="b"><parm/></node></launch>', "Unexpected nested tag"),
+        ('<launch><node pkg="a"/></launch>', "exec"),
+        ('<launch><node pkg="a" exec="b" if="1" unless="1"/></launch>', "simultaneously"),
+        (
+            '<launch><node exec="b"><param name="a" value="1" type="string"/></node></launch>',
+            "Got invalid type identifier 'string'",
+        ),
+        ('<launch><include file="$(find acme)/a.launch"/></launch>', "a launch file of ROS 1"),
+        ('<launch><rosparam file="a.yaml"/></launch>', "a launch file of ROS 1"),
+        ("<lunch/>", "Expected 'launch' as root tag"),
+        ("<launch>", "launch"),
+    ],
+)
+def test_a_wrong_launch_file_in_xml(text: str, fault: str, tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.xml"
+    file.write_text(text)
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), (), (), True))
+    assert fault in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_name_that_is_not_there_is_told_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.py"
+    file.write_text("def generate_launch_description():\n    return LaunchDescription([])\n")
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), (), (), True))
+    assert str(caught.value).endswith(
+        "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)"
+    )
 
 
 def test_components_are_in_their_container(tmp_path: Path) -> None:
@@ -272,10 +382,8 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     event = f"RegisterEventHandler(OnProcessExit(on_exit=[{late}]))"
     actions = f'GroupAction([SetLaunchConfiguration("robot", "r"), {event}]),'
     (note,) = read(tmp_path, f'        Node(package="a", executable="b"),\n{actions}').notes
-    assert note.message.startswith("at an event (OnProcessExit) SubstitutionFailure")
-    assert (
-        "'robot' does not exist; groups and their launch configurations have ended" in note.message
-    )
+    assert note.message.startswith("at an event (OnProcessExit) the launch configuration")
+    assert "'robot' is not set; groups and their launch configurations have ended" in note.message
 
 
 def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
@@ -441,10 +549,13 @@ def test_without_launch_a_stand_in_reads_and_says_so(
     assert (
         "launch is not installed here: a stand-in read the launch file" in capsys.readouterr().err
     )
-    (tmp_path / "bringup.launch.xml").write_text("<launch/>")
-    with pytest.raises(InputError, match=r"needs launch itself.*source ROS 2") as caught:
-        launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.xml"), (), (), True))
-    assert "\n" not in str(caught.value)
+    file = tmp_path / "bringup.launch.xml"
+    file.write_text('<launch>\n <gz_server/>\n <node pkg="acme" exec="driver"/>\n</launch>')
+    found = launch_graph(LaunchOrder(str(file), (), (), True))
+    assert [it.message for it in found.notes] == [
+        "NotImplementedError: <gz_server> is not read: it needs launch itself"
+    ]
+    assert [it.executable for it in found.nodes] == ["driver"]
 
 
 def test_the_command_itself_imports_no_launch() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.live.staged import stage
-from multibot_rewrite.producers.ros import observe
+from multibot_rewrite.producers.ros import assemble, observe
 from multibot_rewrite.producers.ros.participants import participants_at, participants_here, ports_in
 
 TABLE = """\
@@ -69,12 +69,14 @@ def test_a_rehearsal_is_in_the_domain_of_the_environment_if_that_is_free(
 def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     assert participants_here(DOMAIN) in (0, None)
-    assert observe._all_are_known(session()) is False
+    assert observe._enough(session()) == assemble.QUIET_SECONDS
 
 
 def session(*participants: int) -> Any:
-    """One that sees a topic of the middleware with an end of each of these participants."""
-    ends = [SimpleNamespace(endpoint_gid=[it] * 12 + [0, 0, 1, 3]) for it in participants]
+    """One that sees a topic of the middleware with an end of each of these participants of Fast DDS, on
+    the machines of their first digit."""
+    prefixes = ([1, 15, it // 10, 0, *[it] * 8] for it in participants)
+    ends = [SimpleNamespace(endpoint_gid=[*it, 0, 0, 1, 3]) for it in prefixes]
     node = SimpleNamespace(
         get_publishers_info_by_topic=lambda _, no_mangle: ends if no_mangle else []
     )
@@ -82,29 +84,36 @@ def session(*participants: int) -> Any:
     return SimpleNamespace(node=node, ros=SimpleNamespace(context=context))
 
 
-@pytest.mark.usefixtures("port_in_use")
+KNOWN, HERE, LONG = assemble.ALL_KNOWN_SECONDS, assemble.ALL_HERE_SECONDS, assemble.QUIET_SECONDS
+
+
 @pytest.mark.parametrize(
-    ("environ", "announced", "known"),
+    ("environ", "announced", "here", "seconds"),
     [
-        (LOCAL, (1,), True),
-        (LOCAL, (1, 1), True),
-        ({"ROS_LOCALHOST_ONLY": "1"}, (1,), True),
-        pytest.param(LOCAL, (), False, id="one is not announced"),
-        pytest.param(LOCAL, (1, 2), False, id="one was killed, and may stand for another"),
-        pytest.param({}, (1,), False, id="other machines"),
-        pytest.param({**LOCAL, "ROS_STATIC_PEERS": "10.0.0.2"}, (1,), False, id="a peer"),
-        pytest.param({**LOCAL, "ROS_DISCOVERY_SERVER": "10.0.0.2"}, (1,), False, id="a server"),
+        (LOCAL, (1,), 1, KNOWN),
+        (LOCAL, (1, 1), 1, KNOWN),
+        ({"ROS_LOCALHOST_ONLY": "1"}, (1,), 1, KNOWN),
+        pytest.param(LOCAL, (), 1, LONG, id="one is not announced"),
+        pytest.param(LOCAL, (1, 2), 1, LONG, id="one was killed, and may stand for another"),
+        pytest.param({}, (1, 2), 2, HERE, id="none of another machine was seen"),
+        pytest.param({}, (1,), 1, LONG, id="nobody but the look itself"),
+        pytest.param({}, (1, 2, 11), 2, LONG, id="other machines"),
+        pytest.param({}, (1, 11), 2, LONG, id="one that is not announced, and another machine"),
+        pytest.param({**LOCAL, "ROS_STATIC_PEERS": "10.0.0.2"}, (1,), 1, LONG, id="a peer"),
+        pytest.param({**LOCAL, "ROS_DISCOVERY_SERVER": "10.0.0.2"}, (1,), 1, LONG, id="a server"),
     ],
 )
-def test_all_are_known_where_each_port_is_announced(
+def test_less_is_enough_where_each_port_is_announced(
     environ: dict[str, str],
     announced: tuple[int, ...],
-    known: bool,
+    here: int,
+    seconds: float,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(observe, "participants_here", lambda _: here)
     for name in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.delenv("ROS_DISCOVERY_SERVER", raising=False)
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
-    assert observe._all_are_known(session(*announced)) is known
+    assert observe._enough(session(*announced)) == seconds

@@ -100,6 +100,75 @@ def test_an_included_file_is_changed_once_for_all_that_include_it(tmp_path: Path
     assert b'<link name="${prefix}${n}_p"/>' in made.after[str(part)]
 
 
+# What stands in a plugin -> what it becomes, and what it is in robot1.
+SPACES = {
+    "a namespace that is there": (
+        "<robotNamespace>/demo</robotNamespace>",
+        "<robotNamespace>/${namespace and namespace + '/'}demo</robotNamespace>",
+        "<robotNamespace>/robot1/demo</robotNamespace>",
+    ),
+    "the root": (
+        "<robotNamespace>/</robotNamespace>",
+        "<robotNamespace>/${namespace}</robotNamespace>",
+        "<robotNamespace>/robot1</robotNamespace>",
+    ),
+    "none": (
+        "<ros><argument>x</argument></ros>",
+        "<ros><xacro:if value=\"${namespace != ''}\"><namespace>/${namespace}</namespace></xacro:if>"
+        "<argument>x</argument></ros>",
+        "<ros><namespace>/robot1</namespace><argument>x</argument></ros>",
+    ),
+    "a plugin without anything": ("", "", "<ros><namespace>/robot1</namespace></ros>"),
+    "an empty one": (
+        "<ros><namespace/></ros>",
+        "<ros><namespace><xacro:if value=\"${namespace != ''}\">/${namespace}</xacro:if>"
+        "</namespace></ros>",
+        "<ros><namespace>/robot1</namespace></ros>",
+    ),
+}
+ROS = "<ros><namespace>/${namespace}</namespace></ros>"
+ADDED = f"<xacro:if value=\"${{namespace != ''}}\">{ROS}</xacro:if>"
+DRIVES = {
+    "": "libgazebo_ros_imu_sensor.so",
+    "robotNamespace": "libgazebo_ros_control.so",
+    "ros": "libgazebo_ros_joint_state_publisher.so",
+}
+
+
+@pytest.mark.parametrize("case", SPACES)
+def test_plugins_take_a_namespace(case: str, tmp_path: Path) -> None:
+    inside, wanted, shown = SPACES[case]
+    path = tmp_path / "r.urdf.xacro"
+    plugin = f'<plugin name="p" filename="{DRIVES[inside[1:].partition(">")[0]]}">{{}}</plugin>'
+    block = f'<link name="base"/><gazebo>\n{plugin.format(inside)}\n</gazebo>'
+    path.write_text(robot(block.replace("></plugin>", "/>") if not inside else block))
+    before = expand(str(path), {})
+    made = adopt(str(tmp_path))
+    assert (made.namespace, made.spaced) == ("namespace", (str(path),))
+    path.write_bytes(made.after[str(path)])
+    assert plugin.format(wanted or ADDED) in path.read_text()
+    assert expand(str(path), {}) == before
+    text = "".join(
+        line.strip() for line in expand(str(path), {"namespace": "robot1"}).decode().split("\n")
+    )
+    assert f">{shown}</plugin>" in text
+
+
+def test_one_with_a_namespace_of_its_own_keeps_it(tmp_path: Path) -> None:
+    own = (
+        '<xacro:arg name="robot_namespace" default=""/><link name="base"/><gazebo><plugin name="p" '
+        'filename="libgazebo_ros_control.so"><robotNamespace>/$(arg robot_namespace)</robotNamespace>'
+        "</plugin></gazebo>"
+    )
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(own))
+    made = adopt(str(tmp_path))
+    assert (made.argument, made.namespace) == ("prefix", "")
+    why = "it has an argument for a namespace: robot_namespace"
+    assert [tuple(it) for it in made.left] == [(str(path), why)]
+    assert b"/$(arg robot_namespace)</robotNamespace>" in made.after[str(path)]
+
+
 def test_a_taken_name_is_not_used_for_the_argument(tmp_path: Path) -> None:
     inside = (
         '<xacro:macro name="w" params="prefix"><link name="${prefix}_wheel"/></xacro:macro>'
@@ -162,6 +231,7 @@ def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
     assert [(it.place.partition(":")[2], it.why) for it in made.left] == [
         (f"2:{robot(inside).splitlines()[1].index('<gazebo') + 1}", "'a' is put together")
     ]
+    assert made.proved == ()
 
 
 def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:

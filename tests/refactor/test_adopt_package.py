@@ -11,6 +11,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.producers.launch.door import missing
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
+from multibot_rewrite.refactor.parameters import fillable
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
@@ -59,14 +60,19 @@ def package(tmp_path: Path) -> Path:
 
 
 NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
-FILES = [("a.launch.py", LAUNCH), pytest.param("a.launch.xml", XML, marks=NEEDS_LAUNCH)]
+FILES = [
+    pytest.param("a.launch.py", LAUNCH, marks=pytest.mark.more),
+    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.slow)),
+]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "text"), FILES)
 def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text: str) -> None:
     path = package / "launch" / name
     path.write_text(text)
+    # The world is no name of the robot: the launch file is proved with it.
+    robot = package / "urdf/r.urdf.xacro"
+    robot.write_text(robot.read_text().replace("  <link", '  <link name="world"/>\n  <link', 1))
     made = adopt(str(package), trust=True)
     assert made.launches == (str(path),)
     assert not [it for it in made.left if it.place.startswith(str(path))]
@@ -96,7 +102,7 @@ def with_parameters(package: Path, item: str, more: str = "") -> str:
     return text
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("item", "more"), [(GIVEN, ""), ("given", f"    given = {GIVEN}\n")], ids=["there", "by a name"]
 )
@@ -111,7 +117,7 @@ def test_a_parameter_file_is_filled_in(package: Path, item: str, more: str) -> N
     assert made.launches == (str(package / "launch/a.launch.py"),)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     "why", ["named in the xacro, too", "named twice in the launch file", "opened as well"]
 )
@@ -135,12 +141,37 @@ def test_a_parameter_file_that_others_read_stays(package: Path, why: str) -> Non
     assert any("c.yaml:4" in it.place for it in made.left)
 
 
+def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Path) -> None:
+    robot = ROBOT.format(JOINT).encode()
+    files = {
+        "a/c.yaml": YAML,
+        "b/d.yaml": YAML,
+        "b/c.yaml": YAML,
+        "a/e.yaml": "a: [",
+        "f.yaml": FILLED,
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    def filled(urdfs: list[bytes], names: set[str]) -> dict[str, tuple[str, str, str]]:
+        paths = [str(tmp_path / it) for it in files]
+        found = fillable(paths, urdfs, names, "prefix", "try_")
+        return {name: (it.path, it.after.decode(), it.tried.decode()) for name, it in found.items()}
+
+    after = YAML.replace("[j]", "[$(var prefix)j]")
+    tried = YAML.replace("[j]", "[try_j]")
+    assert filled([robot], {"j"}) == {"d.yaml": (f"{tmp_path}/b/d.yaml", after, tried)}
+    assert filled([robot], {"j", "base"})["d.yaml"][1] == FILLED
+    assert filled([robot], {"arm"}) == filled([], {"j"}) == {}
+
+
 def test_without_trust_a_parameter_file_stays(package: Path) -> None:
     with_parameters(package, GIVEN)
     assert str(package / "config/c.yaml") not in adopt(str(package)).after
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     path = package / "launch/a.launch.py"
     path.write_text(EARLY)
@@ -151,7 +182,7 @@ def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     assert why.startswith("it does not hand prefix on")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path) -> None:
     path = package / "launch/a.launch.py"
     path.write_text(f"raise RuntimeError(1)\n{LAUNCH}")
@@ -208,6 +239,16 @@ def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> Non
         (package / f"src/a.{kind}").write_text("x = 'arm'\n" if kind in code else "x: arm\n")
     found = named_elsewhere(str(package), ["arm"], ())
     assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
+
+
+@pytest.mark.parametrize("lines", [20, 23])
+def test_of_many_lines_of_a_file_twenty_are_listed(package: Path, lines: int) -> None:
+    (package / "src/a.py").write_text("x = 'arm'\n" * lines)
+    *listed, last = [it.why for it in named_elsewhere(str(package), ["arm"], ())]
+    listed += [last] if lines == 20 else []
+    assert {*listed} == {"its code names 'arm', which a prefix does not reach"}
+    assert len(listed) == 20
+    assert lines == 20 or last == "its code names such names in 3 lines more"
 
 
 @pytest.mark.parametrize("name", ["prefix", "tf_prefix"])

@@ -183,19 +183,81 @@ def test_the_command_writes_them_beside_the_description(
     words = ["join", "arm.urdf", "gripper.urdf", "--at", "tool", "--prefix", "g_"]
     words += ["--srdf", "arm.srdf", "--srdf", "gripper.srdf"]
     words += ["--controllers", one, "--controllers", other]
+    Path("arm.rviz").write_text(ARM_RVIZ)
+    words += ["--rviz", "arm.rviz", "--rviz", ""]
     assert main(words) == 2
     assert "name the description with -o" in capsys.readouterr().err
     assert main([*words, "-o", "out/robot.urdf"]) == 0
     assert sorted(it.name for it in Path("out").iterdir()) == [
+        "robot.rviz",
         "robot.srdf",
         "robot.urdf",
         "robot_controllers.yaml",
     ]
     assert Path("out/robot.srdf").read_text() == JOINED_SRDF
     assert main([*words[:-2], "-o", "out/robot.urdf"]) == 2
-    assert "--controllers is there 1 time for 2 parts" in capsys.readouterr().err
+    assert "--rviz is there 1 time for 2 parts" in capsys.readouterr().err
     # Beside arm.urdf it would be written over a file that is read.
     assert main([*words, "-o", "arm.urdf"]) == 2
     assert main([*words[:7], "-o", "arm.urdf"]) == 2
     assert main([*words, "-o", "gripper"]) == 2
     assert Path("gripper.srdf").read_text() == GRIPPER_SRDF
+
+
+ROBOT_MODEL = """\
+    - Class: rviz_default_plugins/RobotModel
+      Description Topic:
+        Value: /robot_description
+      Links:
+        {link}:
+          Alpha: 1
+      Name: Robot
+"""
+# Displays of an arm and of a gripper, and what is shown of both.
+ARM_RVIZ = f"""\
+Visualization Manager:
+  Displays:
+{ROBOT_MODEL.format(link="hand")}\
+  Global Options:
+    Fixed Frame: base
+"""
+FINGERS = """\
+- Class: rviz_default_plugins/Axes
+  Name: Palm
+  Reference Frame: palm
+- Class: rviz_default_plugins/Image
+  Name: Camera
+  Topic:
+    Value: /camera
+"""
+GRIPPER_RVIZ = f"""\
+Visualization Manager:
+  Displays:
+{ROBOT_MODEL.format(link="palm")}{"".join(f"    {it}" for it in FINGERS.splitlines(True))}\
+  Global Options:
+    Fixed Frame: root
+"""
+GROUP = f"""\
+    - Class: rviz_common/Group
+      Displays:
+{"".join(f"        {it}" for it in FINGERS.replace("palm", "g_palm").splitlines(True))}\
+      Enabled: true
+      Name: g
+"""
+
+
+def test_one_window_shows_all_parts(tmp_path: Path) -> None:
+    """One robot has one description: its display is there once."""
+    for name, text in (("arm.rviz", ARM_RVIZ), ("gripper.rviz", GRIPPER_RVIZ)):
+        (tmp_path / name).write_text(text)
+    arm, gripper = parts()
+    arm, gripper = (
+        arm._replace(rviz=str(tmp_path / "arm.rviz")),
+        gripper._replace(rviz=str(tmp_path / "gripper.rviz")),
+    )
+    made = join([arm, gripper])
+    assert made.rviz.decode() == ARM_RVIZ.replace("  Global", f"{GROUP}  Global")
+    assert any("its displays are in the group g" in it for it in made.notes)
+    assert join([parts()[0], gripper]).rviz.decode() == GRIPPER_RVIZ.replace(
+        "palm", "g_palm"
+    ).replace(": root", ": g_root")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.refactor.launch_argument import with_argument
+from multibot_rewrite.refactor.launch_argument import Space, with_argument
 
 HEAD = """from launch import LaunchDescription
 from launch.substitutions import Command
@@ -76,11 +76,7 @@ def test_what_runs_xacro_otherwise_is_left_with_its_line(case: str) -> None:
 
 def test_another_robots_launch_file_is_nothing_of_ours() -> None:
     source = f'{HEAD}text = Command(["xacro ", "other.xacro"])\n'
-    assert with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"]) == (
-        None,
-        (),
-        (),
-    )
+    assert with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"]).data is None
 
 
 def test_a_file_that_is_no_python_is_left() -> None:
@@ -106,3 +102,50 @@ def test_an_xml_launch_file_takes_it() -> None:
 def test_an_xml_launch_file_with_such_an_argument_is_left() -> None:
     source = XML.replace("<launch>", '<launch>\n  <arg name="prefix" default="x"/>')
     assert changed(source, "a.launch.xml") is None
+
+
+def test_an_xml_launch_file_fills_in_a_parameter_file() -> None:
+    given = '  <node pkg="p" exec="e">\n    <param from="$(find-pkg-share p)/c.yaml"/>\n  </node>\n'
+    source = XML.replace("</launch>", f"{given}</launch>")
+    made = with_argument("a.launch.xml", source.encode(), "prefix", ["r.urdf.xacro"], ["c.yaml"])
+    assert made.filled == ("c.yaml",)
+    assert made.data and b'/c.yaml" allow_substs="true"/>' in made.data
+
+
+NODE = 'Node(package="robot_state_publisher", executable="robot_state_publisher")'
+IN_SPACE = NODE.replace(",", ', namespace=LaunchConfiguration("namespace"),', 1)
+
+
+@pytest.mark.parametrize("of_xacro", [True, False])
+def test_what_belongs_to_the_description_is_in_the_namespace(of_xacro: bool) -> None:
+    more = 'Node(package="rviz2", executable="rviz2")'
+    spawner = 'Node(package="gazebo_ros", arguments=["-topic", "robot_description"])'
+    command = 't = Command(["xacro ", "r.urdf.xacro"])'
+    source = f"{HEAD}{command}\nx = LaunchDescription([{NODE}, {more}, {spawner}])\n"
+    space = Space("namespace", of_xacro)
+    made = with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"], (), space)
+    text = (made.data or b"").decode()
+    assert (IN_SPACE in text, more in text) == (True, True)
+    assert 'package="gazebo_ros", namespace=LaunchConfiguration("namespace"),' in text
+    assert text.count('DeclareLaunchArgument("namespace", default_value="")') == 1
+    assert ('" namespace:=", LaunchConfiguration("namespace")' in text) == of_xacro
+
+
+def test_an_xml_launch_file_puts_it_there_too() -> None:
+    made = with_argument(
+        "a.launch.xml", XML.encode(), "prefix", ["r.urdf.xacro"], (), Space("namespace", True)
+    )
+    text = (made.data or b"").decode()
+    assert '<node pkg="robot_state_publisher" namespace="$(var namespace)" exec=' in text
+    assert "prefix:=$(var prefix) namespace:=$(var namespace)'" in text
+    assert '<arg name="namespace" default=""/>' in text
+
+
+def test_a_launch_file_with_a_namespace_keeps_that() -> None:
+    before, _ = PYTHON["one line"]
+    source = f"{HEAD}namespace = 1\n{before}".encode()
+    made = with_argument(
+        "a.launch.py", source, "prefix", ["r.urdf.xacro"], (), Space("namespace", True)
+    )
+    assert (made.spaced, [it.place for it in made.left]) == (False, ["a.launch.py:4"])
+    assert made.data and GIVEN.encode() in made.data

@@ -78,6 +78,13 @@ def test_what_is_the_same_in_old_and_new_stays(package: Path) -> None:
     """Only ``left`` of ``left_wheel`` is in the call; it makes the joint, too."""
     with pytest.raises(InputError, match=r"makes others, too: .*name=\"front_joint\""):
         rename_symbol("left_wheel", "front_wheel", str(package))
+    # Only the end of it, which is in the macro; with one letter more and one less.
+    robot = ROBOT.replace('  <xacro:wheel side="right" parent="${root}"/>\n', "")
+    for new in ("tire", "wheels", "whee"):
+        (package / "r.urdf.xacro").write_text(robot)
+        made = rename_symbol("left_wheel", f"left_{new}", str(package))
+        (text,) = made.after.values()
+        assert text.decode() == robot.replace("}_wheel", f"}}_{new}")
 
 
 def test_a_name_that_pieces_make_is_refused_with_its_place(package: Path) -> None:

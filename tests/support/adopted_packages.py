@@ -1,6 +1,7 @@
 """Packages that got a prefix by hand, as they were before, under ``multibot adopt``, beside the commit.
 
-``python tests/support/adopted_packages.py MIRRORS`` prints what docs/measurements.md has a table of.
+``python tests/support/adopted_packages.py MIRRORS`` prints what docs/measurements.md has a table of;
+commits behind it are those that are looked at.
 MIRRORS has clones, ``OWNER+NAME/repo``.
 """
 
@@ -39,6 +40,12 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("kroshu+kuka_robot_descriptions", "3ea1eb1", "", {}),
     ("RoboAlQuds2027+temp_ros2_issue_spawn_two_robot", "ede9146", "", {}),
     ("Kinovarobotics+ros2_kortex", "2f2ba44", "", {}),
+    ("harshilbhatt2001+ros2_swarm_ws", "6077ddd", "", {}),
+    ("Kinovarobotics+ros_kortex", "65c2dc5", "", {}),
+    ("GroupOfRobots+minirys_nav2_ws", "1774ee0", "", {}),
+    ("deepwithin+yam_ros2_control", "b90f100", "", {}),
+    ("blackcoffeerobotics+EZGripper_ros2", "10022e4", "", {}),
+    ("flexivrobotics+flexiv_ros2", "a390dc3", "", {}),
 ]
 _DATA = ("xacro", "urdf", "srdf", "sdf", "world", "xml", "yaml", "yml", "rviz", "launch", "txt")
 _CODE = ("py", "cpp", "cc", "c", "hpp", "hh", "h", "lua")
@@ -122,7 +129,8 @@ def ours(folder: Path, given: dict[str, str]) -> str:
         return f"has {sorted(set(made.already.values()))} already"
     names = ", ".join(os.path.basename(it) for it in made.proved[:4])
     return (
-        f"{made.argument}: {len(made.proved)} proved ({names}), {len(made.after)} files,"
+        f"{made.argument}, {made.namespace or '-'}: {len(made.proved)} proved ({names}),"
+        f" {len(made.after)} files,"
         f" {len(made.left)} left, {len(made.unread)} unread, {len(made.already)} already"
     )
 
@@ -145,5 +153,7 @@ def every(mirrors: Path) -> Iterator[tuple[str, ...]]:
 
 
 if __name__ == "__main__":
+    wanted = sys.argv[2:]
+    COMMITS[:] = [it for it in COMMITS if not wanted or it[1] in wanted]
     for row in every(Path(sys.argv[1])):
         print("\n  ".join(row), flush=True)

@@ -25,14 +25,16 @@ from vendor_sources import install, packages_below
 
 from multibot_rewrite import adopt
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import prefixing
 from multibot_rewrite.description.readback.xml import plain
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.refactor.adopt import Adopted
+from multibot_rewrite.refactor.namespaces import spacing
 
 LIST = Path(__file__).parents[2] / "fixtures/adopted_packages.tsv"
-PREFIX, WANTED = "robot1_", 20
+PREFIX, SPACE, WANTED = "robot1_", "team1", 20
 # What is left, by words of its reason.
 KINDS = {
     "code": "code names",
@@ -47,11 +49,12 @@ KINDS = {
 
 class Judged(NamedTuple):
     """Configurations that xacro makes the same of without a prefix, and what a rewrite makes with one,
-    of how many; ``wrong`` are those that it does not."""
+    of how many; ``spaced`` with a namespace. ``wrong`` are those that it does not."""
 
     every: int
     same: int
     named: int
+    spaced: int
     wrong: tuple[str, ...]
 
 
@@ -60,10 +63,10 @@ def rows() -> list[dict[str, str]]:
     return list(csv.DictReader(lines, delimiter="\t"))
 
 
-def renamed(text: bytes) -> list[object]:
-    """The elements of a description with a prefix, as a rewrite makes them."""
-    prepared = pipeline.prepare(text, "robot.urdf", prefixing(), builtin_tree((), "jazzy"))
-    return elements(next(pipeline.render(prepared, [PREFIX], again=True)))
+def renamed(text: bytes, naming: Naming, word: str) -> list[object]:
+    """The elements of a description with a prefix or below a namespace, as a rewrite makes them."""
+    prepared = pipeline.prepare(text, "robot.urdf", naming, builtin_tree((), "jazzy"))
+    return elements(next(pipeline.render(prepared, [word], again=True)))
 
 
 def elements(text: bytes) -> list[object]:
@@ -87,18 +90,22 @@ def judged(made: Adopted) -> Judged:
     before = [_text(path, arguments) for path, arguments in given]
     for path, data in made.after.items():
         Path(path).write_bytes(data)
-    same, named, wrong = 0, 0, []
+    same, named, spaced, wrong = 0, 0, 0, []
     for (path, arguments), old in zip(given, before, strict=True):
         new = expanded(path, arguments)
         # A URDF that becomes a xacro is written anew, with the same in it.
         whole = new == old if made.before.get(path, b"x") else elements(new) == elements(old)
         other = expanded(path, {**arguments, made.argument: PREFIX})
         is_srdf = path.removesuffix(".xacro").endswith(".srdf")
-        equal = is_srdf or elements(other) == renamed(old)
-        same, named = same + whole, named + equal
-        if not whole or not equal:
+        equal = is_srdf or elements(other) == renamed(old, prefixing(), PREFIX)
+        below = expanded(
+            path, {**arguments, made.namespace: SPACE} if made.namespace else arguments
+        )
+        fits = is_srdf or elements(below) == renamed(old, spacing(), SPACE)
+        same, named, spaced = same + whole, named + equal, spaced + fits
+        if not whole or not equal or not fits:
             wrong.append(" ".join((os.path.basename(path), *arguments.values())))
-    return Judged(len(given), same, named, tuple(wrong))
+    return Judged(len(given), same, named, spaced, tuple(wrong))
 
 
 def _text(path: str, arguments: dict[str, str]) -> bytes:
@@ -130,6 +137,7 @@ def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
             f"{len(made.after)} files",
             f"{found.same} of {found.every} the same",
             f"{found.named} of {found.every} as rewritten",
+            f"{made.namespace or 'no namespace'}: {found.spaced} of {found.every} as rewritten",
             "left " + (", ".join(f"{n} {it}" for it, n in left.items()) or "nothing"),
             f"{len(made.unread)} unread, {len(made.already)} have one",
             *found.wrong,

@@ -57,8 +57,8 @@ class Finding(NamedTuple):
     xacro arguments under which it is found, empty for the default ones. ``edits`` fix it in ``file``.
 
     In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
-    ``names`` which topics, services, actions or frames. ``others`` are the further robots of which
-    the same is true.
+    ``names`` which topics, services, actions or frames. ``robots`` are all of which it is true, that of
+    its words first, where it is one for several or is known by its line.
     """
 
     code: str
@@ -74,7 +74,7 @@ class Finding(NamedTuple):
     robot: str = ""
     node: str = ""
     names: tuple[str, ...] = ()
-    others: tuple[str, ...] = ()
+    robots: tuple[str, ...] = ()
 
     @property
     def place(self) -> str:
@@ -99,9 +99,9 @@ def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
 
 def same_for(finding: Finding) -> str:
     """``; the same for robot2 and 18 more``, empty where it is about one robot."""
-    if not finding.others:
+    if len(finding.robots) < 2:
         return ""
-    first, *more = finding.others
+    _, first, *more = finding.robots
     rest = f" and {len(more)} more" if more else ""
     return f"; the same for {first}{rest}"
 

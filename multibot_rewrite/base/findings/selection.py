@@ -82,8 +82,8 @@ def _level_key(selection: Selecting, code: str) -> str:
 
 
 def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Finding]:
-    """The findings in their order; of those that differ only in the robot the first, with the
-    ``others``.
+    """The findings in their order; of those that differ only in the robot the first, with all their
+    ``robots``.
 
     ``names`` maps each word that stands for a robot in texts (its name, its prefix) to the robot.
     """
@@ -122,13 +122,14 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         node=blank(finding.node),
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
-        others=(),
+        robots=(),
     )
 
 
 def said_of(text: str, finding: Finding, robot: str) -> str:
-    """A text of a finding as it is of one of the ``others``; of any other robot the text itself."""
-    return _pattern(finding.robot).sub(robot, text) if robot in finding.others else text
+    """A text of a finding as it is of another of its ``robots``; of any other robot the text itself."""
+    first, *others = finding.robots or ("",)
+    return _pattern(first).sub(robot, text) if robot in others else text
 
 
 def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
@@ -140,6 +141,9 @@ def _first(members: list[tuple[str, Finding]], order: Mapping[str, int]) -> Find
     """The first finding; the others' robots are in the order of the fleet, robot2 before robot10."""
     (robot, first), *more = members
     # What is grouped already keeps its robots.
-    met = [*first.others, *(name for it, found in more for name in (it, *found.others))]
+    met = [*first.robots, *(name for it, found in more for name in found.robots or (it,))]
     others = dict.fromkeys(name for name in met if name and name != robot)
-    return first._replace(others=tuple(sorted(others, key=lambda it: order.get(it, len(order)))))
+    if not others:
+        return first
+    rest = sorted(others, key=lambda it: order.get(it, len(order)))
+    return first._replace(robots=(robot, *rest))

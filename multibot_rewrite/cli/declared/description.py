@@ -240,7 +240,7 @@ ADOPT = Command(
     "adopt",
     "adopt",
     "%(prog)s FOLDER [NAME:=VALUE...] [options]",
-    "Give a description package an argument for a prefix.",
+    "Give a description package a prefix and a namespace.",
     (
         Example("multibot adopt my_robot_description", "print the patch"),
         Example("multibot adopt my_robot_description --in-place"),
@@ -262,7 +262,7 @@ ADOPT = Command(
     "0 done; 2 wrong use, or no place for the prefix that changes nothing else",
     more="It checks each description twice. With an empty prefix the result is what it was. With"
     " prefix:=robot1_ every link, joint, frame, sensor and name of ros2_control begins with it."
-    " Launch files are not changed.",
+    " With namespace:=robot1 plugins and sensors are in that. Launch files hand both on.",
 )
 JOIN = Command(
     "join",
@@ -318,6 +318,7 @@ JOIN = Command(
                 rare(
                     each("--moveit", "A,B", "MoveIt's files for it: kinematics, joint limits ...")
                 ),
+                rare(each("--rviz", "FILE", "its RViz config")),
             ),
         ),
         OptionGroup(

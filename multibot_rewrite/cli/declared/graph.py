@@ -52,7 +52,16 @@ WATCH = switch(
     about="show every change until Ctrl-C or --timeout; with --state, nodes are asked when nothing has"
     " changed for a while, and again every 10 s",
 )
-LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
+# Of robots that are in several.
+DOMAINS = several(
+    "--domain",
+    "N",
+    f"instead of ROS_DOMAIN_ID, 0 to {values.MAX_DOMAIN}; several are looked at side by side, 11,12",
+    read=values.domains,
+)
+LISTENING = SOURCE_OR_BAG._replace(
+    options=(*(it for it in SOURCE_OR_BAG.options if it.names != DOMAINS.names), DOMAINS, HEADERS)
+)
 CHECK = Command(
     "check",
     "check",
@@ -63,6 +72,7 @@ CHECK = Command(
         Example("multibot check plan.yaml", "are they as planned?"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
         Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot check --domain 11,12", "robots that have a domain each"),
         Example("multibot check --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
         Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),

@@ -134,10 +134,15 @@ def _group(job: RvizJob, at: int) -> str:
     ]
     if not copies:
         return ""
-    end, lead = newline(document), " " * job.config.displays[0].block.column
+    return group_text(document, robot.name, job.config.displays[0].block.column, copies)
+
+
+def group_text(document: YamlText, name: str, column: int, displays: Iterable[str]) -> str:
+    """A group of displays, whose texts have the ``column`` of their list."""
+    end, lead = newline(document), " " * column
     head = f"{lead}- Class: {GROUP}{end}{lead}  Displays:{end}"
-    body = "".join(moved(copy, 4) for copy in copies)
-    return f"{head}{body}{lead}  Enabled: true{end}{lead}  Name: {quoted(robot.name)}{end}"
+    body = "".join(moved(it, 4) for it in displays)
+    return f"{head}{body}{lead}  Enabled: true{end}{lead}  Name: {quoted(name)}{end}"
 
 
 def _renamed(one: RvizItem, robot: RvizRobot) -> Iterator[Splice]:

@@ -180,14 +180,15 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
         else:
             splices += tool_edits(document, tool, robot)
     for node in (fixed_frame(config), *targets(config)):
-        splices += _frame_splice(node, robot)
+        splices += frame_splices(node, robot)
     namespace = f"/{robot.topics.robot}" if robot.names.naming.layout.namespaced else ""
     tf = _tf_topics(robot)
     more = tuple(it for it in robot.rules if it[0] not in dict(tf))
     return RvizText(robot.name, spliced(document, splices), namespace, (*tf, *more))
 
 
-def _frame_splice(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
+def frame_splices(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
+    """The change of a frame in a scalar, if it has another name for the robot."""
     new = frame_of(node, robot)
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
@@ -207,7 +208,7 @@ def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     current, saved = views_of(config)
     copies = ""
     if _follows(current, robots):
-        yield from _frame_splice(value(current, "Target Frame"), robots[0])
+        yield from frame_splices(value(current, "Target Frame"), robots[0])
         listed = isinstance(saved, yaml.SequenceNode)
         column = saved.start_mark.column if saved and listed else _column(config) + 2
         copies = "".join(_saved(document, current, robot, column) for robot in robots)
@@ -250,7 +251,7 @@ def _saved(document: YamlText, view: yaml.Node | None, robot: RvizRobot, column:
 
 
 def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
-    splices = _frame_splice(value(view, "Target Frame"), robot)
+    splices = frame_splices(value(view, "Target Frame"), robot)
     name = value(view, "Name")
     if isinstance(name, yaml.ScalarNode):
         splices.append(replaced(name, f"{robot.name} {name.value}"))

@@ -37,7 +37,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 
 # Files beside a description, of which a part may have several.
 BESIDE = ("controllers", "moveit")
-_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "one_system", *BESIDE)
+_KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
@@ -103,7 +103,7 @@ def _part(item: YamlItem, folder: str) -> Part:
             wrong(it, f"pose has {key}: {it.value}; write numbers for {', '.join(_POSE)}")
     pose = {key: number(word(it, key)) for key, it in table_of(at, "pose").items()}
     given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
-    given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf")}
+    given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")}
     given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
@@ -134,6 +134,7 @@ def part_of(keys: Mapping[str, Any]) -> Part:
         controllers=tuple(_listed(keys.get("controllers", ()))),
         one_system=keys.get("one_system", False),
         moveit=tuple(_listed(keys.get("moveit", ()))),
+        rviz=keys.get("rviz", ""),
     )
 
 

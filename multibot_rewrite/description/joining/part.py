@@ -58,7 +58,7 @@ class Part(NamedTuple):
     ``prefix`` goes before its own names. ``name`` is what messages, the new joint and ``split`` call
     it; default: its prefix, or its file. ``srdf`` is its SRDF, ``controllers`` are parameter files of
     its controllers. With ``one_system`` its ros2_control is put into an earlier one of the same
-    hardware. ``moveit`` are MoveIt's files for it.
+    hardware. ``moveit`` are MoveIt's files for it, ``rviz`` is its RViz config.
     """
 
     description: Source
@@ -71,11 +71,12 @@ class Part(NamedTuple):
     controllers: Sequence[str] = ()
     one_system: bool = False
     moveit: Sequence[str] = ()
+    rviz: str = ""
 
 
 def files_of(part: Part) -> Iterator[str]:
     """The files that a part names."""
-    for it in (part.description, part.srdf, *part.controllers, *part.moveit):
+    for it in (part.description, part.srdf, *part.controllers, *part.moveit, part.rviz or None):
         if isinstance(it, str | os.PathLike) and not str(it).lstrip().startswith("<"):
             yield os.fspath(it)
 

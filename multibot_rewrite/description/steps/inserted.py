@@ -70,8 +70,8 @@ def _parent_edits(
 ) -> list[Edit]:
     end = tag_end(source, start)
     expanded = source[end - 2 : end] == b"/>"
-    lead = _lead(source, start, end)
-    elements = _elements([item for item in items if not item.step], lead)
+    lead = lead_of(source, start, end)
+    elements = elements_of([item for item in items if not item.step], lead)
     filled = [item.step for item in items if item.step]
     words = ["expanded"] if expanded else ["filled", *filled] if filled else []
     head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
@@ -99,7 +99,7 @@ def _names(items: list[Insertion]) -> str:
     return ", ".join(dict.fromkeys(name.replace(MODEL, "MODEL/") for name in names))
 
 
-def _lead(source: bytes, start: int, end: int) -> str:
+def lead_of(source: bytes, start: int, end: int) -> str:
     """Line break and indentation of the parent's first child, as the file writes them."""
     space = source[end : len(source) - len(source[end:].lstrip())].decode()
     if "\n" in space and source[end + len(space) : end + len(space) + 2] != b"</":
@@ -107,7 +107,8 @@ def _lead(source: bytes, start: int, end: int) -> str:
     return ""
 
 
-def _elements(items: list[Insertion], lead: str) -> list[str]:
+def elements_of(items: list[Insertion], lead: str) -> list[str]:
+    """The texts of the elements, those of one new parent together."""
     plain = [item.xml for item in items if not item.wrap]
     for wrap in dict.fromkeys(item.wrap for item in items if item.wrap):
         inner = "".join(f"{lead}{lead and '  '}{item.xml}" for item in items if item.wrap == wrap)

@@ -11,18 +11,11 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.domains import Apart
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts
-from multibot_rewrite.spelling.domain_bridge import services_apart
+from multibot_rewrite.fleet.robots.simulators import DRIVE
+from multibot_rewrite.spelling.domain_bridge import crossings, services_apart
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import MAY, System
 
-_DRIVE = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>
-  </gazebo>
-</robot>
-"""
 _FLEET = """\
 simulator: gazebo
 description: robot.urdf
@@ -43,7 +36,7 @@ NOT_ACROSS = declare(
     good=_FLEET.replace("domains: {robot1: 11, robot2: 12}", "# one domain"),
     line=3,
     formats=("fleet",),
-    beside={"robot.urdf": _DRIVE},
+    beside={"robot.urdf": DRIVE},
 )
 
 
@@ -59,6 +52,15 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
         message = f"{node} of domain {own} calls {shorten(names)}, which domain {other} has"
         hint = "run both in one domain: services and actions do not cross"
         yield _told(apart, message, hint, WARNING)
+    if untyped := _untyped(plan):
+        message = f"domain_bridge cannot bring {shorten(untyped)}: the type is not known"
+        yield _told(apart, message, "give the type in the file of nodes (docs/stacks.md)", WARNING)
+
+
+def _untyped(plan: System) -> list[str]:
+    """Topics without a known type that a node of one domain reads and another domain sends."""
+    found = crossings(plan, ()) if plan.domains else ()
+    return sorted({it.name for it in found if not it.type})
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
@@ -69,9 +71,9 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
         where = f"is a plugin of the simulator, in domain {numbers['']}, and its robot is in"
         level = WARNING if all(it.sure == MAY for it in own) else ERROR
         hint = "write simulator: none for real robots, or leave out domains"
-        others = dict.fromkeys(it.robot for it in own if it.robot != own[0].robot)
+        robots = dict.fromkeys(it.robot for it in own)
         message = f"{own[0].name} {where} {numbers[own[0].robot]}"
-        yield _told(apart, message, hint, level)._replace(others=tuple(others))
+        yield _told(apart, message, hint, level)._replace(robots=tuple(robots))
 
 
 def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:

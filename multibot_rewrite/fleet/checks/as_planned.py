@@ -20,7 +20,7 @@ from multibot_rewrite.rules.system import (
     names,
     relays,
     sharing,
-    tf_topics,
+    tf_pieces,
     transforms,
 )
 from multibot_rewrite.spelling.ways import SPAWNER
@@ -77,7 +77,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
         return ERROR if _is_of_launch(it, planned, seen, started) else ""
     if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
-    if it.code == tf_topics.tf_tree_in_pieces.code:
+    if it.code == tf_pieces.tf_tree_in_pieces.code:
         return WARNING if _sender_left(it, planned, started) else ""
     if it.code in _OF_SOURCES:
         return WARNING

@@ -22,7 +22,7 @@ from multibot_rewrite.rules.system.interfaces import (
 )
 from multibot_rewrite.rules.system.lookups import frame_not_sent
 from multibot_rewrite.rules.system.states import interface_commanded_twice
-from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
+from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import (

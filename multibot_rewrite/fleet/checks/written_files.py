@@ -14,6 +14,7 @@ from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import as_spawned
+from multibot_rewrite.fleet.outputs.given_world import world_topics
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -26,7 +27,7 @@ from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
 from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import judged
-from multibot_rewrite.spelling.bridged_topics import bridged_topics
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import NOWHERE, Place
 
 
@@ -72,7 +73,9 @@ def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
     own = {robot.spec.namespace: robot.member.inventory}
     topics, _ = bridged_topics(own, plan.fleet.naming)
     lines = _sensor_lines(robot)
-    return {
+    world = world_topics(plan.file.simulator_world).items()
+    of_world = {it: GzTopic(type_, DIRECTIONS["in"] if type_ else "") for it, type_ in world}
+    return of_world | {
         (name := f"/{it.gz.lstrip('/')}"): GzTopic(it.gz_type, it.direction, _place(name, lines))
         for it in as_spawned(topics, [robot])
     }

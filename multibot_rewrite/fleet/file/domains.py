@@ -81,5 +81,5 @@ def _faults(
     if lacking:
         near = next(filter(None, (did_you_mean(lacking[0], [it]) for it in unknown)), "")
         yield f"{lacking[0]} has none; give it one{f' ({near})' if near else ''}"
-    if "zenoh" in data:
-        yield "the configurations of zenoh are for one domain; leave out one of the two"
+    if "domain" in data.get("zenoh", {}):
+        yield "zenoh has a domain as well; leave out that of zenoh"

@@ -25,7 +25,7 @@ from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_che
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
 PATHS = (
-    *("include", "description", "simulated", "srdf", "nodes", "vocabulary"),
+    *("include", "description", "simulated", "srdf", "rviz", "nodes", "vocabulary"),
     "simulator_world",
 )
 # The parts of a robot.

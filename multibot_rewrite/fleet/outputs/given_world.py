@@ -21,6 +21,7 @@ from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.included_models import model_file
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.apply import cut
@@ -32,6 +33,7 @@ from multibot_rewrite.description.steps.document import (
 )
 from multibot_rewrite.description.steps.spans import Spans
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY
 
 _SCOPE = "::"
 _BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"
@@ -103,6 +105,28 @@ def own_world(
                 for edit in _in_plugin(it, plugin, kind._replace(names=names)):
                     (edits if isinstance(edit, Edit) else findings).append(edit)  # type: ignore[arg-type]
     return b"".join(cut(document.source, _apart(edits))), findings
+
+
+def world_topics(path: str) -> dict[str, str]:
+    """The gz topics of a world of the user's, or of Gazebo's empty one, each with its type: empty where
+    that is not known."""
+    root = read_document(read_file(path), path).root if path else None
+    world = root.find("world") if root is not None else None
+    if root is None or world is None:
+        return _sent("empty", DEFAULTS)
+    plugins = [library_key(it.get("filename") or "") for it in world.iterchildren("plugin")]
+    systems = [it.removeprefix("gz-sim-").removesuffix("-system") for it in plugins]
+    texts = (text_of(it) for it in world.iter("*") if str(it.tag).endswith("topic"))
+    named = {*texts, *(it.get("topic", "") for it in world.iter("*"))} - {""}
+    told = {f"/{it.lstrip('/')}": "" for it in named}
+    return told | _sent(world.get("name", ""), systems or DEFAULTS)
+
+
+def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
+    own = (SENT_BY_ANY, *(SENT_BY.get(it, {}) for it in systems))
+    return {
+        f"/world/{world}/{name}": f"gz.msgs.{type_}" for it in own for name, type_ in it.items()
+    }
 
 
 def _apart(edits: Sequence[Edit]) -> Iterator[Edit]:

@@ -14,6 +14,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.zenoh.tokens import SPACE
+from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE, beyond
+from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import (
     ACTION,
     PUBLISHES,
@@ -39,20 +41,26 @@ _LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subsc
 
 
 class Rights(NamedTuple):
-    """The key expressions of a robot: its ``own``, and of the others those it sends and hears."""
+    """The key expressions of a robot: its ``own``, and of the others those it sends and hears; the
+    domains that its nodes are in: with a bridge, that of all robots as well."""
 
     robot: str
     own: tuple[str, ...]
     sends: tuple[str, ...]
     hears: tuple[str, ...]
+    domains: tuple[int, ...]
 
 
 def rights(plan: System, domain: int) -> list[Rights]:
-    """What each robot of the plan may do in this domain.
+    """What each robot of the plan may do in its domain, which is this one where the plan has none.
 
     All below its namespace is its own, unless another robot has names there too. Of all other names
     it has those that its nodes have in the plan.
     """
+    numbers, bridged = domain_of(plan), beyond(plan)
+    bridges = {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
+    whole = plan
+    plan = plan._replace(nodes=tuple(it for it in plan.nodes if it.name not in bridges))
     owner = {it.name: it.robot for it in plan.nodes}
     by_robot: dict[str, list[End]] = {robot.name: [] for robot in plan.robots}
     for end in plan.ends:
@@ -60,17 +68,41 @@ def rights(plan: System, domain: int) -> list[Rights]:
             by_robot[robot].append(end)
     nodes = nodes_by_robot(plan)
     spaces = _own_spaces(nodes, by_robot)
-    return [
+    found = [
         _rights(
             robot,
             nodes[robot.name],
             by_robot[robot.name],
             spaces.get(robot.name, ""),
             plan.shared_topics,
-            domain,
+            numbers.get(robot.name, domain),
         )
         for robot in plan.robots
     ]
+    return [_with_bridge(it, whole, numbers, bridged) for it in found] if bridges else found
+
+
+def _with_bridge(
+    given: Rights, plan: System, numbers: Mapping[str, int], beyond_: Mapping[str, str]
+) -> Rights:
+    """With what its domain_bridge says and hears: one process with a node in each of two domains."""
+    at = {
+        it.name: numbers["" if it.name in beyond_ else given.robot]
+        for it in plan.nodes
+        if it.stack == DOMAIN_BRIDGE and beyond_.get(it.name, it.robot) == given.robot
+    }
+    ends = [it for it in plan.ends if it.node in at]
+    own = [f"{number}{name}/**" for name, number in at.items()]
+    sends = [_key(at[it.node], it) for it in ends if it.role == PUBLISHES]
+    sends += [f"{it}{name}/*/*" for it in {*at.values()} for name in SENT_BY_ANY_NODE]
+    hears = [_key(at[it.node], it) for it in ends if it.role != PUBLISHES]
+    return Rights(
+        given.robot,
+        tuple(dict.fromkeys((*given.own, *_latched(own)))),
+        tuple(dict.fromkeys((*given.sends, *_latched(sorted(sends))))),
+        tuple(dict.fromkeys((*given.hears, *_latched(sorted(hears))))),
+        tuple(dict.fromkeys((*given.domains, *at.values()))),
+    )
 
 
 def _own_spaces(
@@ -119,7 +151,8 @@ def _rights(
     tf = () if space and robot.tf_topic.startswith(space) else (robot.tf_topic, static)
     sends |= {f"{domain}{name}/*/*" for name in (*SENT_BY_ANY_NODE, *tf)}
     hears |= {f"{domain}{name}/*/*" for name in (*OF_EVERY_NODE, *shared, *tf)}
-    return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
+    keys = (_latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
+    return Rights(robot.name, *keys, (domain,))
 
 
 def _key(domain: int, end: End) -> str:
@@ -131,7 +164,7 @@ def _latched(keys: Sequence[str]) -> tuple[str, ...]:
     return (*keys, *(f"{key}/@adv/**" for key in keys))
 
 
-def robot_rules(given: Rights, domain: int, side: str = SESSION) -> list[Rule]:
+def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
     """The rules of a robot where they are applied: its sessions, its own router, the fleet's router."""
     out, back = _FLOWS[side]
     name = given.robot
@@ -142,18 +175,18 @@ def robot_rules(given: Rights, domain: int, side: str = SESSION) -> list[Rule]:
         _rule(f"{name}_hears", _SENDS, back, given.hears),
         _rule(f"{name}_asks", _ASKS, out, given.hears),
     ]
-    return [*found, graph_rule(f"{name}_graph", domain)]
+    return [*found, graph_rule(f"{name}_graph", given.domains)]
 
 
-def graph_rule(name: str, domain: int) -> Rule:
+def graph_rule(name: str, domains: Iterable[int]) -> Rule:
     """Everybody may know who is there: tokens of rmw_zenoh, and of what is latched."""
-    keys = (f"{SPACE}/{domain}/**", f"{domain}/**/@adv/**")
+    keys = [key for it in domains for key in (f"{SPACE}/{it}/**", f"{it}/**/@adv/**")]
     return _rule(name, _LIVELINESS, (OUT, IN), keys)
 
 
-def all_rule(name: str, domain: int) -> Rule:
+def all_rule(name: str, domains: Iterable[int]) -> Rule:
     """For who looks after all robots."""
-    keys = (f"{domain}/**", f"{domain}/**/@adv/**", f"{SPACE}/**")
+    keys = [key for it in domains for key in (f"{it}/**", f"{it}/**/@adv/**")] + [f"{SPACE}/**"]
     return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
 
 

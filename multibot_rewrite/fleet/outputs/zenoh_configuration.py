@@ -28,6 +28,7 @@ from multibot_rewrite.fleet.outputs.zenoh_access import (
     rights,
     robot_rules,
 )
+from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import System
 
 ROUTER_FILE = "router.json5"
@@ -40,8 +41,9 @@ _ANYBODY: Config = {"id": "anybody"}
 
 
 class Setup(NamedTuple):
-    """What the plan does not say: the router's endpoint, the domain, the keystore (empty for none),
-    the enclaves of those that may do anything, whether each robot has a router of its own."""
+    """What the plan does not say: the router's endpoint, the domain of a plan that has one for all, the
+    keystore (empty for none), the enclaves of those that may do anything, whether each robot has a
+    router of its own."""
 
     router: str
     domain: int
@@ -53,7 +55,8 @@ class Setup(NamedTuple):
 def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
     known = rights(plan, setup.domain)
-    yield ROUTER_FILE, _text(_router(known, setup), _about_router(setup))
+    domains = sorted({*domain_of(plan).values()}) or [setup.domain]
+    yield ROUTER_FILE, _text(_router(known, setup, domains), _about_router(setup))
     for given in known:
         name = f"{given.robot}.json5"
         yield name, _text(_robot(given, setup), f"The nodes of {given.robot}: {_session(name)}")
@@ -146,15 +149,13 @@ def _certificates(enclave: str, setup: Setup) -> Config:
     }
 
 
-def _router(known: Sequence[Rights], setup: Setup) -> Config:
+def _router(known: Sequence[Rights], setup: Setup, domains: Sequence[int]) -> Config:
     config = {"mode": "router", "listen": {"endpoints": [_listening(setup)]}}
     config |= _common(_ROUTER_ENCLAVE, setup)
     if setup.keystore:
-        parts = [
-            (_subject(f"/{it.robot}"), robot_rules(it, setup.domain, FLEET_ROUTER)) for it in known
-        ]
+        parts = [(_subject(f"/{it.robot}"), robot_rules(it, FLEET_ROUTER)) for it in known]
         for enclave in setup.operators:
-            parts.append((_subject(enclave), [all_rule(enclave, setup.domain)]))
+            parts.append((_subject(enclave), [all_rule(enclave, domains)]))
         config["access_control"] = access_control(parts)
     return config
 
@@ -184,7 +185,7 @@ def _robot(given: Rights, setup: Setup) -> Config:
             "listen": {"endpoints": ["tcp/localhost:0"]},
             **_common("", setup._replace(keystore="")),
         }
-    config["access_control"] = access_control([(_ANYBODY, robot_rules(given, setup.domain))])
+    config["access_control"] = access_control([(_ANYBODY, robot_rules(given))])
     return config
 
 
@@ -198,7 +199,7 @@ def _own_router(given: Rights, setup: Setup) -> Config:
     }
     if setup.keystore:
         config["transport"]["link"]["protocols"] = ["tls", "tcp"]
-    rules = robot_rules(given, setup.domain, OWN_ROUTER)
+    rules = robot_rules(given, OWN_ROUTER)
     config["access_control"] = access_control([(_ANYBODY, rules)])
     return config
 

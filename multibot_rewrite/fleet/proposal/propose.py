@@ -43,6 +43,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_own_arguments,
     with_semantic_arguments,
 )
+from multibot_rewrite.fleet.proposal.release_of_files import release_of_files
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of, without
 
 MEANT = "as it was asked for"
@@ -310,15 +311,17 @@ def _is_simulated(it: Looked, wanted: Wanted) -> bool:
     return wanted.simulator != REAL if wanted.simulator else has
 
 
-def release_of(robots: Sequence[Looked], wanted: Wanted) -> Choice:
-    """The release that was asked for, else the one that has the robots' simulator."""
+def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice:
+    """The release that was asked for, else the one that has the robots' simulator, that their
+    repository names, or that has what the parameter files set."""
     if wanted.named:
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
     said = {release_said("", b"", it.path) for it in robots if it.path}
-    if len(said) == 1 and (found := said.pop()).why:
-        return Choice(found.release, found.why)
+    telling = [it for it in said if it.why] or [release_of_files(found.params)]
+    if len(telling) == 1 and telling[0].why:
+        return Choice(*telling[0])
     return Choice(wanted.release, "the newest long-term ROS release; name yours")
 
 
@@ -330,7 +333,7 @@ def propose(
     names = names_of(stems, wanted.each)
     if wanted.names and len(robots) == 1:
         names = [wanted.names]
-    release = release_of(robots, wanted)
+    release = release_of(robots, found, wanted)
     kept = without(found, refused)
     members = [
         Member(it, companions_of(it, kept, release.value), own, _radius(it))

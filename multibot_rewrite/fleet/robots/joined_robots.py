@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.join import Joined, join_plain
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
@@ -89,12 +89,13 @@ def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
     stem = os.path.join(below, name.removesuffix(JOIN).removesuffix(".urdf"))
     beside = {f"{stem}_controllers.yaml": made.controllers} if made.controllers else {}
     moveit = {os.path.join(below, it): data for it, data in made.moveit.items()}
-    texts = {robot.description: made.data, **beside, **moveit}
+    window = {f"{stem}.rviz": made.rviz} if made.rviz else {}
+    texts = {robot.description: made.data, **beside, **moveit, **window}
     if made.srdf and not robot.srdf:
         robot = robot._replace(srdf=f"{stem}.srdf")
         texts[robot.srdf] = made.srdf
     companions = dict(robot.companions)
-    for kind, more in ((PARAMS, beside), (MOVEIT, moveit)):
+    for kind, more in ((PARAMS, beside), (MOVEIT, moveit), (RVIZ, window)):
         if more:
             companions[kind] = (*more, *companions.get(kind, ()))
     filled_in = ((path, data.decode()) for path, data in texts.items())

@@ -79,7 +79,9 @@ def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
     lines = {name: line for (_, line), name in names.items()}
     alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
     return [
-        it._replace(robot="", line=lines[it.robot]) if it.robot else it
+        it._replace(robot="", robots=it.robots or (it.robot,), line=lines[it.robot])
+        if it.robot
+        else it
         for it in grouped(alike, words)
     ]
 

@@ -30,7 +30,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 
 _AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
-_DRIVE = """\
+DRIVE = """\
 <robot name="rover">
   <link name="base_link"/>
   <gazebo>
@@ -57,7 +57,7 @@ SIMULATED_OR_REAL = declare(
     good=f"simulator: gazebo\n{_FLEET}",
     line=3,
     formats=("fleet",),
-    beside={"system_model.yaml": _AMCL, "robot.urdf": _DRIVE},
+    beside={"system_model.yaml": _AMCL, "robot.urdf": DRIVE},
 )
 # The stack whose ros2_control_node loads the hardware of a real robot.
 _LOADING = "ros2_control"

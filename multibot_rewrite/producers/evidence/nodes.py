@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.plugin_classes import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
@@ -137,7 +138,8 @@ def nodes_of(
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
         meant = next((one for one in other if _stands_for(it, one, known)), None)
         if meant and not it.manager:
-            nodes.append(filled(known[it.known], it)._replace(when=meant.when))
+            entry = known[it.known]
+            nodes.append(filled(entry, it)._replace(when=meant.when, known=entry.kind))
             continue
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
@@ -175,6 +177,8 @@ def _left_out(
 def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
     """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
     another program of the package that sends the same, as ukf_filter_node?"""
+    if _is_old(given):
+        return False
     if given.known == node.name:
         return True
     entry = known.get(given.known)
@@ -191,7 +195,12 @@ def children_of(node: NodeFacts) -> Iterator[str]:
 def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
     """Is it a controller that a file declares, or a known node with a process of its own?"""
     node = known.get(given.known)
-    return bool(given.manager) or (node is not None and not node.host)
+    return bool(given.manager) or (node is not None and not node.host and not _is_old(given))
+
+
+def _is_old(given: GivenNode) -> bool:
+    """Is it a name that the node has in no supported release, as recoveries_server?"""
+    return given.name.rpartition("/")[2] in plugin_bases()[NODE].older
 
 
 def _of_stack(

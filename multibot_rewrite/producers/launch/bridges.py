@@ -18,6 +18,7 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
+from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
@@ -112,11 +113,11 @@ def _of_text(text: str) -> Iterator[Row]:
             # A row with one name has it on both sides.
             topic = entry.get(BOTH) or entry.get(ROS) or entry.get(GZ)
             way = _WAYS.get(str(entry.get("direction", "BIDIRECTIONAL")), "@")
-            inside = entry.get(GZ) or topic
-            if topic:
-                yield from _topics(
-                    str(topic), str(entry.get("ros_type_name", "")), way, str(inside)
-                )
+            inside, type_ = entry.get(GZ) or topic, str(entry.get("ros_type_name", ""))
+            if service := entry.get(SERVICE_ROW):
+                yield Row(Endpoint(SERVICE, SERVES, str(service), type_), str(service))
+            elif topic:
+                yield from _topics(str(topic), type_, way, str(inside))
 
 
 def _for_any_robot(

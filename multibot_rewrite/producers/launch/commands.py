@@ -12,7 +12,8 @@ import os
 import shlex
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, wraps
+from shutil import which
 from types import MappingProxyType
 from typing import Any
 
@@ -24,6 +25,7 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
 _POSTFIX = "multibot_rewrite.cli.urdf_postfix"
 _FAULTS = "multibot_command_faults"
@@ -40,11 +42,32 @@ class Output(NamedTuple):
     fault: str = ""
 
 
-def read_commands() -> None:
-    """From now on ``Command`` gives what is known of its output, and no program has to be there."""
+def read_commands() -> list[str]:
+    """From now on ``Command`` gives what is known of its output, and no program has to be there. So
+    does ``subprocess.run``, where it is not there; what is not known of its output is in the list."""
     known = of_launch("substitutions")
+    lost: list[str] = []
     known.Command.perform = _perform
     known.FindExecutable.perform = lambda self, context: text(self.name, context)
+    subprocess.run = _run(subprocess.run, lost)
+    return lost
+
+
+def _run(run: Callable[..., Any], lost: list[str]) -> Callable[..., Any]:
+    """``subprocess.run``, which ``check_output`` calls as well."""
+
+    @wraps(run)
+    def ran(line: Any, *words: Any, **options: Any) -> Any:
+        program = str(line[0]) if isinstance(line, list | tuple) and line else ""
+        if program not in _READERS or which(program):
+            return run(line, *words, **options)
+        found = output_of(shlex.join(map(str, line)))
+        lost.extend({found.fault} - {"", *lost})
+        as_text = any(options.get(it) for it in ("text", "universal_newlines", "encoding"))
+        out = found.text if as_text else found.text.encode()
+        return subprocess.CompletedProcess(line, 0, out, out[:0])
+
+    return ran
 
 
 def faults(context: Any) -> list[str]:
@@ -67,7 +90,9 @@ def output_of(line: str) -> Output:
         read = _READERS.get(os.path.basename(program))
         return Output(read(words) if read else "")
     except (ValueError, MultibotError, subprocess.SubprocessError) as error:
-        # A launch fails here, unless it is the boundary that is in the way.
+        # A launch fails here, unless it is the boundary, or a package that is told, that is in the way.
+        if NOT_INSTALLED in line:
+            return Output("")
         reason = " ".join(f"{error}".split())
         return Output("", f"the output of {line!r} is not known: {reason}")
 

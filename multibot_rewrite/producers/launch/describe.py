@@ -17,7 +17,7 @@ import yaml
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
-from multibot_rewrite.producers.launch.failures import failure, missing_package
+from multibot_rewrite.producers.launch.failures import failure, is_unset, missing_package
 from multibot_rewrite.producers.launch.kept_paths import (
     LIMIT,
     is_made,
@@ -194,8 +194,13 @@ def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
         else:
             yield from _file(str(it), here)
     for given in own:
-        for it in _each(given):
-            yield from _evaluated(it, here)
+        yield from parameters(given, here)
+
+
+def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
+    """A parameter file, or values, that an action gives its node."""
+    for it in _each(given):
+        yield from _evaluated(it, here)
 
 
 def _each(given: Any) -> Iterator[Any]:
@@ -211,7 +216,7 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
     except Exception as error:
         # A value may be the output of a program that is not started; other ones fail in a launch, too.
-        if _FAILS in str(error):
+        if _FAILS in str(error) or is_unset(error):
             here.note(failure(error), parameters=True)
         elif isinstance(error, FileNotFoundError) and not missing_package(error):
             # Its folder may be a link to sources, which is gone when this is read.

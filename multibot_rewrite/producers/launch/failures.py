@@ -20,7 +20,20 @@ _OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
 _NOT_FOUND = re.compile(
     rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
 )
+_NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argument"
+# launch says so of a launch configuration that is not set, and of an argument that is not given
+# (jazzy launch_configuration.py, declare_launch_argument.py).
+_NO_VALUE = re.compile(
+    r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
+)
+UNSET = "the launch configuration"
 _ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
+_TRIED = re.compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
+_OF_ROS_1 = re.compile(
+    r"Unknown substitution: (?:arg|find|optenv)\b"
+    r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
+)
+_ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $(var NAME), exec="
 NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
 
 
@@ -31,12 +44,24 @@ def failure(error: BaseException) -> str:
         return not_installed(name)
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
+    if name := _no_value(error):
+        return f"{UNSET} {name!r} is not set; give it with {name}:=VALUE, or where this is included"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
-    return " ".join(f"{type(error).__name__}: {error}".split())
+    text = " ".join(f"{type(error).__name__}: {error}{_line(error)}".split())
+    # launch tries its other forms, too, and says what each of them says.
+    text = found[1] if (found := _TRIED.search(text)) else text
+    return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
+
+
+def _line(error: BaseException) -> str:
+    """The line of a launch file in Python that raised it."""
+    frames = extract_tb(error.__traceback__)
+    name = os.path.basename(frames[-1].filename) if frames else ""
+    return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
 
 
 def _variable(error: BaseException) -> str:
@@ -74,6 +99,21 @@ def missing_module(error: BaseException) -> str:
     return (found[3] or "") if found else ""
 
 
+def is_unset(error: BaseException) -> bool:
+    """Is a launch configuration not set, or an argument not given?"""
+    return bool(_no_value(error))
+
+
+def _no_value(error: BaseException) -> str:
+    found = _NO_VALUE.search(str(error))
+    return (found[1] or found[2]) if found else ""
+
+
+def is_no_text(error: BaseException) -> bool:
+    """Is a path or another value given where launch takes texts and substitutions alone?"""
+    return isinstance(error, TypeError) and _NO_TEXT in str(error)
+
+
 def is_certain(error: BaseException, launch_file: str) -> bool:
     """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
     or the launch file itself raises what names no file or device of a machine."""
@@ -84,7 +124,9 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
     own = frame is not None and frame.f_code.co_filename.endswith(".launch.py")
     # What is taken of a module that is not there does not fail where it is.
     known = frame is None or not any(map(is_unknown, (frame.f_globals | frame.f_locals).values()))
-    return own and known and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
+    # So launch itself says of an include.
+    sure = own or is_no_text(error) or _REQUIRED in str(error)
+    return sure and known and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
 
 
 def _frame(error: BaseException) -> FrameType | None:

@@ -6,37 +6,46 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import Any
 
-from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS, Visit, text
-from multibot_rewrite.producers.launch.failures import missing_package
+from multibot_rewrite.producers.launch.describe import (
+    SIMULATOR,
+    SIMULATORS,
+    Visit,
+    parameters,
+    text,
+)
+from multibot_rewrite.producers.launch.failures import is_no_text, missing_package
 from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.kept_paths import lasting
 from multibot_rewrite.producers.launch.records import LaunchedNode, UnreadArgument
 
 # The launch files that start Gazebo and nothing else.
+_OF_GZ = ("gz_sim.launch.py", "ign_gazebo.launch.py")
 _SIMULATES = (
-    *("gz_sim.launch.py", "gz_server.launch.py", "ign_gazebo.launch.py"),
+    *(*_OF_GZ, "gz_server.launch.py"),
     *("gazebo.launch.py", "gzserver.launch.py", "gzclient.launch.py"),
 )
-# Arguments of gz_sim.launch.py and of Classic's gazebo.launch.py with the world.
+# All arguments of gz_sim.launch.py, and those of it and of Classic's gazebo.launch.py with the world.
+_GZ_WORDS = ("gz_args", "ign_args", "gz_version", "ign_version", "debugger", "on_exit_shutdown")
 _WORLDS = ("gz_args", "ign_args", "world")
-_SIM_WORDS = (*_WORLDS, "gz_version", "ign_version", "debugger", "on_exit_shutdown")
 # What ros_gz_sim spawns with: its arguments, and the words of create that they are
-# (ros_gz jazzy ros_gz_sim/launch/gz_spawn_model.launch.py).
-_SPAWNS = ("gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py")
+# (ros_gz jazzy and ros2 ros_gz_sim/launch/gz_spawn_model.launch.py); the second starts a bridge, too.
+_SPAWNS, _SPAWNS_BRIDGED = "gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py"
+_SAME = ("world", "file", "string", "topic", "allow_renaming", "x", "y", "z", "R", "P", "Y")
 _SPAWN_WORDS = {
-    **{it: f"-{it}" for it in ("world", "file", "topic", "x", "y", "z", "R", "P", "Y")},
+    **{it: f"-{it}" for it in _SAME},
     "entity_name": "-name",
     "model_string": "-string",
 }
+_BRIDGE = "ros_gz_bridge", "bridge_node"
 _LAUNCH_FILE = re.compile(r"\w+\.launch\.py")
 _SHARE = re.compile(r"/share/([\w-]+)/")
 
 
-def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode | None:
+def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
     """The simulator of a package that is missing here, or whose launch file only a build makes: that it
     starts one is known without it, and with which words."""
     path = _path_of(include, here.context)
@@ -44,32 +53,61 @@ def simulator(error: BaseException, include: Any, here: Visit) -> LaunchedNode |
     package = missing_package(error) or (of_path[1] if of_path else "")
     # Before it is read, launch has the parts of the path (jazzy launch_description_source.py).
     name = (_LAUNCH_FILE.findall(path) or [""])[-1]
-    spawns = name in _SPAWNS
+    spawns = name in (_SPAWNS, _SPAWNS_BRIDGED)
     if package not in SIMULATORS or not (spawns or name in _SIMULATES):
-        return None
-    known = _SPAWN_WORDS if spawns else _SIM_WORDS
-    for one, near in not_among(given_names(include, here.context), known, whole=spawns):
+        return []
+    words = given(include, here.context)
+    known = _SPAWN_WORDS if spawns else _GZ_WORDS if name in _OF_GZ else _WORLDS
+    for one, near in not_among(words, known, whole=name in (_SPAWNS, *_OF_GZ)):
         here.unread.append(UnreadArgument(here.place, name, one, near))
-    words = (_spawner_words if spawns else _simulator_words)(include, here.context)
+    kept = (*lasting((_spawner_words if spawns else _simulator_words)(words)),)
     program = "create" if spawns else SIMULATOR
-    kept = (*lasting(words),)
-    return LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
+    own = LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
+    return [own, *(_bridge(words, here) if name == _SPAWNS_BRIDGED else ())]
+
+
+def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
+    """The bridge that starts beside a spawner (ros_gz jazzy ros_gz_bridge.launch.py)."""
+    if path := given.get("config_file"):
+        space = f"/{given.get('namespace', '').strip('/')}"
+        rows = tuple(parameters({"config_file": path}, here))
+        name = given.get("bridge_name", "")
+        yield LaunchedNode(*_BRIDGE, name, space, (), rows, "", (), here.later, here.place)
 
 
 def without_effect(include: Any, here: Visit) -> None:
     """Keep the arguments that the file of an include does not read."""
-    path = _path_of(include, here.context)
-    for name, near in unread(path, given_names(include, here.context)):
+    unread_of(_path_of(include, here.context), given(include, here.context), here)
+
+
+def unread_of(path: str, names: Collection[str], here: Visit) -> None:
+    """Keep those of some arguments that a launch file does not read."""
+    for name, near in unread(path, names):
         here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
 
 
-def given_names(include: Any, context: Any) -> list[str]:
-    """The names of the arguments of an include, where they are known."""
-    found = []
-    for name, _ in include.launch_arguments or ():
-        with suppress(Exception):
-            found.append(text(name, context))
+def given(include: Any, context: Any) -> dict[str, str]:
+    """The arguments of an include with their values, empty for one that is not known.
+
+    Raises TypeError for what is no text, as launch does.
+    """
+    found = {}
+    for name, value in include.launch_arguments or ():
+        with _not_known():
+            key = text(name, context)
+            found[key] = ""
+            found[key] = text(value, context)
     return found
+
+
+@contextmanager
+def _not_known() -> Iterator[None]:
+    """Passes over what only a run tells, or would fail in one for another reason."""
+    try:
+        yield
+    except Exception as error:
+        if is_no_text(error):
+            raise
 
 
 def _path_of(include: Any, context: Any) -> str:
@@ -84,17 +122,15 @@ def _path_of(include: Any, context: Any) -> str:
     return ""
 
 
-def _spawner_words(include: Any, context: Any) -> Iterator[str]:
+def _spawner_words(given: Mapping[str, str]) -> Iterator[str]:
     """The words of the program that gz_spawn_model.launch.py starts."""
-    for name, value in include.launch_arguments:
-        with suppress(Exception):
-            word = _SPAWN_WORDS.get(text(name, context))
-            yield from (word, text(value, context)) if word else ()
+    for name, value in given.items():
+        if value and name in _SPAWN_WORDS:
+            yield from (_SPAWN_WORDS[name], value)
 
 
-def _simulator_words(include: Any, context: Any) -> Iterator[str]:
+def _simulator_words(given: Mapping[str, str]) -> Iterator[str]:
     """The words of ``gz_args`` and ``world``, where they are known."""
-    for name, value in include.launch_arguments:
-        with suppress(Exception):
-            if text(name, context) in _WORLDS:
-                yield from shlex.split(text(value, context))
+    for value in (given.get(it, "") for it in _WORLDS):
+        with suppress(ValueError):
+            yield from shlex.split(value)

@@ -14,11 +14,13 @@ from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     NOT_THERE,
+    UNSET,
     failure,
     missing_module,
     missing_package,
     not_installed,
 )
+from multibot_rewrite.producers.launch.includes import unread_of
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
@@ -44,50 +46,59 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     of_launch_ros("actions")
     keep_places()
     keep_sources()
-    read_commands()
-    reads = keep_reads()
+    unsure, reads = read_commands(), keep_reads()
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
-    while True:
-        try:
-            graph = _visited(_included(order), order)
-            # A function of a launch file goes on without them, as the file does.
-            lost = [it for it in _lost(graph.notes) if it not in missing]
-            for name in lost:
-                add_empty(name, folder)
-                add_unknown(name)
-            missing += lost
-            if not lost:
-                break
-        except (Exception, SystemExit) as error:
-            package, module = missing_package(error), missing_module(error)
-            name = package or module
-            if name in missing and add_file(error, folder):
-                continue
-            if not name or name in missing:
-                raise UnreadableError(failure(error)) from error
-            if package:
-                add_empty(package, folder)
-            else:
-                add_unknown(module)
-            missing.append(name)
+    while (graph := _tried(order, folder, missing)) is None:
+        pass
     files = (*graph.files, *descriptions_in(reads))
     # What the launch files of these start is known without them.
     said = (*_lost(graph.notes), *SIMULATORS)
     unsaid = [it for it in missing if it not in said]
-    return graph._replace(notes=(*graph.notes, *_not_there(order, unsaid)), files=files)
+    whole = Place(os.path.abspath(order.file), 1)
+    more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
+    notes = (LaunchNote(whole, it, parameters=it in unsure) for it in more)
+    return graph._replace(notes=(*graph.notes, *notes), files=files)
+
+
+def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
+    """The graph; None where something was ``missing`` that is stood in for now."""
+    try:
+        graph = _visited(_described(order), order)
+    except UnreadableError:
+        raise
+    except (Exception, SystemExit) as error:
+        _stand_in_for(error, folder, missing)
+        return None
+    # A function of a launch file goes on without them, as the file does.
+    lost = [it for it in _lost(graph.notes) if it not in missing]
+    for name in lost:
+        add_empty(name, folder)
+        add_unknown(name)
+    missing += lost
+    return None if lost else graph
+
+
+def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None:
+    """Make the package or file known that was not found; raises UnreadableError for another fault."""
+    package, module = missing_package(error), missing_module(error)
+    name = package or module
+    if name in missing and add_file(error, folder):
+        return
+    if not name or name in missing:
+        raise UnreadableError(failure(error)) from error
+    if package:
+        add_empty(package, folder)
+    else:
+        add_unknown(module)
+    missing.append(name)
 
 
 def _lost(notes: Iterable[LaunchNote]) -> list[str]:
     """The packages that are missing where something was started."""
     found = (NOT_THERE.search(it.message) for it in notes)
     return list(dict.fromkeys(it[1] for it in found if it))
-
-
-def _not_there(order: LaunchOrder, missing: Iterable[str]) -> Iterator[LaunchNote]:
-    for name in missing:
-        yield LaunchNote(Place(os.path.abspath(order.file), 1), not_installed(name))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:
@@ -98,8 +109,7 @@ def read_own(file: str, folder: str) -> LaunchGraph:
         tempfile.tempdir = folder
         keep_places()
         try:
-            description = _included(order)
-            return _visited(description, order)
+            return _visited(_described(order), order)
         except (Exception, SystemExit) as error:
             raise UnreadableError(failure(error)) from error
         finally:
@@ -107,20 +117,43 @@ def read_own(file: str, folder: str) -> LaunchGraph:
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
-    context = of_launch().LaunchContext(noninteractive=True)
-    seen = Visit(context, [], [], {}, [], Place(os.path.abspath(order.file), 1), [])
+    _check_given(description, order)
+    context, path = of_launch().LaunchContext(noninteractive=True), os.path.abspath(order.file)
+    folder = {"current_launch_file_directory": os.path.dirname(path)}
+    context.extend_locals({"current_launch_file_path": path, **folder})
+    context.launch_configurations.update(order.arguments)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [])
+    unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     for it in faults(context):
         seen.note(it, parameters=True)
-    notes = tuple(dict.fromkeys(seen.notes))
+    notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     return LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
 
 
-def _included(order: LaunchOrder) -> Any:
-    """The file as ``ros2 launch`` includes it; its description is read here to see its faults."""
+def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
+    """An included file fails without a launch configuration that nothing before it sets. That of the
+    file itself may be given to it, and what is not known may set one."""
+    known = True
+    for it in notes:
+        unset = it.message.startswith(UNSET) and it.place.file != path
+        fails = it.fails or (known and unset)
+        known = known and (fails or it.parameters)
+        yield it._replace(fails=fails)
+
+
+def _described(order: LaunchOrder) -> Any:
+    """The description that the file makes."""
     sources = of_launch("launch_description_sources")
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
-    source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
-    include = of_launch("actions").IncludeLaunchDescription
-    return include(source, launch_arguments=list(order.arguments))
+    return source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
+
+
+def _check_given(description: Any, order: LaunchOrder) -> None:
+    """Raises UnreadableError without an argument that the file itself has to be given."""
+    found = description.get_launch_arguments_with_include_launch_description_actions()
+    for it, includes in found:
+        free = it.default_value is not None or getattr(it, "_conditionally_included", False)
+        if not free and not includes and it.name not in dict(order.arguments):
+            raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")

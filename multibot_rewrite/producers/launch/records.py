@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.tool_nodes import is_viewer
 
 Rules = tuple[tuple[str, str], ...]
 
@@ -153,6 +154,11 @@ class RunningNode(NamedTuple):
     def full_name(self) -> str:
         """Namespace and name."""
         return expand(self.name, self.namespace, "")
+
+    @property
+    def is_known(self) -> bool:
+        """Is known what it does, or that it only looks on?"""
+        return self.facts is not None or is_viewer(self.name)
 
     def value(self, name: str) -> object:
         """What a parameter is set to; None where nothing sets it."""

@@ -61,7 +61,7 @@ UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
 _STATIC = "static_transform_publisher"
-_CLASSIC_SPAWNER = "spawn_entity.py"
+_CLASSIC_SPAWNER, _INIT = "spawn_entity.py", "gazebo_ros_init"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 
@@ -96,8 +96,11 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
+    first: dict[str, Rules] = {}
     for model in models.found:
         made = managers(model, dict(graph.files))
+        if model.spawned and controller_way(known.release).process_wide:
+            made = iter([_of_process(it, first) for it in made])
         wanted = [it for it in made if model.spawned or full_name(it, None) in asked]
         found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
         found += _plugins(model) if model.spawned else ()
@@ -108,6 +111,12 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     lost = [it for it in spawned if it.manager not in by_name]
     nodes, more = (*found, *controllers), (*notes, *_without_manager(lost))
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
+
+
+def _of_process(manager: LaunchedNode, first: dict[str, Rules]) -> LaunchedNode:
+    """A manager with the rules of the process, which are those of the ``first`` one of its program."""
+    rules = first.setdefault(manager.executable, manager.remappings)
+    return manager._replace(remappings=rules)
 
 
 def _apart(found: Sequence[RunningNode], unnamed: Collection[str]) -> Iterator[RunningNode]:
@@ -156,14 +165,20 @@ def _plugins(model: Model) -> Iterator[RunningNode]:
 def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
     """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
     passes it on."""
-    for it in graph.nodes:
-        # Who spawns has the simulator running, if in another launch file.
-        if it.package == CLASSIC and it.executable in (SIMULATOR, _CLASSIC_SPAWNER):
-            clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
-            facts = NodeFacts("gazebo", it.package, (clock,))
-            names = (facts.name, "/", (), (), "/")
-            yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
-            return
+    classic = [it for it in graph.nodes if it.package == CLASSIC]
+    # Who spawns has the simulator running, if in another launch file.
+    started = [it for it in classic if it.executable == SIMULATOR]
+    started = started or [it for it in classic if it.executable == _CLASSIC_SPAWNER]
+    for it in [one for one in started if _has_clock(one.arguments)][:1]:
+        clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
+        facts = NodeFacts("gazebo", it.package, (clock,))
+        names = (facts.name, "/", (), (), "/")
+        yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
+
+
+def _has_clock(words: Sequence[str]) -> bool:
+    """Is its plugin for the clock loaded? Its launch files load it, a command line may not."""
+    return "-s" not in words or any(_INIT in it for it in words)
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:

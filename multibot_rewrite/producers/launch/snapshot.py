@@ -77,6 +77,7 @@ from multibot_rewrite.system.records import (
     Lookup,
     Node,
     Parameter,
+    Place,
     System,
 )
 
@@ -212,10 +213,14 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
+    # What several nodes lack is said once, where the first one does.
+    first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
-        yield Caveat(NOT_WHOLE, True, f"{note.place}: {note.message}")
+        first.setdefault(note.message, note.place)
+    for message, place in first.items():
+        yield Caveat(NOT_WHOLE, True, f"{place}: {message}")
     unknown = [
-        f"{it.full_name} ({it.program})" for it in nodes if it.facts is None and not is_bridge(it)
+        f"{it.full_name} ({it.program})" for it in nodes if not it.is_known and not is_bridge(it)
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)

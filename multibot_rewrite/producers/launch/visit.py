@@ -19,7 +19,7 @@ from multibot_rewrite.producers.launch.describe import (
     process,
     text,
 )
-from multibot_rewrite.producers.launch.failures import failure, is_certain
+from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
 from multibot_rewrite.producers.launch.includes import simulator, without_effect
 from multibot_rewrite.producers.launch.places import place_of
 
@@ -47,6 +47,8 @@ _PASSED = (
 )
 
 
+_ENDED = "groups and their launch configurations have ended by then"
+_INCLUDE = "IncludeLaunchDescription"
 # The locals of a launch that are of this package.
 _OURS = "multibot_"
 # One after the other; a timer may start itself again.
@@ -69,7 +71,7 @@ def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
     here = _at(entity, seen)
     # An include has the path of its file for what is below it; other actions may leave theirs.
-    own = _is(entity, "IncludeLaunchDescription")
+    own = _is(entity, _INCLUDE)
     if own:
         seen.context._push_locals()
     try:
@@ -77,18 +79,26 @@ def visit(entity: Any, seen: Visit) -> None:
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
-        missing = simulator(error, entity, here) if own else None
-        if missing:
-            here.nodes.append(missing)
-            return
-        ended = "; groups and their launch configurations have ended by then" if here.later else ""
-        here.note(
-            f"{here.later} {failure(error)}{ended}".strip(),
-            fails=is_certain(error, here.place.file),
-        )
+        _failed(entity, error, here)
     finally:
         if own:
             seen.context._pop_locals()
+
+
+def _failed(entity: Any, error: BaseException, here: Visit) -> None:
+    """Keep why an entity cannot be visited, or what it starts, where that is known all the same."""
+    if _is(entity, _INCLUDE):
+        try:
+            known = simulator(error, entity, here)
+        except TypeError as wrong:
+            known, error = [], wrong
+        here.nodes.extend(known)
+        if known:
+            return
+    reason = failure(error)
+    if here.later and is_unset(error):
+        reason = f"{reason.partition(';')[0]}; {_ENDED}"
+    here.note(f"{here.later} {reason}".strip(), fails=is_certain(error, here.place.file))
 
 
 def _at(entity: Any, seen: Visit) -> Visit:
@@ -219,7 +229,7 @@ _HANDLERS: Mapping[str, Handler] = MappingProxyType(
     {
         **dict.fromkeys(_EXECUTED, _execute),
         **dict.fromkeys(_PASSED, _pass),
-        "IncludeLaunchDescription": _include,
+        _INCLUDE: _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,
         "Node": _node,

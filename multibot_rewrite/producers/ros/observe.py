@@ -34,6 +34,7 @@ from multibot_rewrite.system import environment
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
+from multibot_rewrite.system.reach import LOCALHOST
 from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,
@@ -167,8 +168,7 @@ def _wait_until_settled(
             session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
-        known = _all_are_known(session)
-        quiet = assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
+        quiet = _enough(session)
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
@@ -178,7 +178,7 @@ def _wait_until_settled(
         why = assemble.why_settled(now, changed, met, timeout, quiet, starved=starved)
         if why:
             return why, unchanged, times.last
-        still = SHORT_IDLE_SECONDS if known else IDLE_SECONDS
+        still = SHORT_IDLE_SECONDS if quiet < assemble.QUIET_SECONDS else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != seen:
             queried, known_ends = seen, view(session, cache)
@@ -189,14 +189,22 @@ def _wait_until_settled(
     return "", clock, ()
 
 
-def _all_are_known(session: GraphSession) -> bool:
-    """Has every participant announced itself that there can be? Nobody knows but of this machine."""
+def _enough(session: GraphSession) -> float:
+    """How many seconds without a change are enough: fewer where every participant of this machine has
+    announced itself, and there is no other, by range or as far as is seen."""
     asked = environment.settings(os.environ)
-    if asked.range != "LOCALHOST" or asked.static_peers or asked.discovery_server:
-        return False
+    if asked.static_peers or asked.discovery_server:
+        return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
-    return announced > 0 and announced == participants_here(session.ros.context.get_domain_id())
+    here = participants_here(session.ros.context.get_domain_id())
+    if not announced or len(announced) != here:
+        return assemble.QUIET_SECONDS
+    if asked.range == LOCALHOST:
+        return assemble.ALL_KNOWN_SECONDS
+    machines = {environment.machine(it) for it in announced}
+    alone = len(machines) == 1 and "" not in machines and here > 1
+    return assemble.ALL_HERE_SECONDS if alone else assemble.QUIET_SECONDS
 
 
 class _ChangeTimes:

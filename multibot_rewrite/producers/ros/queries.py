@@ -40,11 +40,11 @@ def node_names(node: Any) -> list[str]:
     return sorted(name for name in found if name != node.get_fully_qualified_name())
 
 
-def participants(node: Any) -> int:
-    """How many participants have announced themselves, this process's own among them: each writes on a
+def participants(node: Any) -> frozenset[str]:
+    """The participants that have announced themselves, this process's own among them: each writes on a
     topic of the middleware which nodes it has."""
     found = node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True)
-    return len({bytes(it.endpoint_gid)[:_GUID_PREFIX] for it in found})
+    return frozenset(bytes(it.endpoint_gid)[:_GUID_PREFIX].hex() for it in found)
 
 
 def enclaves(node: Any) -> dict[str, str]:

@@ -183,14 +183,20 @@ def shared_service(file: NamedFile) -> Iterator[Remark]:
             yield remark_at(node, message, "add an entry for each robot")
 
 
+# What a world's own systems send is below its name.
+_WORLD = "/world/"
+
+
 class GzTopics(NamedTuple):
-    """The topics of the sensors and plugins of the robot that a bridge is for, by name."""
+    """The topics of the sensors and plugins of the robot that a bridge is for, and of its world, by
+    name."""
 
     topics: Mapping[str, GzTopic]
 
 
 class GzTopic(NamedTuple):
-    """A topic of a sensor or plugin: its type, the direction of a row for it, and its line."""
+    """A topic of a sensor or plugin: its type, the direction of a row for it, and its line; empty where
+    they are not known."""
 
     type: str
     direction: str
@@ -239,16 +245,20 @@ def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterato
     way, type_ = text_in(row, "direction") or _BOTH_WAYS, _bare(text_in(row, TYPES[1]))
     own = topics.get(topic)
     if own is None:
-        incoming = [it for it, its in topics.items() if its.direction == _IN == way]
+        incoming = [
+            it
+            for it, its in topics.items()
+            if its.direction == _IN == way and it.startswith(_WORLD) == topic.startswith(_WORLD)
+        ]
         alike = [it for it in incoming if _bare(topics[it].type) == type_]
         near = alike[0] if len(alike) == 1 else nearest(topic, alike)
         hint = did_you_mean_at(near, topics[near].place) if near else "name one that is there"
         if alike:
             yield remark_at(node, f"nothing sends gz topic {topic}, which the row reads", hint)
-    elif way not in (own.direction, _BOTH_WAYS):
+    elif own.direction and way not in (own.direction, _BOTH_WAYS):
         message = f"gz topic {topic} is in the other direction in the description"
         yield remark_at(node, message, _write(own.direction, own))
-    elif type_ and type_ != _bare(own.type):
+    elif type_ and own.type and type_ != _bare(own.type):
         message = f"gz topic {topic} has another type in the description"
         yield remark_at(node, message, _write(own.type, own))
 

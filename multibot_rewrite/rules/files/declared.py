@@ -15,6 +15,7 @@ from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import (
+    DECLARED,
     DEMANDED,
     READ,
     YAML,
@@ -146,10 +147,10 @@ def _wrong_type(it: Given, known: Sequence[Declared]) -> str:
 
 
 def not_read(file: NamedFile) -> Iterator[Remark]:
-    """Parameters of a node whose package declares all of its own in one file, and not these."""
+    """Parameters of a node whose package declares all of its own, and not these."""
     for section in sections(file):
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
-        if not facts or any(fact.how != YAML for fact in facts) or section.node is None:
+        if section.node is None or not _are_all(facts):
             continue
         paths = [fact.path for fact in facts]
         for it, found in section.known:
@@ -157,6 +158,13 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
                 continue
             message = f"{section.title} declares no parameter {it.name!r}"
             yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+
+
+def _are_all(facts: Sequence[Declared]) -> bool:
+    """Are these all that a package declares: in a file, or in code that puts together no name?"""
+    return bool(facts) and all(
+        it.how == YAML or (it.how == DECLARED and "<" not in it.path) for it in facts
+    )
 
 
 def below_unknown_names(file: NamedFile) -> Iterator[Remark]:

@@ -117,6 +117,11 @@ behavior_server:
 )
 def of_another_release(file: NamedFile) -> Iterator[Remark]:
     """Nodes and parameters that only other releases have."""
+    yield from elsewhere(file)
+
+
+def elsewhere(file: NamedFile) -> Iterator[Remark]:
+    """The nodes and parameters of a file that its release does not have and another one has."""
     for section, _ in file.pages:
         yield from _of_another_release(section, file.context.distro)
     yield from of_other_releases(file)

@@ -145,7 +145,7 @@ def _is(it: RunningNode, known: str) -> bool:
 
 def _is_known(launched: Launched) -> bool:
     """Are all nodes of the launch known?"""
-    nodes = all(it.facts is not None for it in launched.nodes)
+    nodes = all(it.is_known for it in launched.nodes)
     return nodes and all(it.parameters or it.fails for it in launched.graph.notes)
 
 

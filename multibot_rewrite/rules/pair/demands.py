@@ -14,7 +14,15 @@ from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
 from multibot_rewrite.rules.pair.causes import DOES
 from multibot_rewrite.rules.system.matching import not_latched
 from multibot_rewrite.system.index import Index, ends_of
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Topic, alternatives
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    TOPIC,
+    End,
+    Topic,
+    alternatives,
+)
 
 # How the nodes of ros_gz_bridge are called.
 _BRIDGES = ("bridge", "parameter_bridge")
@@ -240,7 +248,8 @@ def _absent(plan: Index, seen: Index, robot: str) -> bool:
 
 def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
     """Whether anything does with a topic what a bridge has to do."""
-    ends = (it for it in ends_of(seen, topic.name) if (it.kind, it.role) == (TOPIC, role))
+    kind = SERVICE if role == SERVES else TOPIC
+    ends = (it for it in ends_of(seen, topic.name) if (it.kind, it.role) == (kind, role))
     return any(topic.type in ("", it.type) for it in ends)
 
 

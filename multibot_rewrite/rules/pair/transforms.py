@@ -12,7 +12,8 @@ from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, tf_rule
 from multibot_rewrite.rules.pair.tf_causes import why_disconnected
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
-from multibot_rewrite.rules.system.tf_topics import in_pieces, tf_on_two_topics, tf_tree_in_pieces
+from multibot_rewrite.rules.system.tf_pieces import in_pieces, tf_tree_in_pieces
+from multibot_rewrite.rules.system.tf_topics import tf_on_two_topics
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic

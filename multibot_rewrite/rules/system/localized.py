@@ -12,7 +12,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.states import ACTIVE
-from multibot_rewrite.rules.system.tf_topics import root_of
+from multibot_rewrite.rules.system.tf_pieces import root_of
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree

@@ -11,7 +11,7 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
-from multibot_rewrite.rules.system.tf_topics import (
+from multibot_rewrite.rules.system.tf_pieces import (
     is_of_description,
     publishes_description,
     root_of,
@@ -104,7 +104,8 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
     if it.frame in above:
         return _not_joined(seen, it, above)
-    if near := nearest(it.frame, sorted(frames_in(edges)), MISTYPED):
+    frames = frames_in(edges)
+    if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
         return _finding(seen, it, message, f"did you mean {near}?", WARNING)
     message = f"has the transform {it.parent} -> {it.frame} as its state, which no known node sends"

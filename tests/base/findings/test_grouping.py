@@ -25,7 +25,7 @@ def lost(robot: str, topic: str = "cmd_vel", **more: str) -> Finding:
 
 def test_twenty_robots_with_one_fault_are_one_finding() -> None:
     (one,) = grouped([lost(robot) for robot in ROBOTS], NAMES)
-    assert (one.robot, one.others) == ("robot1", tuple(ROBOTS[1:]))
+    assert (one.robot, one.robots) == ("robot1", tuple(ROBOTS))
     assert same_for(one) == "; the same for robot2 and 18 more"
     # A check has them by the names of nodes: robot10 before robot2.
     assert grouped([lost(robot) for robot in sorted(ROBOTS)], NAMES) == [one]
@@ -35,7 +35,7 @@ def test_what_is_grouped_already_keeps_its_robots() -> None:
     first = grouped([lost(robot) for robot in ROBOTS[:2]], NAMES)
     assert grouped(first, NAMES) == first
     (one,) = grouped([*first, lost("robot3")], NAMES)
-    assert one.others == ("robot2", "robot3")
+    assert one.robots == ("robot1", "robot2", "robot3")
     assert str(one).count("; the same for robot2 and 1 more (its rule") == 1
 
 
@@ -71,7 +71,7 @@ def test_the_word_of_a_robot_in_frames_is_the_robot() -> None:
         for robot, word in (("a", "a1"), ("b", "b1"))
     ]
     (one,) = grouped(found, words)
-    assert one.others == ("b",)
+    assert one.robots == ("a", "b")
 
 
 def test_findings_of_a_file_that_speak_of_one_robot_are_grouped() -> None:
@@ -80,7 +80,7 @@ def test_findings_of_a_file_that_speak_of_one_robot_are_grouped() -> None:
         for robot in ROBOTS[:3]
     ]
     (one,) = grouped(found, NAMES)
-    assert one.others == ("robot2", "robot3")
+    assert (one.robots, one.place) == (("robot1", "robot2", "robot3"), "fleet.yaml:4:0")
 
 
 def test_the_order_is_that_of_the_first() -> None:
@@ -98,7 +98,7 @@ def test_every_format_names_the_robots_and_the_node(form: str) -> None:
     assert "MG102" in text
     if form == "json":
         (one,) = json.loads(text)["findings"]
-        assert (one["others"], one["file"]) == (ROBOTS[1:], None)
+        assert (one["robots"], one["file"]) == (ROBOTS, None)
     else:
         assert "the same for robot2 and 18 more" in text
 

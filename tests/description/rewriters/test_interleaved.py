@@ -143,11 +143,11 @@ def both(spot: Spot, turn: int) -> list[bytes]:
     return [first, *map(rendered, read)]
 
 
-def missed(turns: Callable[[int], range]) -> list[tuple[str, int]]:
+def missed(turns: Callable[[int], range], every: int = 1) -> list[tuple[str, int]]:
     """The lines at which two threads do not both make the right text."""
     return [
         (Path(spot[0]).stem, spot[1])
-        for spot, times in lines_run().items()
+        for spot, times in [*lines_run().items()][::every]
         for turn in turns(times)
         if both(spot, turn) != [RENAMED, RENAMED]
     ]
@@ -160,12 +160,13 @@ def test_many_lines_are_looked_at() -> None:
 
 @pytest.mark.slow
 def test_another_thread_comes_when_a_line_first_runs() -> None:
-    assert missed(lambda _: range(1, 2)) == []
+    """Three lines are one step of the work: one of them is asked."""
+    assert missed(lambda _: range(1, 2), every=3) == []
 
 
 @pytest.mark.deep
 def test_another_thread_comes_whenever_a_line_runs() -> None:
-    assert missed(lambda times: range(2, times + 1)) == []
+    assert missed(lambda times: range(1, times + 1)) == []
 
 
 BROKEN = TEXT.replace("child@link uses link", "child@link loves link")

@@ -66,6 +66,29 @@ def test_it_matches_whole_names(pattern: str, yes: tuple[str, ...], no: tuple[st
     assert [name for name in (*yes, *no) if it.matches(name)] == [*yes]
 
 
+# C++ [re.grammar] and ECMA-262: what each class has, and a character that it has not.
+CLASSES = {
+    "alpha": ("aZ", "1"), "digit": ("09", "a"), "d": ("09", "a"), "alnum": ("aZ9", "_"),
+    "lower": ("az", "A"), "upper": ("AZ", "a"), "punct": ("._-", "a"), "xdigit": ("aF9", "g"),
+    "space": (" \t\n", "a"), "s": (" \t\n", "a"), "blank": (" \t", "\n"), "w": ("aZ9_", "-"),
+}  # fmt: skip
+
+
+def test_each_class_has_its_characters() -> None:
+    for name, (inside, outside) in CLASSES.items():
+        whole = Pattern(f"[[:{name}:]]")
+        assert [it for it in inside + outside if whole.matches(it)] == [*inside], name
+    for name in ("d", "w", "s"):
+        whole, other = Pattern(f"\\{name}"), CLASSES[name][1]
+        assert [it for it in CLASSES[name][0] + other if whole.matches(it)] == [*CLASSES[name][0]]
+        assert Pattern(f"\\{name.upper()}").matches(other)
+    for name, character in (("n", "\n"), ("t", "\t"), ("r", "\r"), ("f", "\f"), ("v", "\v")):
+        assert Pattern(f"\\{name}").matches(character)
+    for name in "123456789bBcxu":
+        with pytest.raises(PatternError):
+            Pattern(f"a\\{name}")
+
+
 @pytest.mark.parametrize(
     "pattern",
     [

@@ -51,9 +51,12 @@ def test_a_file_reads_its_package_and_not_the_next_one(repository: Path) -> None
 
 
 def test_a_repository_is_one(repository: Path) -> None:
-    (repository / ".git").mkdir()
+    """Also a copy without ``.git``, which has what only the top of a repository has."""
     file = repository / "arm" / "urdf" / "robot.xacro"
-    assert '<link name="part"/>' in including(file, "../../tool/urdf/part.xacro")
+    for mark in (".git", ".gitignore", ".github", ".gitmodules", "LICENSE", "README.md"):
+        (repository / mark).mkdir()
+        assert '<link name="part"/>' in including(file, "../../tool/urdf/part.xacro"), mark
+        (repository / mark).rmdir()
 
 
 @pytest.mark.parametrize("reach", [{"roots": True}, {"trust": True}])
@@ -213,13 +216,23 @@ def test_a_pattern_is_bounded(repository: Path, monkeypatch: pytest.MonkeyPatch)
 VALUE = '<link name="$({})"/>'
 
 
-@pytest.mark.parametrize("name", ["ROS_DISTRO", "TURTLEBOT3_MODEL", "AMENT_PREFIX_PATH"])
-def test_variables_of_ros_are_seen(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
-    monkeypatch.setenv(name, "waffle")
-    (tmp_path / "r.xacro").write_text(XACRO.format(VALUE.format(f"optenv {name} no")))
-    assert b'<link name="waffle"/>' in expand(str(tmp_path / "r.xacro"), {})
+# Of ROS, colcon, Gazebo and its forerunners, by their documentation.
+OF_ROS = (
+    "ROS_DISTRO", "ROS_PACKAGE_PATH", "RMW_IMPLEMENTATION", "AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH",
+    "CMAKE_PREFIX_PATH", "TURTLEBOT3_MODEL", "GAZEBO_MODEL_PATH", "GAZEBO_PLUGIN_PATH",
+    "GAZEBO_RESOURCE_PATH", "GZ_VERSION", "GZ_SIM_RESOURCE_PATH", "GZ_SIM_SYSTEM_PLUGIN_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH",
+)  # fmt: skip
+
+
+def test_variables_of_ros_are_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    links = []
+    for name in OF_ROS:
+        monkeypatch.setenv(name, f"waffle_{name}")
+        links.append(VALUE.format(f"optenv {name} no"))
+    (tmp_path / "r.xacro").write_text(XACRO.format("".join(links)))
+    made = expand(str(tmp_path / "r.xacro"), {}).decode()
+    assert [name for name in OF_ROS if f'<link name="waffle_{name}"/>' not in made] == []
 
 
 @pytest.mark.sample(1)

@@ -35,7 +35,7 @@ WORDS = (
 )  # fmt: skip
 NAMES = ("name", "value", "params", "macro", "file", "ns", "default", "scope", "remove", "x")
 TAGS = ("if", "property", "macro", "include", "arg", "element", "attribute", "call", "m", "nope")
-FEW, MANY = 400, 3_000
+FEW, MANY = 150, 3_000
 
 
 def damaged(chance: random.Random, data: bytes) -> bytes:

@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from lxml import etree
 from urdfdom_cases import CHECK, check_urdf
 
 from multibot_rewrite import InputError, rewrite, strip
@@ -46,6 +47,16 @@ FAULTS = {
     "attribute-twice": (DECLARATION, "", '<gz:a b="1" b="2"/>'),
     "xacro": (DECLARATION, "", "<xacro:if value='1'/>"),
 }
+
+
+def test_prefixes_that_gazebo_had_are_bound_to_its_namespaces() -> None:
+    """Models of Gazebo Classic and of Drake leave their declarations out."""
+    stage = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
+    known = {it: stage + it for it in ("body", "controller", "joint", "sensor", "slider")}
+    known["drake"] = "http://drake.mit.edu"
+    for prefix, uri in known.items():
+        (child,) = etree.fromstring(well_formed(f"<robot><{prefix}:a/></robot>".encode()).text)
+        assert child.tag == f"{{{uri}}}a"
 
 
 def made(form: str, start: str, attributes: str, inside: str) -> bytes:

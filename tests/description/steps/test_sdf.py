@@ -418,7 +418,7 @@ def trials(models: Mapping[str, Path], *options: Options) -> list[Trial]:
 def test_libsdformat_sees_the_same(sdf_tool: Tool, models: dict[str, Path], tmp_path: Path) -> None:
     taken = {name: path for name, path in models.items() if name not in on_record()}
     few = trials(spread(taken, FEW), *OPTIONS)
-    judge(sdf_tool, [Trial("nested", NESTED, OPTIONS[1]), *few[::8], *few[3::8]], tmp_path)
+    judge(sdf_tool, [Trial("nested", NESTED, OPTIONS[1]), *few[::12], *few[3::12]], tmp_path)
 
 
 @pytest.mark.deep
@@ -447,6 +447,7 @@ def test_libsdformat_sees_the_same_in_the_cases(sdf_tool: Tool, tmp_path: Path) 
 
 
 @pytest.mark.slow
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("old", "new"), [WRONG[0], WRONG[1], DECLARED[0]])
 def test_libsdformat_notices_a_wrong_name(
     sdf_tool: Tool, old: bytes, new: bytes, tmp_path: Path

@@ -28,8 +28,9 @@ from zenoh_robots import (
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, configurations
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.zenoh.observe import Router, look
+from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan_file import read_plan as plan_in
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import Domain, System
 
 zenoh = pytest.importorskip("zenoh", reason="no zenoh: pip install '.[zenoh]'")
 pytestmark = pytest.mark.live
@@ -114,6 +115,27 @@ def test_a_robot_commands_itself_and_no_other(tmp_path: Path, plan: System) -> N
             # It hears its own commands, and not those to others.
             assert not arrives(anybody, one, other, key("/robot1/cmd_vel"))
             assert not arrives(anybody, one, key("/robot1/cmd_vel", 7), key("/robot1/cmd_vel"))
+
+
+def test_robots_in_domains_reach_the_domain_of_all_by_their_bridge(
+    tmp_path: Path, plan: System
+) -> None:
+    """One process of domain_bridge is in two domains, with the configuration of its robot."""
+    numbers = {"": 10, "robot1": 11, "robot2": 12}
+    plan = plan._replace(domains=tuple(Domain(*it) for it in numbers.items()))
+    plan = with_bridges(plan, ["odom"])
+    with router() as address:
+        files = written(tmp_path, plan, Setup(address, 0))
+        with ExitStack() as stack:
+            one = stack.enter_context(opened(files["robot1.json5"]))
+            anybody = zenoh.open(config(mode="client", connect__endpoints=[address]))
+            stack.callback(anybody.close)
+            own, crossed = key("/robot1/odom", 11), key("/robot1/odom", 10)
+            reaches(one, anybody, crossed, own)
+            for refused in (key("/robot2/odom", 10), own.replace("11/", "12/", 1)):
+                assert not arrives(one, anybody, refused, own)
+            # What robots say in the domain of all is not for robot1.
+            assert not arrives(anybody, one, key("/robot2/odom", 10), key("/robot1/cmd_vel", 11))
 
 
 def test_what_is_latched_and_the_graph_pass(tmp_path: Path, plan: System) -> None:

@@ -9,6 +9,7 @@ import pytest
 from paths import ROBOTS
 from plans import PlannedRobot, planned
 
+from multibot_rewrite.base.conventions import SENT_BY_ANY_NODE
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.zenoh_access import (
     FLEET_ROUTER,
@@ -18,8 +19,9 @@ from multibot_rewrite.fleet.outputs.zenoh_access import (
     robot_rules,
 )
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, configurations
+from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.system.records import End, System
+from multibot_rewrite.system.records import Domain, End, Node, System
 
 
 def made(*robots: tuple[str, str, str], ends: tuple[End, ...] = ()) -> System:
@@ -89,13 +91,37 @@ def test_tf_of_all_robots_is_heard_and_sent() -> None:
         assert not any("r2" in key for key in keys)
 
 
+def test_a_robot_with_a_domain_of_its_own_is_kept_to_it() -> None:
+    """But for its domain_bridge, whose other node is in the domain of all (domain_bridge.cpp)."""
+    ends = tuple(
+        planned_end(node, "topic", role, f"/{robot}/odom", "nav_msgs/msg/Odometry", "odom")
+        for robot in ("robot1", "robot2")
+        for node, role in ((f"/{robot}/a", "publishes"), ("/monitor", "subscribes"))
+    )
+    plan = made(*NAMESPACED, ends=ends)
+    plan = plan._replace(nodes=(*plan.nodes, Node("/monitor")))
+    numbers = {"": 10, "robot1": 11, "robot2": 12}
+    plan = with_bridges(plan._replace(domains=tuple(Domain(*it) for it in numbers.items())))
+    one, two = rights(plan, 0)
+    assert one.own[0] == "11/robot1/**" and two.own[0] == "12/robot2/**"
+    assert (one.domains, two.domains) == ((11, 10), (12, 10))
+    assert "10/robot1/odom/*/*" in one.sends and "10/robot1/odom/*/*" not in one.hears
+    every = [key for it in (one.own, one.sends, one.hears) for key in it]
+    assert not any("robot2" in key or key.startswith(("0/", "12/")) for key in every)
+    # Of the domain of all nothing but what crosses, and what every node sends.
+    shared = {key for key in every if key.startswith("10/") and "@adv" not in key}
+    topics = {key for key in shared if "robot1" in key}
+    assert topics == {"10/robot1/odom/*/*", "10/robot1_bridge_10/**"}
+    assert shared - topics <= {f"10{it}/*/*" for it in SENT_BY_ANY_NODE}
+
+
 def test_a_router_has_the_flows_the_other_way_round() -> None:
     given = of(made(*NAMESPACED))
-    flows = {str(it["id"]): it["flows"] for it in robot_rules(given, 0)}
-    mirrored = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, FLEET_ROUTER)}
+    flows = {str(it["id"]): it["flows"] for it in robot_rules(given)}
+    mirrored = {str(it["id"]): it["flows"] for it in robot_rules(given, FLEET_ROUTER)}
     assert (flows["robot1_sends"], flows["robot1_hears"]) == (["egress"], ["ingress"])
     assert (mirrored["robot1_sends"], mirrored["robot1_hears"]) == (["ingress"], ["egress"])
-    own = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, OWN_ROUTER)}
+    own = {str(it["id"]): it["flows"] for it in robot_rules(given, OWN_ROUTER)}
     assert own["robot1_sends"] == own["robot1_hears"] == ["egress", "ingress"]
     assert flows["robot1_own"] == mirrored["robot1_own"] == ["egress", "ingress"]
 

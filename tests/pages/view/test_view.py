@@ -16,6 +16,9 @@ from view_pages import page
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.pages.view import models
 
+# What reads meshes takes longer to be imported than all of this to run.
+pytestmark = pytest.mark.more
+
 # A mesh of one triangle, with the corners below.
 CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0))
 STL = b"\0" * 80 + struct.pack("<I", 1) + struct.pack("<12f", 0, 0, 1, *sum(CORNERS, ())) + b"\0\0"
@@ -98,7 +101,6 @@ def test_what_names_were_and_where(file: Path) -> None:
     ]
 
 
-@pytest.mark.more
 def test_topics_have_the_namespace_where_it_is_another_word(tmp_path: Path) -> None:
     fleet = tmp_path / "fleet.yaml"
     (tmp_path / "rover.urdf").write_bytes((ROBOTS / "rover.urdf").read_bytes())
@@ -112,6 +114,8 @@ def test_topics_have_the_namespace_where_it_is_another_word(tmp_path: Path) -> N
     assert "p1/base_link" in new
     assert "/site" in new
     assert not [it for it in new if "one" in it]
+    lines = [row[0] for row in robot["changes"]]
+    assert lines == sorted(lines)
 
 
 def test_frames_of_a_snapshot(tmp_path: Path) -> None:
@@ -126,7 +130,6 @@ def test_frames_of_a_snapshot(tmp_path: Path) -> None:
     assert robot["heard"] == {**others, "imu_link/robot1": "elsewhere"}
 
 
-@pytest.mark.more
 def test_the_page_fetches_nothing_and_is_small(file: Path) -> None:
     page(file.parent, file)
     text = (file.parent / "view.html").read_text()
@@ -192,7 +195,6 @@ def test_a_large_mesh_is_shown_as_its_box(file: Path, monkeypatch: pytest.Monkey
 OBJ = "mtllib part.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n"
 
 
-@pytest.mark.more
 def test_a_mesh_has_the_colours_of_its_file(file: Path) -> None:
     """As in RViz: the material of the description is for a mesh that has none."""
     assert not page(file.parent, file)["meshes"][0]["c"]

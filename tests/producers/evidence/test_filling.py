@@ -187,13 +187,24 @@ def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:
         program = program_of(node, "jazzy")
         assert program and (node.name, program.executable, node.when) == (name, "ukf_node", "")
     beside = EKF + EKF.replace("ekf_node", "ukf_node")
-    assert {it.name for it in nodes_of(stack, given(beside), known).nodes} == {"ekf_node", "ukf_node"}
+    assert {it.name for it in nodes_of(stack, given(beside), known).nodes} == {
+        "ekf_node",
+        "ukf_node",
+    }
     # navsat_transform_node is of the package, and no filter.
     other = nodes_of(stack, given("navsat_transform_node:\n  ros__parameters: {}\n"), known)
     assert {it.name: bool(it.when) for it in other.nodes} == {
         "ekf_filter_node": False,
         "navsat_transform_node": True,
     }
+
+
+def test_a_name_of_before_humble_is_of_no_node() -> None:
+    """Galactic's recoveries_server is behavior_server since Humble (nav2_behaviors)."""
+    text = "recoveries_server:\n  ros__parameters: {costmap_topic: a}\n"
+    known = load_nodes("humble")
+    found = nodes_of((known["behavior_server"],), given(text), known)
+    assert [(it.name, it.when) for it in found.nodes] == [("behavior_server", "")]
 
 
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:

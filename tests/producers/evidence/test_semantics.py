@@ -27,8 +27,9 @@ def joint(name: str, parent: str, child: str, more: str = "", type_: str = "cont
 
 URDF = f"""\
 <robot name="arm">
-  <link name="base"/><link name="upper"/><link name="lower"/><link name="tool"/><link name="finger"/>
-  {joint("shoulder", "base", "upper")}
+  <link name="base_link"/><link name="upper"/><link name="lower"/><link name="tool"/>
+  <link name="finger"/>
+  {joint("shoulder", "base_link", "upper")}
   {joint("elbow", "upper", "lower")}
   {joint("flange", "lower", "tool", type_="fixed")}
   {joint("grip", "tool", "finger", '<mimic joint="elbow"/>')}
@@ -36,8 +37,8 @@ URDF = f"""\
 """
 SRDF = """\
 <robot name="arm">
-  <virtual_joint name="v" type="TYPE" parent_frame="odom" child_link="base"/>
-  <group name="arm"><chain base_link="base" tip_link="tool"/></group>
+  <virtual_joint name="v" type="TYPE" parent_frame="odom" child_link="base_link"/>
+  <group name="arm"><chain base_link="base_link" tip_link="tool"/></group>
   <group name="hand"><link name="finger"/></group>
   <group name="all"><group name="arm"/><joint name="v"/></group>
   <passive_joint name="PASSIVE"/>
@@ -74,7 +75,7 @@ def test_groups_have_the_joints_that_a_plan_moves() -> None:
         ("all", ("elbow",), 5),
     ]
     (virtual,) = found.virtual
-    assert (virtual.parent, virtual.child, virtual.place.line) == ("odom", "base", 2)
+    assert (virtual.parent, virtual.child, virtual.place.line) == ("odom", "base_link", 2)
 
 
 @pytest.mark.sample(1)
@@ -102,7 +103,9 @@ def test_joints_that_no_controller_moves(
 def test_a_virtual_joint_that_moves_needs_a_sender(tmp_path: Path) -> None:
     _, made = planned(tmp_path, "shoulder, elbow", type_="planar")
     assert [(it.code, it.line) for it in made] == [("MG413", 2)]
-    assert "odom -> base" in made[0].message
+    assert "odom -> base_link" in made[0].message
+    # It is there, as the root.
+    assert "did you mean" not in made[0].hint
 
 
 @pytest.mark.more

@@ -16,7 +16,7 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.transforms import edge, edges_off, joint_edges
-from multibot_rewrite.rules.system.tf_topics import tf_tree_in_pieces
+from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import NOWHERE, Edge, Place, System, edge_of

@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.formats.shared import calls, counts, json_te
 from multibot_rewrite.base.model import Edit
 
 # Grows when a key goes or means something else; a new key is no new version.
-VERSION = 2
+VERSION = 3
 
 
 def render(findings: Sequence[Finding], report: Report) -> str:
@@ -42,9 +42,9 @@ def _finding(finding: Finding, report: Report) -> dict[str, Any]:
         "calls": [call._replace(file=path_given(call.file))._asdict() for call in calls(it)],
         "arguments": it.arguments,
         "robot": it.robot,
+        "robots": list(it.robots or filter(None, (it.robot,))),
         "node": it.node,
         "names": list(it.names),
-        "others": list(it.others),
         "edits": [_edit(edit) for edit in it.edits],
     }
 

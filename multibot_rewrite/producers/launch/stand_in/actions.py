@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
+from multibot_rewrite.producers.launch.stand_in.frontend import description_in
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
@@ -205,6 +206,9 @@ class LaunchDescription:
     def get_sub_entities(self) -> list[Any]:
         return self.entities
 
+    def get_launch_arguments_with_include_launch_description_actions(self) -> list[Declared]:
+        return declared(self.entities)
+
     def add_action(self, action: Any) -> None:
         self.entities.append(action)
 
@@ -232,7 +236,7 @@ class IncludeLaunchDescription(Action):
         folder = {"current_launch_file_directory": os.path.dirname(path)}
         context.extend_locals({"current_launch_file_path": path, **folder})
         given = [text_of(context, name) for name, _ in self.launch_arguments]
-        for it, above in declared(description.entities):
+        for it, above in description.get_launch_arguments_with_include_launch_description_actions():
             _ask_for(it, [*given, *(name for one in above for name in one.names_without_context())])
         told = [SetLaunchConfiguration(*it) for it in self.launch_arguments]
         return [*told, description]
@@ -303,12 +307,14 @@ class LaunchDescriptionSource:
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file in Python; one in another form needs launch."""
+    """A launch file."""
 
     def __init__(self, launch_file_path: Text) -> None:
         super().__init__(None, launch_file_path)
 
     def read(self, location: str) -> Any:
+        if not location.endswith(".py"):
+            return description_in(location)
         return get_launch_description_from_python_launch_file(location)
 
 
@@ -322,8 +328,6 @@ def get_launch_description_from_python_launch_file(path: str) -> Any:
 
 
 def load_python_launch_file_as_module(path: str) -> Any:
-    if not path.endswith(".py"):
-        raise ValueError("a launch file in XML or YAML needs launch itself")
     spec = importlib.util.spec_from_file_location("launch_file", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

@@ -25,6 +25,7 @@ _TEXTS, _WORDS = (
 _WORDS[""] = re.compile(r"(?:[^\\$'\" ()]|\\.|\$(?!\())+", re.DOTALL)
 
 
+_OF_ROS_1 = ("arg", "find", "optenv")
 _KNOWN: Mapping[str, Callable[..., Any]] = MappingProxyType(
     {
         "all": values.AllSubstitution,
@@ -81,6 +82,8 @@ def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
     """The substitution whose name begins here."""
     found = _NAME.match(text, at)
     name = found[0] if found else ""
+    if name in _OF_ROS_1:
+        raise ValueError(f"Unknown substitution: {name}")
     if name not in _KNOWN:
         raise ValueError(f"$({text[at : at + 40]}: this substitution needs launch itself")
     at += len(name)

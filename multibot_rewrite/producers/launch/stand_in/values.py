@@ -45,7 +45,7 @@ class Substitution:
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
-class SubstitutionFailure(Exception):
+class SubstitutionFailure(RuntimeError):
     """A substitution has no value."""
 
 

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Launch files in XML and YAML -> the actions that they stand for, of the stand-in for launch.
+
+Source: launch and launch_ros jazzy, frontend/expose.py, ``parse`` of each action and of
+descriptions/composable_node.py.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any
+
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.launch.stand_in.entities import Entity, root_of
+from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
+from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution
+
+Reader = Callable[[Any], Any]
+_TYPES = {"int": int, "float": float, "bool": bool, "str": str}
+_OF_ROS_1 = ("env", "machine", "param", "remap", "rosparam", "test")
+_KINDS = {"yaml", *_TYPES, *(f"list_of_{it}" for it in _TYPES)}
+
+
+class Form(NamedTuple):
+    """The class that a tag stands for, in its module: ``values`` and ``below`` have the argument that
+    each attribute, or the entities of each tag below it, becomes, and how it is read. ``needs`` are
+    attributes that have to be there; all other entities below become ``actions``."""
+
+    module: str
+    name: str
+    values: Mapping[str, tuple[str, Reader]] = MappingProxyType({})
+    below: Mapping[str, tuple[str, Callable[[list[Entity]], Any]]] = MappingProxyType({})
+    needs: tuple[str, ...] = ()
+    actions: str = ""
+
+
+def description_in(path: str) -> Any:
+    """The launch description of a file in XML or YAML; raises what launch raises for a wrong one."""
+    made = [_made(it) for it in root_of(path).below]
+    return import_module("launch").LaunchDescription(made)
+
+
+def _made(entity: Entity) -> Any:
+    """The action of an entity."""
+    form = _FORMS.get(entity.tag)
+    if entity.tag in _OF_ROS_1:
+        raise RuntimeError(f"Unrecognized entity of the type: {entity.tag}")
+    if form is None:
+        return _unread(entity.tag)
+    condition = _condition(entity)
+    made = _built(entity, form)
+    if condition is not None:
+        made.condition = condition
+    return made
+
+
+def _built(entity: Entity, form: Form) -> Any:
+    for it in form.needs:
+        entity.values[it] = entity.take(it)
+    named = {key: it for key, it in form.values.items() if key in entity.values}
+    given = {it: read(entity.take(key)) for key, (it, read) in named.items()}
+    for tag, (argument, read) in form.below.items():
+        if found := entity.all(tag):
+            given[argument] = read(found)
+    if form.actions:
+        given[form.actions] = [_made(it) for it in entity.below]
+        entity.below = []
+    entity.check()
+    return getattr(import_module(form.module), form.name)(**given)
+
+
+def _unread(tag: str) -> Any:
+    """An element of a package that extends launch files, or of nobody."""
+
+    def refuse(_: Any) -> None:
+        raise NotImplementedError(f"<{tag}> is not read: it needs launch itself")
+
+    return import_module("launch.actions").OpaqueFunction(function=refuse)
+
+
+def _condition(entity: Entity) -> Any:
+    words = [it for it in ("if", "unless") if it in entity.values]
+    if len(words) > 1:
+        raise RuntimeError("if and unless conditions can't be used simultaneously")
+    kinds = import_module("launch.conditions")
+    classes = {"if": kinds.IfCondition, "unless": kinds.UnlessCondition}
+    return next((classes[it](_parts(entity.take(it))) for it in words), None)
+
+
+def _parts(value: Any) -> Any:
+    return parse_substitution(value if isinstance(value, str) else str(value))
+
+
+def _truth(value: Any) -> bool:
+    return value if isinstance(value, bool) else value.lower() in ("true", "1", "on", "yes")
+
+
+def _words(line: str) -> list[Any]:
+    """A command line: only its own blanks separate, not those of values (ExecuteProcess)."""
+    found: list[list[Any]] = [[]]
+    for it in parse_substitution(line):
+        if not isinstance(it, TextSubstitution):
+            found[-1].append(it)
+            continue
+        tokens = shlex.split(it.text)
+        found += [[]] * it.text[:1].isspace()
+        for at, token in enumerate(tokens):
+            found += [[]] if at else []
+            found[-1] = [*found[-1], TextSubstitution(text=token)]
+        found += [[]] * (it.text[-1:].isspace() and bool(tokens))
+    return [it for it in found if it]
+
+
+def _pairs(first: str, second: str) -> Callable[[list[Entity]], list[Any]]:
+    def read(entities: list[Entity]) -> list[Any]:
+        return [tuple(_parts(it) for it in _taken(one, first, second)) for one in entities]
+
+    return read
+
+
+def _taken(entity: Entity, *names: str) -> list[Any]:
+    found = [entity.take(it) for it in names]
+    entity.check()
+    return found
+
+
+def _parameters(entities: list[Entity]) -> list[Any]:
+    return [_parameter(it) for it in entities]
+
+
+def _parameter(entity: Entity) -> Any:
+    if "from" not in entity.values:
+        return dict([_named_value(entity)])
+    allowed = entity.values.pop("allow_substs", False)
+    (path,) = _taken(entity, "from")
+    files = import_module("launch_ros.descriptions")
+    allowed = _parts(allowed) if isinstance(allowed, str) else allowed
+    return files.ParameterFile(_parts(path), allow_substs=allowed)
+
+
+def _named_value(entity: Entity) -> tuple[Any, Any]:
+    """A parameter with its value, or with those below its name."""
+    name = tuple(_parts(entity.take("name")))
+    if inner := entity.all("param"):
+        entity.check()
+        return name, dict(map(_named_value, inner))
+    kind = entity.values.pop("type", "yaml")
+    if kind not in _KINDS:
+        raise ValueError(f"Got invalid type identifier {kind!r}")
+    (value,) = _taken(entity, "value")
+    made = import_module("launch_ros.descriptions").ParameterValue
+    return name, made(_typed(value, kind), value_type=_TYPES.get(kind))
+
+
+def _typed(value: Any, kind: str) -> Any:
+    """A value as YAML has it, that of XML by its type; its substitutions have one later."""
+    if isinstance(value, list):
+        return [_typed(it, kind.removeprefix("list_of_")) for it in value]
+    if not isinstance(value, str):
+        return value
+    if "$(" in value or kind == "str":
+        return _parts(value)
+    return load_yaml(value) if value else value
+
+
+def _components(entities: list[Entity]) -> list[Any]:
+    return [_component(it) for it in entities]
+
+
+def _component(entity: Entity) -> Any:
+    condition = _condition(entity)
+    made = _built(entity, _COMPONENT)
+    made._condition = condition
+    return made
+
+
+def _form(name: str, *needs: str, module: str = "launch.actions", **more: Any) -> Form:
+    """The form of an action whose attributes have the names of its arguments."""
+    named = {it: (it, _parts) for it in needs}
+    return Form(module, name, {**named, **more.pop("values", {})}, needs=needs, **more)
+
+
+def _shut_down(_: Any) -> list[Any]:
+    return [import_module("launch.actions").Shutdown()]
+
+
+_ROS = "launch_ros.actions"
+_OF_PROCESS: Mapping[str, tuple[str, Reader]] = {
+    **{it: (it, _parts) for it in ("cwd", "output", "respawn", "respawn_max_retries")},
+    **{it: (it, _parts) for it in ("respawn_delay", "sigkill_timeout", "sigterm_timeout")},
+    **{it: (it, _truth) for it in ("shell", "emulate_tty")},
+    "launch-prefix": ("prefix", _parts),
+    "on_exit": ("on_exit", _shut_down),
+}
+_ENVIRONMENT = {"env": ("additional_env", _pairs("name", "value"))}
+_OF_NODE = {"remap": ("remappings", _pairs("from", "to")), "param": ("parameters", _parameters)}
+_NODE = Form(
+    _ROS,
+    "Node",
+    {
+        **_OF_PROCESS,
+        **{it: (it, _parts) for it in ("name", "namespace", "exec_name")},
+        **{
+            "pkg": ("package", _parts),
+            "exec": ("executable", _parts),
+            "node-name": ("name", _parts),
+        },
+        **{"args": ("arguments", _words), "ros_args": ("ros_arguments", _words)},
+    },
+    {**_ENVIRONMENT, **_OF_NODE},
+    ("exec",),
+)
+_COMPONENT = Form(
+    "launch_ros.descriptions",
+    "ComposableNode",
+    {it: (key, _parts) for it, key in {"pkg": "package", "plugin": "plugin"}.items()}
+    | {it: (it, _parts) for it in ("name", "namespace")},
+    {**_OF_NODE, "extra_arg": ("extra_arguments", _pairs("name", "value"))},
+    ("pkg", "plugin", "name"),
+)
+_COMPONENTS = {"composable_node": ("composable_node_descriptions", _components)}
+_KEEP: Mapping[str, tuple[str, Callable[[list[Entity]], Any]]] = {
+    "keep": (
+        "launch_configurations",
+        lambda found: {tuple(name): value for name, value in _pairs("name", "value")(found)},
+    )
+}
+_NAMESPACE = _form("PushROSNamespace", "namespace", module=_ROS)
+_FORMS: Mapping[str, Form] = MappingProxyType(
+    {
+        "append_env": _form(
+            *("AppendEnvironmentVariable", "name", "value"),
+            values={"prepend": ("prepend", _truth), "separator": ("separator", _parts)},
+        ),
+        "arg": Form(
+            *("launch.actions", "DeclareLaunchArgument"),
+            {
+                "name": ("name", str),
+                "default": ("default_value", _parts),
+                "description": ("description", str),
+            },
+            {"choice": ("choices", lambda found: [str(*_taken(it, "value")) for it in found])},
+            ("name",),
+        ),
+        "executable": Form(
+            *("launch.actions", "ExecuteProcess"),
+            {**_OF_PROCESS, "cmd": ("cmd", _words), "name": ("name", _parts)},
+            _ENVIRONMENT,
+            ("cmd",),
+        ),
+        "group": Form(
+            *("launch.actions", "GroupAction"),
+            {it: (it, _truth) for it in ("scoped", "forwarding")},
+            _KEEP,
+            actions="actions",
+        ),
+        "include": Form(
+            *("launch.actions", "IncludeLaunchDescription"),
+            {"file": ("launch_description_source", _parts)},
+            {"arg": ("launch_arguments", _pairs("name", "value"))},
+            ("file",),
+        ),
+        "let": _form("SetLaunchConfiguration", "name", "value"),
+        "load_composable_node": Form(
+            *(_ROS, "LoadComposableNodes"),
+            {"target": ("target_container", _parts)},
+            _COMPONENTS,
+            ("target",),
+        ),
+        "log": Form("launch.actions", "LogInfo", {"message": ("msg", _parts)}, needs=("message",)),
+        "node": _NODE,
+        "node_container": _NODE._replace(
+            name="ComposableNodeContainer", below={**_NODE.below, **_COMPONENTS}
+        ),
+        "push-ros-namespace": _NAMESPACE,
+        "push_ros_namespace": _NAMESPACE,
+        "reset": Form("launch.actions", "ResetLaunchConfigurations", {}, _KEEP),
+        "reset_env": _form("ResetEnvironment"),
+        "ros_timer": _form("ROSTimer", "period", module=_ROS, actions="actions"),
+        "set_env": _form("SetEnvironmentVariable", "name", "value"),
+        "set_parameter": _form("SetParameter", "name", "value", module=_ROS),
+        "set_parameters_from_file": _form("SetParametersFromFile", "filename", module=_ROS),
+        "set_remap": Form(
+            *(_ROS, "SetRemap"),
+            {"from": ("src", _parts), "to": ("dst", _parts)},
+            needs=("from", "to"),
+        ),
+        "set_ros_log_dir": _form("SetROSLogDir", "new_log_dir", module=_ROS),
+        "set_use_sim_time": _form("SetUseSimTime", "value", module=_ROS),
+        "shutdown": _form("Shutdown", values={"reason": ("reason", _parts)}),
+        "timer": _form(
+            *("TimerAction", "period"),
+            values={"cancel_on_shutdown": ("cancel_on_shutdown", _parts)},
+            actions="actions",
+        ),
+        "unset_env": _form("UnsetEnvironmentVariable", "name"),
+    }
+)

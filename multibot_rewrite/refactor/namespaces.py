@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A description package gets an argument for a ROS namespace, beside that for its prefix.
+
+What a rewrite below a namespace changes in plugins and sensors is asked of the rewrite: namespaces,
+absolute names, and elements that are not written. Without a namespace nothing changes. Proved by
+expansion: with one the description is what the rewrite makes of it."""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import zip_longest
+
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.joining.part import in_one_line
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.insert import Insertion
+from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps.apply import Template
+from multibot_rewrite.description.steps.document import tag_end
+from multibot_rewrite.description.steps.inserted import elements_of, lead_of
+from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
+from multibot_rewrite.refactor.package import Description, Expanding, read_text
+from multibot_rewrite.refactor.placing import Left, Spot, placed
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of
+
+# No robot is called so: a description with robot1_ before its names can be tried with it.
+TRIED_SPACE = "ns1"
+
+
+class Spaced(NamedTuple):
+    """A description, and what a rewrite makes of it."""
+
+    found: Description
+    template: Template
+
+
+class Namespaced(NamedTuple):
+    """The argument, empty where there is nothing to change, the edits of the sources with those that
+    declare it, the descriptions, and what is left."""
+
+    argument: str
+    edits: tuple[SourceEdit, ...]
+    every: tuple[Spaced, ...]
+    left: tuple[Left, ...]
+
+
+class _Added(NamedTuple):
+    """What goes into an element, first or, where it is empty, as its text."""
+
+    xml: tuple[str, ...] = ()
+    text: str = ""
+
+
+def spacing() -> Naming:
+    """The naming below a namespace: what ROS calls things, no frame and no joint."""
+    naming = make_naming("frames-per-robot", PREFIX)
+    return naming._replace(
+        separators={kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
+    )
+
+
+def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
+    """The edits of the sources ``texts``, by their real paths."""
+    every, left = _every(found, tree)
+    argument = free_name(found, SPACES)
+    made = placed(
+        [it.found for it in every],
+        [list(_changes(it.template)) for it in every],
+        lambda change: _written(change, argument),
+    )
+    edits, left = list(made.edits), [*left, *made.left]
+    for (file, start), wanted in _added(every).items():
+        if len(wanted) > 1:
+            where = ":".join(map(str, (file, *locate(texts[file], start))))
+            left.append(Left(where, "its copies need different ROS names; write them out"))
+        else:
+            edits += _edits(file, texts[file], start, next(iter(wanted)), argument)
+    if not edits:
+        return Namespaced("", (), (), tuple(left))
+    own = [it.found for it in every]
+    edits += declared(own, texts, {it.file for it in edits}, argument)
+    return Namespaced(argument, tuple(edits), tuple(every), tuple(left))
+
+
+def _every(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list[Left]]:
+    """Each URDF for the rewrite, and those that it refuses."""
+    every: list[Spaced] = []
+    left: list[Left] = []
+    for it in found:
+        if it.inventory.format != "robot":
+            continue
+        try:
+            every.append(_spaced(it, it.inventory.document.source, tree))
+        except InputError as error:
+            left.append(Left(it.words, f"it gets no namespace: {error}"))
+    return every, left
+
+
+def _spaced(it: Description, data: bytes, tree: Tree) -> Spaced:
+    with in_one_line():
+        return Spaced(it, pipeline.prepare(data, it.path, spacing(), tree))
+
+
+def space_proved(
+    space: Namespaced,
+    prefix: str,
+    tried: str,
+    after: Mapping[str, bytes],
+    how: Expanding,
+    tree: Tree,
+) -> tuple[tuple[str, ...], tuple[Left, ...]]:
+    """The paths of descriptions that are with a namespace what a rewrite makes of them, also beside a
+    ``prefix``, which is ``tried`` with the default arguments; and what is wrong with others."""
+    wrong: dict[str, Left] = {}
+    for it in space.every:
+        why = _fault(it, after, {}, space.argument, how)
+        if not why and not it.found.arguments:
+            given = {prefix: tried}
+            data, _ = read_text(
+                it.found.path, Expanding(how.reach, {**how.arguments, **given}), after
+            )
+            why = _fault(_spaced(it.found, data, tree), after, given, space.argument, how)
+        if why:
+            wrong[it.found.path] = Left(it.found.words, f"its ROS names are not proved: {why}")
+    paths = dict.fromkeys(it.found.path for it in space.every)
+    return tuple(it for it in paths if it not in wrong), tuple(wrong.values())
+
+
+def _fault(
+    it: Spaced, after: Mapping[str, bytes], given: Mapping[str, str], argument: str, how: Expanding
+) -> str:
+    """What is wrong with a description with a namespace."""
+    arguments = {**how.arguments, **it.found.arguments, **given, argument: TRIED_SPACE}
+    try:
+        made, _ = read_text(it.found.path, Expanding(how.reach, arguments), after)
+        with in_one_line():
+            wanted = next(pipeline.render(it.template, [TRIED_SPACE], again=True))
+    except InputError as error:
+        return str(error)
+    both = zip_longest(_said(made), _said(wanted), fillvalue=(0, "/robot", (), ""))
+    other = next((one for one, two in both if one != two), None)
+    if other is None:
+        return ""
+    _, tag, values, text = other
+    words = " ".join((tag, *(f'{name}="{value}"' for name, value in values)))
+    return f"with {argument}:={TRIED_SPACE} it has <{words}>{text}"
+
+
+def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
+    """Depth, tag, attributes and text of each element: all that its readers see."""
+    root = read_xml(data, "")
+    every = (it for it in root.iter("*"))
+    return [
+        (
+            sum(1 for _ in it.iterancestors()),
+            str(it.tag),
+            tuple(sorted((str(name), str(value)) for name, value in it.attrib.items())),
+            "".join((it.text or "", *(one.tail or "" for one in it))).strip(),
+        )
+        for it in every
+    ]
+
+
+def _changes(template: Template) -> Iterator[Change]:
+    """Where the namespace goes in the values that are there."""
+    document, claims, *_ = template.inventory
+    for claim, spelling in zip(claims, template.plan.renames.values, strict=True):
+        for *_, (at, before, after) in spelling if claim.value else ():
+            yield change_of(document, claim, at, at, f"{before}{TRIED_SPACE}{after}")
+
+
+def _written(change: Change, argument: str) -> bytes:
+    """An expression that is empty without a namespace."""
+    before, _, after = change.new.partition(TRIED_SPACE)
+    words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
+    test = f"{argument} and " if len(words) > 1 else ""
+    return f"${{{test}{' + '.join(words)}}}".encode()
+
+
+def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
+    """What is added where an element is written, for each element that it makes."""
+    found: dict[Spot, set[_Added]] = defaultdict(set)
+    wanted: set[Spot] = set()
+    for it in every:
+        read, document = it.found.read, it.template.inventory.document
+        assert read is not None
+        needs = _needs(it.template)
+        for number, element in enumerate(document.elements):
+            origin = read.origins.of(number)
+            if origin:
+                spot = os.path.realpath(origin.file), origin.start
+                found[spot].add(needs.get(element, _Added()))
+                wanted |= {spot} if element in needs else set()
+    return {spot: found[spot] for spot in wanted}
+
+
+def _needs(template: Template) -> dict[etree._Element, _Added]:
+    """What is added to which element."""
+    groups: dict[etree._Element, list[Insertion]] = defaultdict(list)
+    texts: dict[etree._Element, str] = {}
+    for item in template.plan.insertions:
+        if item.filled is None:
+            groups[item.parent].append(item)
+        else:
+            texts[item.filled] = item.new
+    renames = zip(template.inventory.claims, template.plan.renames.values, strict=True)
+    for claim, spelling in renames:
+        if spelling and not claim.value:
+            texts[claim.element] = spelling[0].affix.spell("", ROBOT_SLOT)
+    made = {it: _Added(tuple(elements_of(items, ""))) for it, items in groups.items()}
+    return made | {it: _Added((), text) for it, text in texts.items()}
+
+
+def _edits(
+    file: str, source: bytes, start: int, added: _Added, argument: str
+) -> Iterator[SourceEdit]:
+    """What the condition guards; xacro writes ``<a/>`` where nothing is in it."""
+    end = tag_end(source, start)
+    is_empty = source[end - 2 : end] == b"/>"
+    # White space alone would be left in an element that had none.
+    lead = "" if added.text or is_empty else lead_of(source, start, end)
+    step = lead and f"{lead}  "
+    inside = added.text + "".join(f"{step}{it}" for it in added.xml)
+    test = f"<xacro:if value=\"${{{argument} != ''}}\">"
+    text = f"{lead}{test}{inside.replace(ROBOT_SLOT, f'${{{argument}}}')}{lead}</xacro:if>"
+    if is_empty:
+        tag = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
+        yield SourceEdit(file, end - 2, end, f">{text}</{tag}>".encode())
+    else:
+        yield SourceEdit(file, end, end, text.encode())

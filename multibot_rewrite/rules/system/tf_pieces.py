@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Dangers of tf trees: one that is in pieces."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
+from multibot_rewrite.base.wording import only, unique
+from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.system.index import Index, Tree, robots_of
+from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
+from multibot_rewrite.system.tf_copies import tree_topic
+from multibot_rewrite.system.tool_nodes import last_word
+
+_STATE_PUBLISHER = "robot_state_publisher"
+
+
+@system_rule(
+    "MG406",
+    "tf-tree-in-pieces",
+    ERROR,
+    absence=True,
+    robot_wide=True,
+    what="The odometry frame and the robot's base are on one tf topic and not connected.",
+    why="Nothing that needs the robot's place works: costmaps, AMCL, RViz with the fixed frame `odom`.",
+    fix="Start what sends odometry (a driver, a controller, an EKF), with the frames that the others"
+    " use: `odom_frame`, `base_frame_id`, `robot_base_frame`.",
+    bad="""\
+running: transform map -> odom on /robot1/tf by /robot1/amcl
+running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
+""",
+    good="""\
+running: transform map -> odom on /robot1/tf by /robot1/amcl
+running: transform odom -> base_link on /robot1/tf by /robot1/driver
+running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
+""",
+    line=1,
+)
+def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
+    """By the usual names of these frames (REP 105); other pieces may be meant.
+
+    Where nodes may run that are not known, one of them may join what is in pieces.
+    """
+    yield from told_not_to(seen)
+    if any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats):
+        for tree in seen.trees:
+            yield from _senders_apart(seen, tree)
+        return
+    yield from _misspelled(seen)
+    for tree in seen.trees:
+        yield from _odometry_apart(seen, tree)
+
+
+def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
+    """The odometry frames of a tree that are not connected with the base of their robot."""
+    above = _above(tree)
+    if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
+        # A frame with two parents is a finding of its own.
+        return
+    frames = unique(it for edge in tree.edges for it in (edge.parent, edge.child))
+    plain = {it: seen.plain_frame(it) for it in frames}
+    for odom in (it for it in frames if plain[it] == "odom"):
+        robot = seen.frame_robot(odom)
+        own = [it for it in frames if plain[it] in BODY_FRAMES and seen.frame_robot(it) == robot]
+        roots = {root_of(it, above) for it in own}
+        # In a circle there is no root.
+        if not own or root_of(odom, above) in {*roots, *above}:
+            continue
+        found = next(iter(roots))
+        robot = robot or only(robots_of(seen, tree.senders))
+        message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
+        cause = f"no node sends {odom} -> {found}: is odometry started, are its frames the same?"
+        yield tf_tree_in_pieces.finding(message, cause, robot=robot, names=(odom, own[0], found))
+
+
+def _misspelled(seen: Index) -> Iterator[Finding]:
+    """A parent that nothing sends, and that is called nearly as a frame is which is sent; a frame that
+    is sent and has nothing below it, while a root is called nearly so."""
+    for tree in seen.trees:
+        children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
+        sent, roots = _near(seen, children), _near(seen, parents - children)
+        for it in tree.edges:
+            usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
+            bare = it.parent not in children and not usual
+            near = _meant(it.parent, sent(it.parent) - {it.child}) if bare else ""
+            if near:
+                why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
+                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, _above(tree))), why)
+            leaf = it.child not in parents and not is_of_description(seen, it)
+            near = _meant(it.child, roots(it.child) - {it.parent}) if leaf else ""
+            if near:
+                why = f"{it.child} is sent below {it.parent}, and has nothing below it"
+                yield _slipped(seen, tree, it, near, (root_of(it.child, _above(tree)), near), why)
+
+
+def _near(seen: Index, frames: Collection[str]) -> Callable[[str], set[str]]:
+    """Of some frames those that another one can be meant for: of its robot, or of none."""
+    own: dict[str, set[str]] = defaultdict(set)
+    for it in frames:
+        own[seen.frame_robot(it)].add(it)
+
+    def near(frame: str) -> set[str]:
+        robot = seen.frame_robot(frame)
+        return own[robot] | own[""] if robot else set(frames)
+
+    return near
+
+
+def _meant(name: str, others: Collection[str]) -> str:
+    """The frame that is called nearly so; names that differ in their numbers alone are two things."""
+    near = nearest(name, sorted(others), MISTYPED)
+    slip = near and near not in name and name not in near
+    return near if slip and not differ_in_numbers(name, near) else ""
+
+
+def _slipped(
+    seen: Index, tree: Tree, it: Edge, near: str, roots: Sequence[str], why: str
+) -> Finding:
+    robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
+    message = f"{in_pieces(robot, tree.topic, sorted(roots))}: {why}"
+    names = (it.child, it.parent)
+    return tf_tree_in_pieces.finding(message, f"did you mean {near}?", robot=robot, names=names)
+
+
+def _above(tree: Tree) -> dict[str, str]:
+    return {it.child: it.parent for it in tree.edges}
+
+
+def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
+    """The sentence for a tree of several roots."""
+    whose = f"the tf tree of {robot}" if robot else "the tf tree"
+    return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
+
+
+def told_not_to(seen: Index) -> Iterator[Finding]:
+    """Transforms that no node sends, and that nodes could which are told not to."""
+    sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
+    off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
+    for it in (it for it in seen.system.edges if it.sure == OFF):
+        off[tree_topic(it.topic), it.child].append(it)
+    others = [it for tree in seen.trees for it in tree.edges if not is_of_description(seen, it)]
+    beside = next((it for it in others if it.place != NOWHERE), None)
+    for (topic, child), (first, *more) in off.items():
+        if (topic, child) in sent:
+            continue
+        also = f", and so is {more[0].publishers[0]}" if more else ""
+        cause = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+        if beside:
+            cause += f"; {beside.publishers[0]} ({beside.place}) sends {beside.child}"
+        yield tf_tree_in_pieces.finding(
+            f"is set not to send {first.parent} -> {child}, which no node sends{also}",
+            cause + see((*more, first)), level=ERROR if more else WARNING,
+            robot=seen.robot(first.publishers[0]), node=first.publishers[0], names=(child,),
+            **where([first]),
+        )  # fmt: skip
+
+
+def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
+    """Nodes whose transforms are in another tree than those of the robot's first node.
+
+    If no node sends the root of the description, a driver that is not known may: that joins the two.
+    """
+    for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
+        edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]
+        moving = {it.publishers: it for it in edges[::-1] if not is_of_description(seen, it)}
+        if not moving:
+            continue
+        first, *others = [*moving.values()][::-1]
+        children = {it.child for it in edges}
+        roots = {it.parent for it in edges if is_of_description(seen, it)} - children
+        joined = _joined(
+            [*((it.parent, it.child) for it in edges), *((first.parent, it) for it in roots)]
+        )
+        for it in others:
+            if joined(it.child) != joined(first.child):
+                message = (
+                    f"sends {it.parent} -> {it.child}, apart from {first.parent} -> {first.child}"
+                )
+                cause = "use the same odometry frame in both, or add what joins them"
+                yield tf_tree_in_pieces.finding(
+                    f"{message} of {first.publishers[0]}", cause + see((first, it)), level=WARNING,
+                    robot=robot, node=it.publishers[0], names=(it.child,), **where([it]),
+                )  # fmt: skip
+
+
+def is_of_description(seen: Index, edge: Edge) -> bool:
+    """Does robot_state_publisher send it?"""
+    return any(publishes_description(seen, it) for it in edge.publishers)
+
+
+def publishes_description(seen: Index, node: str) -> bool:
+    """Is it robot_state_publisher? Raises nothing."""
+    return last_word(seen.plain(node)).startswith(_STATE_PUBLISHER)
+
+
+def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
+    """For a frame: one that stands for all that are joined with it."""
+    above: dict[str, str] = {}
+
+    def root(frame: str) -> str:
+        while frame in above:
+            frame = above[frame]
+        return frame
+
+    for one, other in pairs:
+        first, second = root(one), root(other)
+        if first != second:
+            above[second] = first
+    return root
+
+
+def root_of(frame: str, above: Mapping[str, str]) -> str:
+    """The frame above all that are above it; in a circle any of them."""
+    for _ in above:
+        if frame not in above:
+            return frame
+        frame = above[frame]
+    return frame
