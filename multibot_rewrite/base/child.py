@@ -26,6 +26,14 @@ _QUIET = {
     "core.sshCommand": "false",
     "diff.external": "",
 }
+# No object that is missing is fetched: the remote's address and the program behind it are the
+# repository's own.
+_ALONE = {
+    "GIT_OPTIONAL_LOCKS": "0",
+    "GIT_TERMINAL_PROMPT": "0",
+    "GIT_NO_LAZY_FETCH": "1",
+    "GIT_ALLOW_PROTOCOL": "",
+}
 _FILTERS = r"^filter\..*\.(clean|smudge|process|required)$"
 _NO_FILTER = {"required": "false"}
 
@@ -56,24 +64,25 @@ def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
     return found
 
 
-def git(*words: str) -> bytes:
-    """What git prints; raises OSError, subprocess.CalledProcessError. No hook, monitor, pager, filter
-    or other program of the repository is run."""
-    return _git(_filters(), words)
+def git(where: str, *words: str) -> bytes:
+    """What git prints in a folder; raises OSError, subprocess.CalledProcessError. No hook, monitor,
+    pager, filter or other program of the repository is run. Of a submodule this holds only where git
+    is asked in its folder: its filters are its own."""
+    return _git(where, _filters(where), words)
 
 
-def _filters() -> dict[str, str]:
+def _filters(where: str) -> dict[str, str]:
     """The filters of a repository, switched off: git would run them on each file that it compares."""
     try:
-        listed = _git({}, ("config", "--null", "--name-only", "--get-regexp", _FILTERS))
+        listed = _git(where, {}, ("config", "--null", "--name-only", "--get-regexp", _FILTERS))
     except subprocess.CalledProcessError:  # it has none, or is no repository
         return {}
     names = os.fsdecode(listed).split("\0")
     return {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names if it}
 
 
-def _git(more: Mapping[str, str], words: Sequence[str]) -> bytes:
-    environ = {**os.environ, "GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0"}
+def _git(where: str, more: Mapping[str, str], words: Sequence[str]) -> bytes:
     settings = [part for it in {**_QUIET, **more}.items() for part in ("-c", "=".join(it))]
-    command = ["git", "--no-pager", *settings, *words]
+    command = ["git", "-C", where, "--no-pager", *settings, *words]
+    environ = {**os.environ, **_ALONE}
     return subprocess.run(command, capture_output=True, check=True, env=environ).stdout

@@ -66,7 +66,9 @@ BESIDE = (
     (
         BRIDGE,
         lazy_compile(
-            rb"^-\s*\{?\s*[\"']?(?:(?:ros_|gz_)?topic_name|service_name)[\"']?\s*:", re.MULTILINE
+            rb"^(?:-\s*\{?\s*[\"']?(?:topic_name|service_name|(?:ros|gz)_topic_name)"
+            rb"|(?:ros|gz)_(?:topic|type)_name)[\"']?\s*:",
+            re.MULTILINE,
         ),
     ),
     (

@@ -32,6 +32,7 @@ _CODES = (
 # What another file may make: a macro or property of the file that includes this one, or what an
 # argument names.
 _REFUSED = lazy_compile("DOCTYPE and entities|the encoding is")
+_OF_GAZEBO = (".sdf", ".world")
 _LACKING = lazy_compile(
     r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
 )
@@ -58,6 +59,9 @@ def _level(code: str, path: str, message: str) -> str:
     if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
         return NOTE
     if _REFUSED.search(message):  # here alone: xacro and urdfdom read some of these
+        return WARNING
+    # TinyXML-2 looks at no encoding, and Gazebo reads its files itself; launch files stop at others.
+    if "the text is not UTF-8" in message and path.endswith(_OF_GAZEBO):
         return WARNING
     return _level_of_failed(path, message) if code == "MB103" else ""
 

@@ -11,8 +11,10 @@ from pathlib import Path
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.base.child import git, isolated, python, search_path, variables
+from multibot_rewrite.base.child import isolated, python, search_path, variables
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.start.module import safe_path
+from multibot_rewrite.lint.config.changed import changed_since
 
 PACKAGE = ROOT / "multibot_rewrite"
 # Who may say how a process of Python or git begins.
@@ -70,20 +72,38 @@ def test_an_isolated_child_keeps_that_no_bytecode_is_written(
 def test_git_runs_no_program_of_a_repository(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A monitor, a hook, a filter and a pager of ``.git/config``."""
-    monkeypatch.chdir(tmp_path)
-    ran = tmp_path / "ran"
-    program = tmp_path / "program"
+    """A monitor, a hook, a filter and a pager of ``.git/config``, also of a submodule, and of a remote
+    that has what is missing."""
+    ran, program, own = tmp_path / "ran", tmp_path / "program", tmp_path / "own"
     program.write_text(f"#!/bin/sh\necho x > {ran}\ncat\n")
     program.chmod(0o755)
-    own = ("-c", "user.name=a", "-c", "user.email=a@b")
-    for words in (["init", "-q"], ["add", "program"], [*own, "commit", "-qm", "x"]):
-        subprocess.run(["git", *words], check=True, capture_output=True)
-    for key in ("core.fsmonitor", "filter.x.clean", "filter.x.smudge", "core.pager"):
-        subprocess.run(["git", "config", key, str(program)], check=True)
-    (tmp_path / ".gitattributes").write_text("* filter=x\n")
-    program.write_text(program.read_text() + "# more\n")
-    listed = git("diff", "--name-only", "-z", "--no-ext-diff", "HEAD", "--")
-    assert b"program" in listed
-    assert b".gitattributes" in git("ls-files", "-z", "--others", "--exclude-standard")
+    for folder in (own / "sub", own):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "a.urdf").write_text("<robot/>")
+        _git(folder, "init", "-q")
+        _git(folder, "add", ".")
+        _git(folder, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qm", "x")
+    for folder in (own, own / "sub"):
+        name = f"filter.{folder.name}"
+        for key in ("core.fsmonitor", f"{name}.clean", f"{name}.smudge", "core.pager"):
+            _git(folder, "config", key, str(program))
+        (folder / ".gitattributes").write_text(f"* filter={folder.name}\n")
+        (folder / "a.urdf").write_text("<robot></robot>")
+    monkeypatch.chdir(own)
+    assert changed_since("HEAD", ["a.urdf", "sub/a.urdf"]) == ["a.urdf", "sub/a.urdf"]
     assert not ran.exists()
+    tree = _git(own, "rev-parse", "HEAD^{tree}").strip()
+    (own / ".git" / "objects" / tree[:2] / tree[2:]).unlink()
+    remote = {"url": f"{own}", "uploadpack": str(program), "promisor": "true"}
+    settings = {f"remote.away.{key}": value for key, value in remote.items()}
+    for key, value in (settings | {"extensions.partialClone": "away"}).items():
+        _git(own, "config", key, value)
+    with pytest.raises(UsageError):
+        changed_since("HEAD", ["a.urdf"])
+    assert not ran.exists()
+
+
+def _git(folder: Path, *words: str) -> str:
+    return subprocess.run(
+        ["git", "-C", folder, *words], check=True, capture_output=True, text=True
+    ).stdout

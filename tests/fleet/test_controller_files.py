@@ -112,6 +112,13 @@ def test_a_file_that_is_no_companion_stays(
 
 
 @pytest.mark.more
+def test_values_in_the_fleet_file_are_no_file_of_a_plugin(package: Path) -> None:
+    values = "{manager: {rate: 5}}"
+    fleet = FLEET.replace("[config/arm.yaml]", f"[{values}, config/arm.yaml]")
+    assert built(package, f"{package}/config/arm.yaml", fleet=fleet)[0].endswith("robot1/arm.yaml")
+
+
+@pytest.mark.more
 def test_the_fleet_file_says_where_the_results_are_installed(package: Path) -> None:
     fleet = f"installed: /opt/ws/share/my_arm/fleet\n{FLEET}"
     found = built(package, "../config/arm.yaml", fleet=fleet)

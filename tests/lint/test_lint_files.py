@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.lint.check import lint_data, lint_file
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
@@ -242,3 +243,13 @@ def test_a_namespace_is_told_where_it_is_declared() -> None:
     source = b'<robot name="r"\n    xmlns:xacro="x"><link name="a"/></robot>'
     (found,) = lint_data("r.urdf", source, Settings(select=("MB142",)))
     assert (found.line, found.column) == (2, 5)
+
+
+def test_what_is_no_utf_8_is_an_error_where_python_reads_it(tmp_path: Path) -> None:
+    """A launch file opens a URDF as text; Gazebo opens its own files, and TinyXML-2 reads any bytes."""
+    levels = {"a.urdf": ERROR, "a.world": WARNING, "a.sdf": WARNING}
+    for name, level in levels.items():
+        text = ROBOT if name.endswith("urdf") else b'<sdf version="1.9"><world name="w"/></sdf>'
+        (tmp_path / name).write_bytes(b"<!-- \xb0 -->" + text)
+        (found,) = lint_file(str(tmp_path / name), Settings(select=("MB101",)))
+        assert (found.code, found.level) == ("MB101", level), name

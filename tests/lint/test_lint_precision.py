@@ -55,6 +55,9 @@ HALVES = {
     "kept-3": "15 kept, once",
     "fresh-4": "16 more after the mends, once",
     "fresh-5": "8 more after those, once",
+    "worked-6": "15 worked on, a sixth sample, at first sight",
+    "kept-6": "15 kept of the sixth, once",
+    "again-6": "15 more of its order, once",
 }
 
 

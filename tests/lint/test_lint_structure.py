@@ -17,6 +17,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB5", "MB115", "MB124", "MB125", "MB170"))
+BODY = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 
 
@@ -110,6 +111,11 @@ CASES = [
     pytest.param(limited("prismatic", reach("0", "20")), "", id="a rail"),
     pytest.param(limited("prismatic", reach("-100", "100")), "", id="a virtual base"),
     pytest.param(limited("prismatic", reach("0", "85")), "MB517:2", id="a gripper in mm"),
+    pytest.param(
+        limited("prismatic", reach("0", "80")).replace('"a"/>', f'"a">{BODY}</link>', 1),
+        "",
+        id="dial",
+    ),
     pytest.param(limited("revolute", reach("-9.42", "9.42")), "", id="one and a half turns"),
     pytest.param(limited("revolute", reach("-12.566", "12.566")), "", id="two turns"),
     pytest.param(limited("revolute", reach("-100", "100")), "", id="a hundred means no limit"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_bytes
@@ -150,10 +150,25 @@ def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
         for it in _INCLUDED.findall(data) if path.endswith(".xacro") else ():
             file = it.decode("utf-8", "replace")
             included.setdefault(os.path.basename(file), []).append((file, path))
-    for path, kind in kinds.items():
-        by = included.get(os.path.basename(path), ()) if kind == "descriptions" else ()
-        if not any(_means(file, path, other) for file, other in by):
-            yield path, kind
+    above = {
+        path: {other for file, other in by if _means(file, path, other)}
+        for path in kinds
+        if (by := included.get(os.path.basename(path)))
+    }
+    parts = _reached(kinds, above)
+    yield from (
+        (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
+    )
+
+
+def _reached(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
+    """Files that another one includes which nothing includes, at any depth: a loop has no first one,
+    and what expands it says so."""
+    found = {it for it in paths if not above.get(it)}
+    tops = set(found)
+    while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
+        found |= more
+    return found - tops
 
 
 def _means(included: str, path: str, by: str) -> bool:

@@ -19,6 +19,8 @@ _INCLUDE = re.compile(
 )
 # PATH_MAX of Linux: no file has a longer name.
 _LONGEST = 4096
+# The mode of a submodule in the list of an index.
+_SUBMODULE = b"160000 "
 # Only xacro knows these values: it may be any name.
 _UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
 # Text in a file, or the end of its name -> files that it reads without naming them.
@@ -50,40 +52,54 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
 
 
 def _changes(rev: str) -> Changes:
-    top = os.fsdecode(_git([], "rev-parse", "--show-toplevel").removesuffix(b"\n"))
-    base = _base(rev)
-    there = ["-C", top]
+    top = os.fsdecode(_git(".", "rev-parse", "--show-toplevel").removesuffix(b"\n"))
+    changed, others = _differing(top, _base(rev))
+    return Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
+
+
+def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
+    """What differs from a commit, in submodules as well, and what git does not have. A submodule is
+    asked by itself: git would run its filters."""
     diff = (
         "diff",
         "--name-only",
         "-z",
         "--no-renames",
         "--no-ext-diff",
-        "--ignore-submodules=none",
+        "--ignore-submodules=dirty",
     )
-    changed = _names(_git(there, *diff, base, "--"))
-    others = _names(_git(there, "ls-files", "-z", "--others", "--exclude-standard"))
-    return Changes(top, changed | others, _names(_git(there, "ls-files", "-z")), others)
+    changed = _names(_git(top, *diff, base, "--"))
+    others = _names(_git(top, "ls-files", "-z", "--others", "--exclude-standard"))
+    inner = {it for it in _submodules(top) if any(_differing(os.path.join(top, it), "HEAD"))}
+    return changed | inner, others
+
+
+def _submodules(top: str) -> Iterator[str]:
+    """Those that are checked out."""
+    for entry in _git(top, "ls-files", "-z", "--stage").split(b"\0"):
+        name = os.fsdecode(entry.partition(b"\t")[2])
+        if entry.startswith(_SUBMODULE) and os.path.exists(os.path.join(top, name, ".git")):
+            yield name
 
 
 def _base(rev: str) -> str:
     """The last commit that HEAD and the revision have in common."""
     try:
-        _git([], "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
+        _git(".", "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
     except UsageError:
         raise UsageError(
             f"git does not know the revision {rev!r}; fetch it, or use another one"
         ) from None
     try:
-        return _git([], "merge-base", rev, "HEAD").decode().strip()
+        return _git(".", "merge-base", rev, "HEAD").decode().strip()
     except UsageError:
         hint = "fetch the whole history (fetch-depth: 0)"
         raise UsageError(f"{rev!r} and HEAD have no commit in common; {hint}") from None
 
 
-def _git(where: Sequence[str], *words: str) -> bytes:
+def _git(where: str, *words: str) -> bytes:
     try:
-        return git(*where, *words)
+        return git(where, *words)
     except OSError as error:
         raise UsageError(f"git cannot be run: {error.strerror}; install it") from None
     except subprocess.CalledProcessError as error:

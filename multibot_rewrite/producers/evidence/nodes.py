@@ -140,7 +140,8 @@ def nodes_of(
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
         meant = next((one for one in other if _stands_for(it, one, known)), None)
         if meant and not it.manager:
-            nodes.append(filled(known[it.known], it)._replace(when=meant.when))
+            entry = known[it.known]
+            nodes.append(filled(entry, it)._replace(when=meant.when, known=entry.kind))
             continue
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})

@@ -44,7 +44,7 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
     "bridge-row",
     WARNING,
     what="ros_gz_bridge does not load a row: a type or a topic is missing, topic_name is beside "
-    "ros_topic_name or gz_topic_name, or the direction is not known.",
+    "ros_topic_name or gz_topic_name, or the direction is not known. Or the file is no list of rows.",
     why="ros_gz_bridge reports the row and goes on without it, so one topic is not bridged.",
     fix="Write ros_topic_name and gz_topic_name or topic_name, both types, and one of BIDIRECTIONAL, "
     "GZ_TO_ROS and ROS_TO_GZ.",
@@ -54,7 +54,13 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
     formats=(BRIDGE,),
 )
 def bridge_row(file: NamedFile) -> Iterator[Remark]:
-    """Each fault of each row."""
+    """Each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top level must
+    be a YAML sequence')."""
+    root = file.document.root if file.document else None
+    if isinstance(root, yaml.MappingNode):
+        yield remark_at(
+            root, "the file is no list of rows: none is bridged", "write '- ' before it"
+        )
     for node in _rows(file):
         yield from (remark_at(*fault) for fault in faults(node))
 

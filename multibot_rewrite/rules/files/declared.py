@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
@@ -24,6 +24,7 @@ from multibot_rewrite.knowledge.declared import (
 )
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import of_parameter, of_release
+from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
@@ -40,6 +41,7 @@ _CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
 _SURE = frozenset((YAML, DEMANDED))
+_COSTMAPS = "nav2_costmap_2d"
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
@@ -104,8 +106,14 @@ def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
     beside = {it.rpartition(".")[2]: it for it in known if it.rpartition(".")[0] == above}
     if RENAMED.get(last) in beside:
         return beside[RENAMED[last]]
-    near = meant_name(last, beside) or guesses.nearest(last, beside, MISTYPED)
+    near = meant_name(last, beside) or _cut(last, beside) or guesses.nearest(last, beside, MISTYPED)
     return beside.get(near, "") or meant_name(name, known)
+
+
+def _cut(name: str, known: Iterable[str]) -> str:
+    """The one name that goes on where this one ends: ``has_jerk`` of ``has_jerk_limits``."""
+    longer = [it for it in known if "_" in name and it.startswith(f"{name}_")]
+    return longer[0] if len(longer) == 1 else ""
 
 
 def wrong_types(file: NamedFile) -> Iterator[Remark]:
@@ -122,8 +130,13 @@ def wrong_types(file: NamedFile) -> Iterator[Remark]:
 
 
 def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[Declared]) -> bool:
-    """Does every release refuse the value, and is the node's package none of the repository's own?"""
+    """Does every release refuse the value, and is the node's package none of the repository's own? What
+    is for a release before Humble is another matter, and what no node gets: a costmap's parameters
+    without the namespace that its code gives it."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
+    reached = package != _COSTMAPS or "/" in section.title.partition(":")[0]
+    if any(older_nodes(file)) or not reached:
+        return False
     if package and around and package in packages_below((around,)):
         return False
     facts = (of_parameter(known, release) for release in RELEASES)

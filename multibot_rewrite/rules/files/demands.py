@@ -295,6 +295,17 @@ def _bonded(it: Demand) -> str:
     return f"lists {words[0]}, and waits for a bond of that name" if words and kept else ""
 
 
+def _listed(it: Demand) -> str:
+    """The list is one of the node, the words may be those of a plugin."""
+    other = it.section.whole.get(it.words[0])
+    known = other.value if other else None
+    value = it.given.value
+    if not isinstance(known, list) or not isinstance(value, list):
+        return ""
+    strange = [word for word in value if word not in known]
+    return f"has {strange[0]!r}, which {it.words[0]} has not" if strange else ""
+
+
 def _text(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
@@ -314,5 +325,6 @@ _PAIRS: dict[str, Callable[[Demand], str]] = {
     "once": _once,
     "renamed": _renamed,
     "bonded": _bonded,
+    "listed": _listed,
 }
 _ROUNDED = 1e-4

@@ -16,7 +16,12 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.sections import MANAGER, RawSection, controller_types
+from multibot_rewrite.companions.params.sections import (
+    MANAGER,
+    ParamSection,
+    RawSection,
+    controller_types,
+)
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.plugin_classes import (
@@ -205,8 +210,14 @@ def _without_type(file: NamedFile) -> Iterator[Remark]:
 def renamed_nodes(file: NamedFile) -> Iterator[Remark]:
     """Sections of nodes that have another name since a release before Humble."""
     now = plugin_bases()[NODE].older
+    for name, section in older_nodes(file):
+        message = f"no supported release has a node {name}: it is called {now[name]}"
+        yield remark_at(section.keys[-1], message, f"write {now[name]}")
+
+
+def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
+    """Sections of nodes that only releases before Humble call so, with the name."""
     for section, _ in file.pages:
         name = section.path.rpartition("/")[2]
-        if name in now:
-            message = f"no supported release has a node {name}: it is called {now[name]}"
-            yield remark_at(section.keys[-1], message, f"write {now[name]}")
+        if name in plugin_bases()[NODE].older:
+            yield name, section

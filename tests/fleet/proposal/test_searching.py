@@ -146,3 +146,17 @@ def test_of_a_file_that_cannot_be_read_nothing_is_known(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"a\xff")
     assert searching.text_of(str(tmp_path / "a")) == "a\ufffd"
     assert searching.data_of_file(str(tmp_path / "gone")) == b""
+
+
+@pytest.mark.parametrize("many", [2, 3])
+def test_files_that_include_each_other_are_no_parts(many: int, tmp_path: Path) -> None:
+    """A loop has no first file; whoever expands one of them gets the reason."""
+    for at in range(many):
+        include = f'<xacro:include filename="{(at + 1) % many}.xacro"/>'
+        (tmp_path / f"{at}.xacro").write_text(f'<robot name="r">{include}</robot>')
+    (tmp_path / "part.xacro").write_text(ROBOT)
+    (tmp_path / "top.xacro").write_text(
+        '<robot name="r"><xacro:include filename="part.xacro"/></robot>'
+    )
+    found = [Path(it).name for it in search([str(tmp_path)]).descriptions]
+    assert found == [*(f"{at}.xacro" for at in range(many)), "top.xacro"]

@@ -199,6 +199,14 @@ def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:
     }
 
 
+def test_a_name_of_before_humble_is_of_no_node() -> None:
+    """Galactic's recoveries_server is behavior_server since Humble (nav2_behaviors)."""
+    text = "recoveries_server:\n  ros__parameters: {costmap_topic: a}\n"
+    known = load_nodes("humble")
+    found = nodes_of((known["behavior_server"],), given(text), known)
+    assert [(it.name, it.when) for it in found.nodes] == [("behavior_server", "")]
+
+
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     text = "/r1/amcl:\n  ros__parameters: {scan_topic: front}\n"
     found = nodes_of(load_stack("localization", "jazzy"), given(text), load_nodes("jazzy"))

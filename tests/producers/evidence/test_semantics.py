@@ -27,7 +27,8 @@ def joint(name: str, parent: str, child: str, more: str = "", type_: str = "cont
 
 URDF = f"""\
 <robot name="arm">
-  <link name="base_link"/><link name="upper"/><link name="lower"/><link name="tool"/><link name="finger"/>
+  <link name="base_link"/><link name="upper"/><link name="lower"/><link name="tool"/>
+  <link name="finger"/>
   {joint("shoulder", "base_link", "upper")}
   {joint("elbow", "upper", "lower")}
   {joint("flange", "lower", "tool", type_="fixed")}

@@ -15,7 +15,10 @@ from multibot_rewrite.rules.description.files.libraries import (
     misspelt_libraries,
     plugins_without_library,
 )
-from multibot_rewrite.rules.description.references.gazebo import sensors_of_joints
+from multibot_rewrite.rules.description.references.gazebo import (
+    sensors_elsewhere,
+    sensors_of_joints,
+)
 from multibot_rewrite.rules.description.references.interfaces import misspelt_interfaces
 from multibot_rewrite.rules.facts.certain import lacking
 from multibot_rewrite.rules.facts.faults import faults
@@ -82,9 +85,10 @@ not_read = rule(
     "</link>\n",
 )
 def misplaced(subject: Subject) -> Iterator[Problem]:
-    """By what each reader looks for where, and sensors that no link has."""
+    """By what each reader looks for where, and sensors that no block of a link has."""
     yield from faults("misplaced", subject)
     yield from sensors_of_joints(subject)
+    yield from sensors_elsewhere(subject)
 
 
 @rule(

@@ -11,6 +11,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.rules.description.physics.shared import LEFT, RIGHT, a_rover, a_wheel
 from multibot_rewrite.rules.facts.drives import (
     Drive,
@@ -150,7 +151,7 @@ _FRICTION = ("mu1", "mu", "mu2")
     "wheel-without-grip",
     WARNING,
     what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block, without the "
-    "<fdir1> of wheels with rollers.",
+    "<fdir1> of wheels with rollers. No plugin moves the body of the robot itself.",
     why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
     fix="Write 1.0 or so for both.",
     bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
@@ -158,9 +159,9 @@ _FRICTION = ("mu1", "mu", "mu2")
     line=32,
 )
 def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
-    """Blocks of links on a continuous joint that something drives."""
+    """Blocks of links on a continuous joint that something drives, if nothing else moves the robot."""
     blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]
-    driven = driven_joints(subject) if blocks else ()
+    driven = driven_joints(subject) if blocks and not _is_pushed(subject) else ()
     wheels = {
         it.child for it in subject.robot.joints if it.type == "continuous" and it.name in driven
     }
@@ -173,3 +174,17 @@ def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
                 message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"
                 yield Problem(element, message, "", "write 1.0 or so")
                 break
+
+
+# They set the speed of the body, and the wheels turn for the eye.
+_PUSHING = frozenset(("gazebo_ros_planar_move", "gz-sim-velocity-control-system"))
+
+
+def _is_pushed(subject: Subject) -> bool:
+    """Has the robot a plugin that moves its body, or one of which nothing is known?"""
+    blocks = subject.elements.tops("gazebo")
+    return any(
+        is_unknown(section) or not _PUSHING.isdisjoint(section.names)
+        for plugin, section in subject.inventory.served
+        if plugin.tag == "plugin" and plugin.getparent() in blocks
+    )

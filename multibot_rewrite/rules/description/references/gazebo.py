@@ -102,6 +102,18 @@ def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
                 yield Problem(it, message, "", "keep one")
 
 
+def sensors_elsewhere(subject: Subject) -> Iterator[Problem]:
+    """Sensors of Gazebo in a link of a URDF, which sdformat's converter passes over; those of other
+    readers name their parent, and have their rate in an attribute."""
+    for it in subject.elements.every("sensor"):
+        above = it.getparent()
+        link = None if above is None else subject.robot.link.get(above.get("name", ""))
+        is_ours = it.find("update_rate") is not None and it.find("parent") is None
+        if link and link.element is above and is_ours:
+            message = f"sensor {it.get('name')!r} is in <link>, where no simulator looks"
+            yield Problem(it, message, None, f"move it into <gazebo reference={link.name!r}>")
+
+
 def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
     """Sensors in the block of a joint: SDF has only those of forces there (sdformat joint.sdf)."""
     for block_ in subject.elements.tops("gazebo"):

@@ -44,10 +44,15 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
                 message = f"{it.get('name')} is {text!r}, which is no number"
-                # Humble keeps min and max and reads neither (component_parser.cpp:261).
-                unread = it.get("name") != "initial_value" and since_jazzy(subject)
-                level = NOTE if unread else ""
-                yield Problem(it, message, "", hint, level=level)
+                yield Problem(it, message, "", hint, level=_level(subject, it, text))
+
+
+def _level(subject: Subject, param: _Element, text: str) -> str:
+    """Humble keeps min and max and reads neither (component_parser.cpp:261), later releases go on
+    without them (``retrieve_min_max_interface_values``); an empty value is none."""
+    if param.get("name") == "initial_value":
+        return "" if text else WARNING
+    return NOTE if since_jazzy(subject) else WARNING
 
 
 def _params(system: _Element) -> Iterator[_Element]:

@@ -180,13 +180,22 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     line=5,
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits."""
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits,
+    and one that moves nothing stands for something else: a pressure, a dial."""
     for joint, limit, lower, upper in _bounds(subject):
         far = max(abs(lower), abs(upper))
-        if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:
+        is_long = joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper
+        if is_long and not _moves_nothing(subject.robot, joint):
             message = f"prismatic joint {joint.name!r} goes from {lower:g} m to {upper:g} m"
             name = "upper" if abs(upper) == far else "lower"
             yield Problem(limit, message, name, "are these millimetres?")
+
+
+def _moves_nothing(robot: Robot, joint: Joint) -> bool:
+    """Is its child an empty link at the end of a robot whose other links have a body?"""
+    child = robot.link.get(joint.child)
+    empty = child is not None and not len(child.element) and joint.child not in robot.below
+    return empty and any(len(it.element) for it in robot.links)
 
 
 def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
