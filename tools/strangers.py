@@ -13,6 +13,7 @@ import argparse
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -22,14 +23,15 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import IO, NamedTuple
 
-HALVES = ("work", "last", "fresh", "more", "kept", "more2", "kept2", "more3", "kept3")
 LIST = Path(__file__).with_name("strangers.tsv")
 DRIVE = Path(__file__).parents[1] / "tests" / "drive"
 MULTIBOT = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 # What stands for a release that is no longer kept, or where the repository names none.
 RELEASE = {"foxy": "humble", "galactic": "humble", "iron": "humble", "-": "jazzy"}
-# How a question which description is meant ends: a user names the one that is meant.
-_NAMED = re.compile(r"name one: multibot init (\S+)")
+# How a question which file is meant ends: a user names the one that is meant.
+_NAMED = re.compile(r"name one: multibot init (.+)")
+# Questions after each other that are answered.
+_QUESTIONS = 4
 # Where compiled modules are kept from run to run.
 COMPILED = os.path.join(tempfile.gettempdir(), "multibot_strangers_compiled")
 # Seconds after which a command is ended.
@@ -39,7 +41,7 @@ LONGEST = 200
 
 
 class Stranger(NamedTuple):
-    """A repository of the list; ``half`` is one of HALVES."""
+    """A repository of the list; ``half`` is the part of the list that it is of."""
 
     name: str
     kind: str
@@ -76,16 +78,21 @@ def strangers(path: Path = LIST) -> list[Stranger]:
 
 def tried(it: Stranger, checkout: Path, folder: Path) -> Row:
     """Init, build and drive one repository; everything is written below ``folder``. Where init asks
-    which robot is meant, the first that it names is."""
+    which robot or file is meant, the first that it names is."""
     folder.mkdir(parents=True, exist_ok=True)
     fleet, release = folder / "fleet.yaml", RELEASE.get(it.release, it.release)
     words = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
     made = run([*MULTIBOT, "init", str(checkout), *words], release)
-    if named := _NAMED.search(made.err):
-        again = run([*MULTIBOT, "init", named[1], *words], release)
-        row = _built(it, again, fleet, release, checkout)
-        return row._replace(word=f"asks which robot; the first: {row.word}", init=made.seconds)
-    return _built(it, made, fleet, release, checkout)
+    first, asked = made.seconds, ""
+    for _ in range(_QUESTIONS):
+        named = _NAMED.search(made.err)
+        if named is None:
+            break
+        what = "robot" if "descriptions" in made.err else "file"
+        asked += f"asks which {what}; the first: "
+        made = run([*MULTIBOT, "init", *shlex.split(named[1]), *words], release)
+    row = _built(it, made, fleet, release, checkout)
+    return row._replace(word=f"{asked}{row.word}", init=first)
 
 
 def _built(it: Stranger, made: Ran, fleet: Path, release: str, checkout: Path) -> Row:
@@ -227,7 +234,9 @@ def main(words: Sequence[str]) -> int:
     """Run those that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=HALVES, default="work")
+    parser.add_argument(
+        "--half", choices=dict.fromkeys(it.half for it in strangers()), default="work"
+    )
     parser.add_argument("--only", default="", help="a part of the names")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="where to write fleets and folders")

@@ -201,15 +201,18 @@ def conclude(
 
 def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
     """What is open in the plan. Notes, as of what a driver that nobody names may send, are only counted
-    where they are asked for."""
+    where they are asked for, but for that of a drive that nobody has read."""
     found = chosen(options, plan.gaps)
-    if options.fail_on == NOTE or options.verbose:
+    notes = [it for it in found if it.level == NOTE]
+    if not notes or options.fail_on == NOTE or options.verbose:
         return found
-    serious = [it for it in found if it.level != NOTE]
-    if len(serious) < len(found):
-        left = plural(len(found) - len(serious), "note")
-        note(options, f"note: {left} about topics that no known node sends; --verbose shows them")
-    return serious
+    from multibot_rewrite.fleet.robots.simulators import UNREAD_DRIVE  # few plans need it
+
+    left = [it for it in notes if it.code != UNREAD_DRIVE.code]
+    if left:
+        what = f"{plural(len(left), 'note')} about topics that no known node sends"
+        note(options, f"note: {what}; --verbose shows them")
+    return [it for it in found if it not in left]
 
 
 def plan_name(options: argparse.Namespace) -> str:
@@ -224,7 +227,7 @@ def _outcome(
     """A graph may be as planned, and the plan have faults."""
     is_open = any(it.level != NOTE for it in gaps)
     word = "but" if verdict == Verdict.PLANNED else "and"
-    but = f", {word} the plan has faults" if is_open else ""
+    but = f", {word} the plan has faults" if is_open else ", with notes on the plan" if gaps else ""
     return Outcome(
         verdict, f"{words or WORDS[verdict]}{but}", f"{options.program} {options.command}"
     )

@@ -7,7 +7,7 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
 from itertools import pairwise
@@ -21,6 +21,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import plain_words, xacro_args
+from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import (
@@ -43,7 +44,7 @@ from multibot_rewrite.fleet.proposal.trying import (
 )
 
 SIMULATORS = ("gazebo", "none")
-LEFT_OUT = "it was left out"
+LEFT_OUT, NONE = "it was left out", "none"
 _T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -139,10 +140,10 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]
-    made = _quietly(wanted, lambda it: that_builds(robots, seen.found, it))
+    found, made = _with_files_asked_for(robots, seen.found, wanted, {})
     refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
     wanted = wanted._replace(apart=_apart(made))
-    made = _quietly(wanted, lambda it: that_builds(robots, seen.found, it, refused))
+    made = _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
     if not wanted.layout:
         made = _in_layout(made)
     if wanted.simulator:
@@ -152,17 +153,39 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     if word == simulator.value:
         return made
     wanted = wanted._replace(simulator=word, layout=str(made.keys["layout"].value))
-    return _quietly(wanted, lambda it: that_builds(robots, seen.found, it, refused))
+    return _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
-    """The one that the user takes of several; numbers are easier to type than paths."""
-    if len(found) == 1:
-        return found
-    for at, it in enumerate(found, 1):
-        say(f"  {at}: {it.path} ({plural(it.links, 'link')})", PROGRAM)
-    numbers = [str(at) for at in range(1, len(found) + 1)]
-    return [found[int(_ask("Description", "1", numbers)) - 1]]
+    """The one that the user takes of several."""
+    shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
+    return found if len(found) == 1 else [found[_of_these(shown, "Description", "1") or 0]]
+
+
+def _with_files_asked_for(
+    robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
+) -> tuple[Found, Proposal]:
+    """The fleet, and the files with what the user has said where several may be meant."""
+    try:
+        return found, _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
+    except Undecided as question:
+        say(f"{question}".partition(": ")[0], PROGRAM)
+        files = [*question.files]
+        at = _of_these([*map(question.said, files)], "The one that is meant", NONE)
+    meant = () if at is None else (files[at],)
+    left = {it: LEFT_OUT for it in files if it not in meant}
+    found = found._replace(meant=(*found.meant, *meant))
+    return _with_files_asked_for(robots, found, wanted, {**refused, **left})
+
+
+def _of_these(shown: Sequence[str], question: str, default: str) -> int | None:
+    """Which of these it is, by its number, None for the word ``none``: numbers are easier to type than
+    paths."""
+    for at, it in enumerate(shown, 1):
+        say(f"  {at}: {it}", PROGRAM)
+    numbers = [str(at) for at in range(1, len(shown) + 1)]
+    answer = _ask(question, default, numbers if default in numbers else [*numbers, NONE])
+    return None if answer == NONE else int(answer) - 1
 
 
 def _with_count(wanted: Wanted) -> Wanted:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
@@ -235,7 +236,15 @@ def _usual(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
     for name, item in table_of(keys, "parameters").items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
-        yield name, item.value
+        yield name, _number(item.value)
+
+
+def _number(value: str | float) -> str | float:
+    """A number where a text is one: rclcpp takes no text for a number."""
+    for kind in (int, float):
+        with suppress(ValueError):
+            return kind(value) if isinstance(value, str) else value
+    return value
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:

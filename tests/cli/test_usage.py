@@ -208,6 +208,9 @@ def test_notes_about_a_plan_are_counted_where_nobody_asks_for_them(
     assert capsys.readouterr().err == (
         "multibot: note: 2 notes about topics that no known node sends; --verbose shows them\n"
     )
+    drive = Finding("MF844", NOTE, "nobody has read it")
+    found = check._gaps(options(**usual, fail_on=ERROR), System(gaps=(drive, gaps[1])))
+    assert found == [drive] and "1 note about" in capsys.readouterr().err
     assert check._gaps(options(**usual, fail_on=NOTE), plan) == list(gaps)
     assert check._gaps(options(**{**usual, "verbose": True}, fail_on=ERROR), plan) == list(gaps)
     assert len(check._gaps(options(**usual, fail_on=ERROR), System(gaps=gaps[:1]))) == 1

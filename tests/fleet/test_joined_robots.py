@@ -294,3 +294,16 @@ def test_one_window_shows_both_parts(folder: Path) -> None:
         assert window.count(f"cell1_{name}") == RVIZ.count(name)
         assert f" {name}" not in window
     assert [it for it in made.findings if it.code in ("MB853", "MB891")] == []
+
+
+@pytest.mark.slow
+def test_configs_of_the_parts_are_one_of_the_robot(folder: Path) -> None:
+    display = "- {Class: rviz_default_plugins/Axes, Name: axes, Reference Frame: tool}"
+    config = f"Visualization Manager:\n  Displays:\n  {display}\n"
+    (folder / "parts/arm.rviz").write_text(config)
+    srdf = "    srdf: parts/arm.srdf\n"
+    text = FLEET.replace(srdf, f"{srdf}    rviz: parts/arm.rviz\n")
+    (folder / "fleet.yaml").write_text(text.replace("layout: both", "layout: frames-per-robot"))
+    shown = outputs()["robot.rviz"].decode()
+    assert "Reference Frame: cell1_left_tool" in shown
+    assert "Reference Frame: cell1_right_tool" in shown

@@ -230,10 +230,11 @@ FINGERS = """\
   Topic:
     Value: /camera
 """
+PALM = ROBOT_MODEL.format(link="palm").replace("/robot", "robot")
 GRIPPER_RVIZ = f"""\
 Visualization Manager:
   Displays:
-{ROBOT_MODEL.format(link="palm")}{"".join(f"    {it}" for it in FINGERS.splitlines(True))}\
+{PALM}{"".join(f"    {it}" for it in FINGERS.splitlines(True))}\
   Global Options:
     Fixed Frame: root
 """

@@ -42,10 +42,7 @@ COMMITS: list[tuple[str, str, str, dict[str, str]]] = [
     ("Kinovarobotics+ros2_kortex", "2f2ba44", "", {}),
     ("harshilbhatt2001+ros2_swarm_ws", "6077ddd", "", {}),
     ("Kinovarobotics+ros_kortex", "65c2dc5", "", {}),
-    ("GroupOfRobots+minirys_nav2_ws", "1774ee0", "", {}),
-    ("deepwithin+yam_ros2_control", "b90f100", "", {}),
     ("blackcoffeerobotics+EZGripper_ros2", "10022e4", "", {}),
-    ("flexivrobotics+flexiv_ros2", "a390dc3", "", {}),
 ]
 _DATA = ("xacro", "urdf", "srdf", "sdf", "world", "xml", "yaml", "yml", "rviz", "launch", "txt")
 _CODE = ("py", "cpp", "cc", "c", "hpp", "hh", "h", "lua")

@@ -91,4 +91,8 @@ def _shows(one: RvizItem) -> tuple[str, ...]:
     """What a display shows: its class and its topics; a grid, its frame."""
     named = (it for it in one.places if it.kind in (TOPIC, GRAPH_NAMESPACE))
     frame = value(one.node, "Reference Frame")
-    return one.cls, *(f"{it.key}={it.text}" for it in named), str(frame.value if frame else "")
+    return (
+        one.cls,
+        *(f"{it.key}={it.text.strip('/')}" for it in named),
+        str(frame.value if frame else ""),
+    )

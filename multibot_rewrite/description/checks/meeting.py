@@ -32,6 +32,7 @@ LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ELSEWHERE = "MB439"
 ALL = "all robots would"
 BESIDE = "use --topics namespace, which keeps both in one place"
+BY_HAND = "write it for each robot by hand, as by an argument of a xacro"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
 
@@ -139,7 +140,10 @@ def _changed(
             f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
             "they were the same topic"
         )
-        hint = f"write both the same way, or {BESIDE}"
+        left = next((name.path for name in (it, other) if name in reading.other_ends), "")
+        hint = (
+            f"{left} stays as it is: {BY_HAND}" if left else f"write both the same way, or {BESIDE}"
+        )
         yield Problem(_element(document, it), message, None, hint, (), PARTED)
     for it, *pair in undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))

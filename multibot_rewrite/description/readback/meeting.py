@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.naming import NAMESPACE, TOPIC_KINDS, Naming, is_keyword, is_of_world
+from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.active import ADDRESS, FILE, RELATIVE
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
+    BELOW,
     SERVICE,
     TOPIC,
     TRANSFORMS,
@@ -95,7 +96,7 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
             # Where each robot has a tf topic of its own, frames may be the same.
             at_run_time = naming.layout.at_run_time and it.tag == "link"
             shared = at_run_time or not naming.layout.frames or bare in naming.shared_frames
-        elif it.kind in (TOPIC, SERVICE, ACTION):
+        elif it.kind in (TOPIC, BELOW, SERVICE, ACTION):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
         elif it.kind == TRANSFORMS:
@@ -112,7 +113,7 @@ def code_of(name: RuntimeName) -> str:
         return NOT_TAKEN
     if name.kind in (SERVICE, ACTION):
         return TWO_SERVERS
-    if name.kind in TOPIC_KINDS:
+    if name.kind in (TOPIC, BELOW):
         from multibot_rewrite.system.words import is_order  # nothing is shared in most files
 
         return COMMAND if is_order(name.name, name.type or _USUAL) else DATA

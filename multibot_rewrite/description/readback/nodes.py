@@ -30,6 +30,8 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
+# A word that topics are made of, which is none itself.
+BELOW = "topics below"
 # What a plugin sends that no rule reaches, on the one topic that all have: frames keep robots apart.
 TRANSFORMS = "transforms on"
 TF_TOPICS = ("/tf", "/tf_static")

@@ -11,6 +11,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.nodes import (
+    BELOW,
     SERVES,
     SERVICE,
     TF_TOPICS,
@@ -41,11 +42,11 @@ def resolved(
     if reads_it(section, release) and scoped_namespace(host) != "":
         above = scoped_namespace(host)
         # Its default topics are below it, too.
-        yield from [(TOPIC, above, "model@namespace")] if above else []
+        yield from [(BELOW, above, "model@namespace")] if above else []
     stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
-        yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+        yield from ((BELOW, _joined(above, word), path) for path, word in words)
     yield from _of_nobody(host, stems)
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
@@ -85,7 +86,7 @@ def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str
     for site in stems:
         given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
         if given and not any(given):
-            yield TOPIC, "/", site.path
+            yield BELOW, "/", site.path
 
 
 def as_valid_topic(name: str) -> str:

@@ -11,6 +11,7 @@ from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.active import opened
 from multibot_rewrite.description.readback.nodes import (
+    BELOW,
     TOPIC,
     ReadNode,
     frames_of,
@@ -151,7 +152,7 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
         # What is below a stem is named by it.
         yield from _endpoints(node, below=False)
         for path, full in node.stems:
-            yield RuntimeName(TOPIC, full, "plugin", node.number, path)
+            yield RuntimeName(BELOW, full, "plugin", node.number, path)
 
 
 def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:

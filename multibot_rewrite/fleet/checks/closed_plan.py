@@ -25,10 +25,12 @@ from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
+from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.systems import system_after, system_before
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
+from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.rules.files.judge import codes
 from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.records import Topic
@@ -105,6 +107,8 @@ def _gaps(
         yield from controlled(robot, before.control, after.control, texts)
         yield from apart(robot, before.system, after.system, whose)
         yield from not_sent(robot, before.system)
+        loads = any(it.name.endswith(MANAGER) for it in group.facts)
+        yield from unread_drives(robot, loads)
         yield from missing(robot, before.system, after.system, whose)
         yield from written_findings(plan, group, texts, known)
 

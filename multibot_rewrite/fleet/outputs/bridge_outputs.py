@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
 import yaml
@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     yaml_of,
 )
-from multibot_rewrite.fleet.outputs.spawn import simulators
+from multibot_rewrite.fleet.outputs.spawn import simulators, written_out
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
@@ -201,17 +201,18 @@ def as_spawned(
 ) -> list[BridgedTopic]:
     """The bridged topics of descriptions, with the names that the models are spawned with.
 
-    ``ros_gz_sim create -name`` gives a model another name than its description has.
+    ``ros_gz_sim create -name`` gives a model another name than its description has; a topic that is
+    written out in it stays.
     """
-    names = {it.spec.namespace: it for it in robots}
-    return [_spawned(it, names[it.robot]) if it.robot in names else it for it in topics]
+    names = {it.spec.namespace: (it, written_out(it)) for it in robots}
+    return [_spawned(it, *names[it.robot]) if it.robot in names else it for it in topics]
 
 
-def _spawned(it: BridgedTopic, robot: RewrittenRobot) -> BridgedTopic:
+def _spawned(it: BridgedTopic, robot: RewrittenRobot, fixed: Container[str]) -> BridgedTopic:
     # If frames stay bare, the generated name is the robot's, not that of the description.
     inner = model_name(robot.member.inventory)
     found = GZ_MODEL.fullmatch(it.gz)
-    if not found or found["model"] not in (inner, robot.spec.namespace):
+    if it.gz in fixed or not found or found["model"] not in (inner, robot.spec.namespace):
         return it
     return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
 

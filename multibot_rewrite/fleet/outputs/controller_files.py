@@ -115,7 +115,7 @@ def is_same(path: str, file: str, description: str) -> bool:
     """Is ``path``, as ``description`` names it, this ``file`` or an installed copy of it?"""
     plain = path.removeprefix("file://")
     for it in (plain, os.path.join(os.path.dirname(description), plain)):
-        # Values of the fleet file itself are in no file.
+        # What stands in the fleet file itself is no file.
         if os.path.isfile(it) and os.path.isfile(file) and os.path.samefile(it, file):
             return True
     found = IN_PACKAGE.fullmatch(plain)

@@ -22,8 +22,8 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
+    own_yaml,
     path_for,
-    yaml_of,
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
@@ -56,18 +56,19 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
     own = {it.robots[0].spec.name: it for it in each}
     world = world_of(plan.file, plan.fleet.naming)
     for path, robots in robots_of.items():
+        document = own_yaml(robots[0].spec, path)
         shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
         relayed = plan.file.relayed
-        texts, found = rewrite_rviz(yaml_of(path), shown, world=world, relayed=relayed)
+        texts, found = rewrite_rviz(document, shown, world=world, relayed=relayed)
         if plan.file.cell:
-            made = cell_window(yaml_of(path), plan.file.cell, robots[0], world)
+            made = cell_window(document, plan.file.cell, robots[0], world)
             texts = (*(it for it in texts if not (it.robot and made)), *filter(None, [made]))
         if relayed and not plan.fleet.naming.layout.frames:
-            window, bare = bridged_window(yaml_of(path), shown, world)
+            window, bare = bridged_window(document, shown, world)
             texts, found = (window, *texts), (*found, *bare)
         found = (
             *found,
-            *judged_once(of_fleet(plan, read_for(yaml_of(path), shown, plan.file.distro), robots)),
+            *judged_once(of_fleet(plan, read_for(document, shown, plan.file.distro), robots)),
         )
         done = ONE_TF_TOPIC.code if relayed else ""
         yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))

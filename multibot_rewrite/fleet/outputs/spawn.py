@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
-from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import (
     REAL,
     Pose,
@@ -25,7 +25,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.spelling.bridged_topics import model_name
+from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
@@ -295,14 +295,27 @@ def _old_plugins(robot: RewrittenRobot) -> Iterator[str]:
             yield host.element.get("filename") or section.names[0]
 
 
+def written_out(robot: RewrittenRobot) -> frozenset[str]:
+    """The gz topics of the robot's plugins that stand in its description."""
+    inventory = robot.member.inventory
+    bridged, _ = bridged_topics({robot.spec.namespace: inventory}, robot.topics.naming)
+    texts = {
+        text_of(it) for plugin in inventory.document.root.iter("plugin") for it in plugin.iter()
+    }
+    return frozenset(texts & {it.gz for it in bridged})
+
+
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     """The first plugin that names the robot's own model, and not by the name it is spawned with."""
     inventory = robot.member.inventory
     own = model_name(inventory)
     if own == robot.spec.model:
         return
+    fixed = written_out(robot)
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         if claim.site.role == "uses" and any(it.kind == "model" and it.text == own for it in names):
+            if text_of(claim.element) in fixed:
+                continue
             who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
             message = f"{who}, <{claim.element.tag}> looks for the model {own!r}"
             hint = f"write model: {own} for it"

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, home_of, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(
@@ -22,8 +24,29 @@ _PART = lazy_compile(
 )
 # What a file manager calls a copy of a file.
 _COPY = lazy_compile(r"[ (_-]+copy\b\)?|\s*\(\d+\)")
+# Files that are shown where nothing says which is meant.
+MOST_SHOWN = 6
 # With a share of its names that is so many times as large, files are for this description.
 _MORE = 2
+
+
+class Undecided(UsageError):
+    """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
+
+    def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
+        """``before`` are files that are named beside the one that is meant, as are those that were."""
+        self.files = files
+        named = [*before, *found.meant, next(iter(files))]
+        home = os.path.abspath(home_of(named[0]))
+        folders = [it for it in found.folders if os.path.abspath(it) != home]
+        more = f" and {len(files) - MOST_SHOWN} more" if len(files) > MOST_SHOWN else ""
+        shown = ", ".join([*map(self.said, files)][:MOST_SHOWN])
+        command = f"multibot init {shlex.join([*folders, *named])}"
+        super().__init__(f"{what}: {shown}{more}; name one: {command}")
+
+    def said(self, path: str) -> str:
+        """A file as it is shown."""
+        return f"{path} ({self.files[path]})" if self.files[path] else path
 
 
 class Candidate(NamedTuple):
@@ -89,8 +112,8 @@ def _bare_links(it: Looked) -> set[str]:
 
 
 def is_model(path: str) -> bool:
-    """Is it an SDF, or a xacro of one?"""
-    return ".sdf" in os.path.basename(path)
+    """Is it an SDF, or a xacro of one? Gazebo Classic's may end with .model."""
+    return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
 def _are_launched_together(path: str, other: str, found: Found) -> bool:

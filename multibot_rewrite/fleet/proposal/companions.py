@@ -147,7 +147,7 @@ def _of_kind(
 
 def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) -> Iterator[Fitting]:
     """The parameter files that can be read; those with fewest names that the robot has not come first,
-    then the nearest. Raises UsageError where none is more likely than another for one node."""
+    then the nearest. Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
     given = files_given(readings(found.launch, robot.path, found.every))
     read = []
@@ -163,7 +163,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     meant = {it.path for it in read if it.path in found.meant or os.path.abspath(it.path) in loaded}
     order = sorted(read, key=lambda it: (it.path not in meant, it.rank))
     settled = {node for it in order if it.path in meant for node in it.nodes}
-    check_winner([it for it in order if not it.nodes & settled])
+    check_winner([it for it in order if not it.nodes & settled], robot, found)
     yield from order
 
 

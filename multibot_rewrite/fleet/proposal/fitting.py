@@ -8,11 +8,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from lxml import etree
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
-from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import own_names
-from multibot_rewrite.fleet.proposal.searching import text_of
+from multibot_rewrite.fleet.proposal.searching import Found, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.producers.evidence.records import GivenNode
 
@@ -70,22 +70,18 @@ def _is_strange(topic: str, said: str) -> bool:
     return "/" in words and words not in said
 
 
-def check_winner(its: Sequence[Fitting]) -> None:
-    """Raise UsageError where two files for one node go as badly with the robot: each has names that it
+def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
+    """Raise Undecided where two files for one node go as badly with the robot: each has names that it
     has not. A file without any has no rival."""
     for at, best in enumerate(its):
         if any(best.nodes & it.nodes for it in its[:at]):
             continue
         rivals = [it for it in its[at + 1 :] if it.nodes & best.nodes and _is_rival(it, best)]
         if best.strange and rivals:
-            both = [best, *rivals]
-            each = "; ".join(f"{it.path} ({_shown(it.strange)})" for it in both)
+            both = {it.path: _shown(it.strange) for it in (best, *rivals)}
             node = sorted(best.nodes & rivals[0].nodes)[0]
-            raise UsageError(
-                f"{len(both)} files have parameters of {node}, and names that the robot has not: "
-                f"{each}; name the one that is meant beside the description: multibot init "
-                f"DESCRIPTION {best.path}"
-            )
+            what = f"{len(both)} files have parameters of {node}, and names that the robot has not"
+            raise Undecided(what, both, found, robot.path)
 
 
 def _is_rival(it: Fitting, best: Fitting) -> bool:

@@ -24,8 +24,12 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 
 # What a build gives each node anyway, or what is of one machine.
-_USUAL = frozenset(("use_sim_time", "autostart", "node_names", "yaml_filename", "frame_prefix"))
+_USUAL = frozenset(("use_sim_time", "autostart", "node_names", "frame_prefix"))
+# The node and its parameter that an included file gives the value of its argument of this name.
+_MAP = {"map": ("map_server", "yaml_filename")}
 _DESCRIPTION = "robot_description"
+# Letters of a value that is shown.
+_LONGEST = 80
 # What the values of launch files are called where they are refused.
 VALUES = "values of launch files"
 _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
@@ -52,8 +56,8 @@ class _Given(NamedTuple):
 
 
 def readings(launch: Iterable[str], description: str, every: Sequence[str]) -> list[Reading]:
-    """The launch files in Python, but for those of other descriptions, each with the arguments that
-    others include it with."""
+    """The launch files, but for those of other descriptions, each with the arguments that others
+    include it with."""
     others = {os.path.basename(it) for it in every} - {os.path.basename(description)}
     own = (
         it
@@ -61,10 +65,10 @@ def readings(launch: Iterable[str], description: str, every: Sequence[str]) -> l
         if os.path.basename(description) in text_of(it)
         or not any(other in text_of(it) for other in others)
     )
-    texts = [launch_text(it) for it in own if it.endswith(".py")]
+    texts = [launch_text(it) for it in own]
     given: dict[str, dict[str, Any]] = {}
     for text in texts:
-        for target, arguments in _included(Reading(text, {})):
+        for _, target, arguments in _included(Reading(text, {})):
             known = given.setdefault(os.path.normpath(target), {})
             for name, value in arguments.items():
                 known[name] = value if known.get(name, value) == value else UNKNOWN
@@ -78,19 +82,19 @@ def files_given(read: Iterable[Reading]) -> frozenset[str]:
 
 
 def _files(it: Reading) -> Iterator[str]:
-    for _, arguments in _included(it):
+    for _, _, arguments in _included(it):
         yield from (value for value in arguments.values() if isinstance(value, str))
     for call in it.text.nodes:
         yield from map(it.path, _elements(argument(call, "parameters")))
 
 
-def _included(it: Reading) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The path of each file that is included, and its arguments."""
+def _included(it: Reading) -> Iterator[tuple[int, str, dict[str, Any]]]:
+    """The line and path of each file that is included, and its arguments."""
     for call in it.text.includes:
         target = it.path(argument(call, "launch_description_source", 0))
         pairs = _pairs(argument(call, "launch_arguments", 1))
         values = ((word_of(key), it.path(value) or it.value(value)) for key, value in pairs)
-        yield target, {name: value for name, value in values if name}
+        yield call.lineno, target, {name: value for name, value in values if name}
 
 
 def _pairs(it: ast.expr | None) -> Iterator[tuple[ast.expr | None, ast.expr]]:
@@ -118,7 +122,7 @@ def given_by_launch(
     said: dict[tuple[str, str], list[Any]] = {}
     for given in every:
         for name, value in given.values.items():
-            said.setdefault((given.node, name), []).append(value)
+            said.setdefault((given.node, name), []).append(_data(value))
     values: dict[str, dict[str, Any]] = {}
     for (node, name), its in said.items():
         if carried and node and its[0] is not UNKNOWN and all(it == its[0] for it in its):
@@ -130,19 +134,31 @@ def _rest(
     every: Iterable[_Given], values: Mapping[str, Mapping[str, Any]]
 ) -> Iterator[tuple[str, int, str]]:
     for it in every:
-        left = [name for name in it.values if name not in values.get(it.node, {})]
+        own = values.get(it.node, {})
+        left = [_shown(name, value) for name, value in it.values.items() if name not in own]
         if left or it.rules:
             yield it.file, it.line, f"{it.who}: {', '.join((*left, *it.rules))}"
 
 
+def _shown(name: str, value: Any) -> str:
+    plain = isinstance(value, bool | int | float | str) and len(f"{value}") <= _LONGEST
+    return f"{name}: {value}" if plain else name
+
+
 def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
+    known = {os.path.basename(one.name) for one in nodes}
+    for line, _, arguments in _included(it):
+        for name, (server, parameter) in _MAP.items():
+            if server in known and arguments.get(name):
+                values = {parameter: arguments[name]}
+                yield _Given(it.text.file, line, server, "", values, ())
     for call in it.text.nodes:
         program = word_of(argument(call, "executable"))
         who = word_of(argument(call, "name")) or program
         node = next((one for one in nodes if {who, program} & _called(one)), None)
         if node is None:
             continue
-        values = {key: _data(value) for key, value in _parameters(it, call)}
+        values = dict(_parameters(it, call))
         own = os.path.basename(node.name)
         named = argument(call, "name") is None or who == own
         rules = tuple(_rules(argument(call, "remappings")))

@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launch file in Python as it is written: its actions, and values that are read without running it.
+"""A launch file as it is written: its actions, and values that are read without running it.
 
 A value is plain where names that are assigned once, paths in packages that are there, and defaults of
-launch arguments lead to it. All else is unknown: a launch file is a program.
+launch arguments lead to it. All else is unknown: a launch file is a program. One in XML or YAML is read
+as the same one in Python (launch_xml/entity.py, launch_yaml/entity.py, launch_ros/actions/node.py).
 """
 
 from __future__ import annotations
 
 import ast
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import yaml
+from lxml import etree
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import compose_yaml, load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.fleet.proposal.searching import text_of
@@ -34,6 +38,8 @@ _PACKAGES = ("get_package_share_directory", "FindPackageShare", "get_package_sha
 _JOINS = ("join", "PathJoinSubstitution")
 # Names that lead to a value by way of others.
 _DEEPEST = 12
+_SUBSTITUTION = re.compile(r"(\$\((?:[^()]|\([^()]*\))*\))")
+_UNREAD = "unknown()"
 
 
 class LaunchText(NamedTuple):
@@ -49,10 +55,11 @@ class LaunchText(NamedTuple):
 
 @lru_cache(maxsize=512)
 def launch_text(path: str) -> LaunchText:
-    """Read a launch file; one that Python cannot parse has nothing."""
+    """Read a launch file; one that cannot be parsed has nothing."""
     try:
-        every = list(ast.walk(ast.parse(text_of(path))))
-    except (SyntaxError, ValueError, RecursionError):
+        text = text_of(path) if path.endswith(".py") else _in_python(path)
+        every = list(ast.walk(ast.parse(text)))
+    except (SyntaxError, ValueError, RecursionError, yaml.YAMLError):
         every = []
     calls = [it for it in every if isinstance(it, ast.Call)]
     declared = ((word_of(argument(it, "name", 0)), it) for it in _called(calls, _DECLARE))
@@ -173,4 +180,155 @@ def _folder(reading: Reading, package: Any) -> Any:
 _READERS: Mapping[type, Callable[[Reading, Any, int], Any]] = {
     ast.Constant: _constant, ast.UnaryOp: _number, ast.Name: _of_name, ast.List: _list,
     ast.Tuple: _list, ast.BinOp: _sum, ast.Call: _call,
+}  # fmt: skip
+
+
+class _Action(NamedTuple):
+    """An element of an XML launch file, or a mapping of one in YAML: its line, its attributes, which
+    are texts or lists of them, and what is in it."""
+
+    tag: str
+    line: int
+    attributes: Mapping[str, Any]
+    inner: tuple[_Action, ...]
+
+
+def _in_python(path: str) -> str:
+    """The actions of a file in XML or YAML as Python, each in its line; raises yaml.YAMLError,
+    ValueError."""
+    text = text_of(path)
+    tops = _of_xml(text) if text.lstrip().startswith("<") else _of_yaml(compose_yaml(text))
+    lines: dict[int, list[str]] = defaultdict(list)
+    for it in _every(tops):
+        made = _MADE.get(it.tag)
+        if made:
+            lines[it.line].append(made(it).replace(_HERE, repr(os.path.dirname(path) or os.curdir)))
+    return "\n".join("; ".join(lines[at]) for at in range(1, max(lines, default=0) + 1))
+
+
+def _every(its: Iterable[_Action]) -> Iterator[_Action]:
+    for it in its:
+        yield it
+        yield from _every(it.inner)
+
+
+def _of_xml(text: str) -> list[_Action]:
+    parser = etree.XMLParser(resolve_entities=False, remove_comments=True, remove_pis=True)
+    try:
+        return [_of_element(etree.fromstring(text.encode(), parser))]
+    except etree.XMLSyntaxError as error:
+        raise ValueError(str(error)) from None
+
+
+def _of_element(it: etree._Element) -> _Action:
+    inner = tuple(map(_of_element, it.iterchildren("*")))
+    return _Action(
+        str(it.tag),
+        cast("int", it.sourceline),
+        {str(k): str(v) for k, v in it.attrib.items()},
+        inner,
+    )
+
+
+def _of_yaml(node: yaml.Node | None) -> Iterator[_Action]:
+    """The actions in a list of mappings with one key each, or below ``launch`` and ``children``."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            if key.value in ("launch", "children"):
+                yield from _of_yaml(value)
+    for each in node.value if isinstance(node, yaml.SequenceNode) else ():
+        for key, value in each.value if isinstance(each, yaml.MappingNode) else ():
+            yield _of_mapping(str(key.value), key.start_mark.line + 1, value)
+
+
+def _of_mapping(tag: str, line: int, node: yaml.Node) -> _Action:
+    attributes: dict[str, Any] = {}
+    inner = [*_of_yaml(node)]
+    for key, value in node.value if isinstance(node, yaml.MappingNode) else ():
+        its = value.value if isinstance(value, yaml.SequenceNode) else [value]
+        if all(isinstance(it, yaml.ScalarNode) for it in its):
+            texts = [it.value for it in its]
+            attributes[key.value] = texts[0] if its == [value] else texts
+        elif key.value != "children":
+            own = (it for it in its if isinstance(it, yaml.MappingNode))
+            inner += [_of_mapping(key.value, it.start_mark.line + 1, it) for it in own]
+    return _Action(tag, line, attributes, tuple(inner))
+
+
+def _made_node(it: _Action) -> str:
+    own = {"executable": it.attributes.get("exec"), "name": it.attributes.get("name")}
+    words = [f"{key}={_made_text(value)}" for key, value in own.items() if value is not None]
+    files = [_made_text(one.attributes["from"]) for one in _inside(it, "param", "from")]
+    values = ", ".join(f"{name!r}: {value}" for name, value in _made_values(it, ""))
+    rules = (
+        f"({_made_text(one.attributes['from'])}, {_made_text(one.attributes.get('to', ''))})"
+        for one in _inside(it, "remap", "from")
+    )
+    given = ", ".join([*files, f"{{{values}}}"])
+    return f"Node({', '.join(words)}, parameters=[{given}], remappings=[{', '.join(rules)}])"
+
+
+def _inside(it: _Action, tag: str, key: str) -> Iterator[_Action]:
+    return (one for one in it.inner if one.tag == tag and key in one.attributes)
+
+
+def _made_values(it: _Action, above: str) -> Iterator[tuple[str, str]]:
+    """The parameters in an element, those below one with its name in front."""
+    for one in _inside(it, "param", "name"):
+        name = f"{above}{one.attributes['name']}"
+        yield from _made_values(one, f"{name}.")
+        if "value" in one.attributes:
+            is_text = one.attributes.get("type") == "str"
+            apart = "value-sep" in one.attributes
+            value = one.attributes["value"]
+            yield name, _UNREAD if apart else _made_text(value) if is_text else _made_value(value)
+
+
+def _made_value(it: Any) -> str:
+    """A value as launch has it: of what a text says in YAML."""
+    if isinstance(it, list):
+        return f"[{', '.join(map(_made_value, it))}]"
+    try:
+        return _made_text(it) if "$" in it else repr(load_yaml(it))
+    except yaml.YAMLError:
+        return repr(it)
+
+
+def _made_text(it: Any) -> str:
+    pieces = _SUBSTITUTION.split(it) if isinstance(it, str) else [_UNREAD]
+    return " + ".join(_made_piece(one) for one in pieces if one) or "''"
+
+
+def _made_piece(it: str) -> str:
+    if not it.startswith("$(") or it == _UNREAD:
+        return it if it == _UNREAD else repr(it)
+    name, _, rest = it[2:-1].partition(" ")
+    made = {"var": "LaunchConfiguration", "find-pkg-share": "FindPackageShare"}.get(name)
+    if name == "dirname":
+        return _HERE
+    return f"{made}({_made_text(rest.strip())})" if made else _UNREAD
+
+
+def _made_include(it: _Action) -> str:
+    values = (
+        f"({one.attributes['name']!r}, {_made_text(one.attributes.get('value', ''))})"
+        for one in _inside(it, "arg", "name")
+    )
+    file = _made_text(it.attributes.get("file", ""))
+    return f"{_INCLUDE}({file}, launch_arguments=[{', '.join(values)}])"
+
+
+def _made_argument(it: _Action) -> str:
+    """An ``arg``, or a ``let``, of which one with a condition may not count."""
+    value = it.attributes.get("default", it.attributes.get("value"))
+    if value is None or {"if", "unless"} & it.attributes.keys():
+        value = None
+    return f"{_DECLARE}({it.attributes.get('name', '')!r}, default_value={_made_text(value)})"
+
+
+# What stands for the folder of the file.
+_HERE = "__folder__"
+_MADE: Mapping[str, Callable[[_Action], str]] = {
+    "node": _made_node, "lifecycle_node": _made_node, "composable_node": _made_node,
+    "include": _made_include, "arg": _made_argument, "let": _made_argument,
 }  # fmt: skip

@@ -4,6 +4,7 @@ these that launch files have where nobody gave any."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -29,6 +30,9 @@ _CLASSIC = ("libgazebo_", "libhector_gazebo")
 # The end of the message about an argument that a xacro needs.
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
+# An argument of a xacro that is empty where nobody gives it.
+_EMPTY = lazy_compile(r"""<xacro:arg\b(?=[^>]*\bdefault=(?:""|''))[^>]*\bname=["'](\w+)""")
+_MANAGER = "controller_manager"
 # A robot to expand a xacro for.
 ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
@@ -149,6 +153,30 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     name, value = found
     other = _look(it.path, {**given, name: value}, reach)
     return it if other.fault else other._replace(needed=it.needed, switch=name)
+
+
+def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
+    """The same with the argument that names the file of controllers, where the plugin that makes the
+    manager got none: launch files give it. The file is named from the description's folder."""
+    file = next((one for one in files if _MANAGER in text_of(one)), "")
+    if not (it.control and file and it.path.endswith(".xacro") and _loads_nothing(it.root)):
+        return it
+    path = os.path.relpath(file, os.path.dirname(it.path))
+    given = dict(it.arguments)
+    for name in _EMPTY.findall(text_of(it.path)):
+        other = _look(it.path, {**given, name: path}, reach) if not given.get(name) else it
+        if not other.fault and not _loads_nothing(other.root):
+            return it._replace(arguments=(*it.arguments, (name, path)), root=other.root)
+    return it
+
+
+def _loads_nothing(root: etree._Element | None) -> bool:
+    """Has the plugin that makes a controller manager a file of parameters, and is it named nowhere?"""
+    parts = _parts(root) if root is not None else []
+    plugins = (it for part in parts for it in part.iter("plugin"))
+    made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))
+    texts = [one.text or "" for it in made for one in it.iter("parameters")]
+    return bool(texts) and not any(text.strip() for text in texts)
 
 
 def with_model(it: Looked, sdf: Looked) -> Looked:

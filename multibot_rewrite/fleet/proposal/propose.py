@@ -39,6 +39,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     in_its_world,
     is_placed,
     look,
+    with_controllers,
     with_model,
     with_own_arguments,
     with_semantic_arguments,
@@ -336,7 +337,7 @@ def propose(
     release = release_of(robots, found, wanted)
     kept = without(found, refused)
     members = [
-        Member(it, companions_of(it, kept, release.value), own, _radius(it))
+        _member(it, companions_of(it, kept, release.value), own, Reach(trust=wanted.trust))
         for it, own in zip(robots, names, strict=True)
     ]
     layout = layout_of(members)
@@ -356,6 +357,11 @@ def propose(
     read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
     launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
     return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
+
+
+def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach) -> Member:
+    own = with_controllers(it, beside.files.get("params", ()), reach)
+    return Member(own, beside, names, _radius(own))
 
 
 def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_bytes
@@ -22,7 +22,19 @@ from multibot_rewrite.fleet.outputs.output_file import PLAN
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 _SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
 _BUILT = frozenset((MANIFEST, PLAN))
-_ENDS = (".urdf", ".sdf", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml", ".py")
+_ENDS = (
+    ".urdf",
+    ".sdf",
+    ".model",
+    ".world",
+    ".xacro",
+    ".srdf",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".xml",
+    ".py",
+)
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
@@ -30,6 +42,8 @@ _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
 _BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
+# What launch files begin with, in a folder of theirs: many are called up.py.
+_LAUNCH = re.compile(rb"^def generate_launch_description|^\s*<launch\b", re.MULTILINE)
 # MoveIt's own files, by the names that its setup assistant gives them.
 _MOVEIT = frozenset(
     (
@@ -78,7 +92,8 @@ def search(paths: Sequence[str]) -> Found:
     meant = [it for it in named if it.endswith(_BESIDE)]
     files = [it for it in named if it not in meant]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
-    homes = dict.fromkeys((*folders, *(home_of(it) for it in files)))
+    apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
+    homes = dict.fromkeys((*folders, *map(home_of, apart)))
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):
@@ -100,6 +115,12 @@ def home_of(file: str) -> str:
     """The package of a file, as a path like the file's; its folder where it is in none."""
     package = package_of(file)
     return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Is it in the folder, however both are written?"""
+    above = os.path.join(os.path.abspath(folder), "")
+    return os.path.abspath(path).startswith(above)
 
 
 def _files(folder: str) -> Iterator[str]:
@@ -129,10 +150,25 @@ def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
         for it in _INCLUDED.findall(data) if path.endswith(".xacro") else ():
             file = it.decode("utf-8", "replace")
             included.setdefault(os.path.basename(file), []).append((file, path))
-    for path, kind in kinds.items():
-        by = included.get(os.path.basename(path), ()) if kind == "descriptions" else ()
-        if not any(_means(file, path, other) for file, other in by):
-            yield path, kind
+    above = {
+        path: {other for file, other in by if _means(file, path, other)}
+        for path in kinds
+        if (by := included.get(os.path.basename(path)))
+    }
+    parts = _reached(kinds, above)
+    yield from (
+        (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
+    )
+
+
+def _reached(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
+    """Files that another one includes which nothing includes, at any depth: a loop has no first one,
+    and what expands it says so."""
+    found = {it for it in paths if not above.get(it)}
+    tops = set(found)
+    while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
+        found |= more
+    return found - tops
 
 
 def _means(included: str, path: str, by: str) -> bool:
@@ -166,7 +202,8 @@ def text_of(path: str) -> str:
 def _kind(path: str, data: bytes) -> str:
     """The field of ``Found`` that a file goes into; empty for none."""
     stem, end = os.path.splitext(os.path.basename(path))
-    if stem.endswith((".launch", "_launch")):
+    above = os.path.basename(os.path.dirname(path))
+    if stem.endswith((".launch", "_launch")) or (above == "launch" and _LAUNCH.search(data)):
         return "launch"
     if end in _BY_NAME:
         return _BY_NAME[end]
@@ -206,6 +243,6 @@ def _of_yaml(stem: str, data: bytes) -> str:
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_TEXT = {
-    ".urdf": _of_urdf, ".sdf": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
+    ".urdf": _of_urdf, ".sdf": _of_sdf, ".model": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
     ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
 }  # fmt: skip

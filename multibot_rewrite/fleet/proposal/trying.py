@@ -8,13 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.model import MultibotError, UsageError
+from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_data import DICT
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked, without_names
@@ -33,23 +34,21 @@ from multibot_rewrite.fleet.proposal.searching import Found
 MOST_ROUNDS, MOST_TRIED = 10, 5
 # Where parameters stand that are in the fleet itself.
 _LAUNCHED = os.path.join(DICT, "values.yaml")
-# Descriptions that are shown where nothing says which is meant.
-MOST_SHOWN = 6
 
 
 def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
     """The fleet of the likeliest description of which one builds; that of the first where none does.
 
-    Raises UsageError where another one that builds may be meant as well.
+    Raises Undecided where another one that builds may be meant as well.
     """
     likely = [seen.robots[0], *seen.rivals]
     if len(likely) > MOST_TRIED:
-        _refuse_to_choose(likely)
+        _refuse_to_choose(likely, seen.found)
     tried: list[Proposal] = []
     for it in likely:
         tried.append(that_builds([it], seen.found, wanted))
         if sum(not one.notes for one in tried) > 1:
-            _refuse_to_choose(likely)
+            _refuse_to_choose(likely, seen.found)
     for it in seen.alike[:MOST_TRIED] if all(one.notes for one in tried) else ():
         tried.append(that_builds([it], seen.found, wanted))
     return next((it for it in tried if not it.notes), tried[0])
@@ -65,12 +64,9 @@ def as_named(seen: Seen, wanted: Wanted) -> Proposal:
     return made if other.notes else other
 
 
-def _refuse_to_choose(likely: Sequence[Looked]) -> None:
-    paths = [it.path for it in likely]
-    more = f" and {len(paths) - MOST_SHOWN} more" if paths[MOST_SHOWN:] else ""
-    shown = ", ".join(paths[:MOST_SHOWN])
-    what = f"{len(paths)} descriptions are as likely to be the robot"
-    raise UsageError(f"{what}: {shown}{more}; name one: multibot init {paths[0]}")
+def _refuse_to_choose(likely: Sequence[Looked], found: Found) -> None:
+    what = f"{len(likely)} descriptions are as likely to be the robot"
+    raise Undecided(what, {it.path: "" for it in likely}, found)
 
 
 def that_builds(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too?
+"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too? Does
+anybody know what moves it?
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
 drives need no bridge.
@@ -7,12 +8,20 @@ drives need no bridge.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.description.checks.unknown import SAY_IT
+from multibot_rewrite.description.readback.active import (
+    HARDWARE,
+    PLUGIN,
+    ActivePart,
+    active_parts,
+)
+from multibot_rewrite.description.readback.nodes import PUBLISHES
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -28,6 +37,9 @@ from multibot_rewrite.fleet.file.simulator_switch import (
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
+from multibot_rewrite.producers.evidence.semantics import FIXED
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.system.words import moves
 
 _AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
 DRIVE = """\
@@ -147,6 +159,80 @@ def note(robot: RewrittenRobot) -> Finding:
     )
     hint = "write simulator: none for real robots, simulator: gazebo for simulated ones"
     return at_robot(SIMULATED_OR_REAL, robot, message, hint)
+
+
+UNREAD_DRIVE = declare(
+    "MF844",
+    "drive-of-unknown-code",
+    NOTE,
+    what="No section of the vocabulary knows a plugin or hardware class of the robot. It names a joint "
+    "or link, or nothing else moves the robot.",
+    why="Which topics it reads, and whether they have the robot's name, is not known. So the plan may "
+    "hold, and the robot not drive, or all robots at once.",
+    fix="Write a section for it in a vocabulary file, with a line for each topic and service; where it "
+    "opens none, `opens: nothing`.",
+    bad="robots:\n  - {name: robot1, description: own.urdf}\n",
+    good="robots:\n  - {name: robot1, description: known.urdf}\n",
+    line=2,
+    formats=("fleet",),
+    beside={
+        "own.urdf": DRIVE.replace("gazebo_ros_diff", "acme"),
+        "known.urdf": DRIVE,
+    },
+)
+
+
+def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
+    """Each plugin that may move the robot and that nobody has read, and each such class where a node
+    loads its ``hardware``."""
+    root: etree._Element = robot.member.source.root
+    simulated = robot.spec.simulator != REAL
+    asked = {HARDWARE: hardware or (simulated and loads_hardware(root)), PLUGIN: simulated}
+    parts = [
+        it
+        for it in active_parts(root, robot.member.vocabulary)
+        if asked.get(it.kind) and next(it.element.iterancestors("sensor"), None) is None
+    ]
+    unread = [it for it in parts if not it.is_known]
+    alone = bool(unread) and not _has_drive(robot, parts)
+    for it in unread:
+        # Hardware without a joint is a sensor's.
+        why = _named(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
+        if why:
+            who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
+            message = f"{who} {why}, and nobody has read it: whether it drives is not shown"
+            yield at_robot(UNREAD_DRIVE, robot, message, SAY_IT)
+
+
+def _named(part: ActivePart, root: etree._Element) -> str:
+    """The joint that a plugin or class names, or the link, as a part of a sentence."""
+    inner = part.element.iterdescendants()
+    texts = (text for it in inner for text in (it.text or "", *map(str, it.attrib.values())))
+    words = {word.rpartition("::")[2] for text in texts for word in text.replace(",", " ").split()}
+    moving = (it for it in root.iter("joint") if it.get("type", FIXED) != FIXED)
+    links = () if part.kind == HARDWARE else root.iter("link")
+    for what, its in (("joint", moving), ("link", links)):
+        names = sorted(words & {it.get("name", "") for it in its} - {""})
+        if names:
+            return f"names the {what} {names[0]}"
+    return ""
+
+
+def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
+    """Is there hardware that somebody has read, or a plugin that names a joint or hears commands?"""
+    root: etree._Element = robot.member.source.root
+    ends = (it for node in robot.member.reading.nodes for it in node.endpoints)
+    topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
+    return (
+        any(it.is_known and "joint " in _named(it, root) for it in parts if not _is_state(it))
+        or any(moves(it.name, it.type) for it in ends if it.role != PUBLISHES)
+        or any(it.direction == DIRECTIONS["out"] for it in topics)
+    )
+
+
+def _is_state(part: ActivePart) -> bool:
+    """Does it tell where joints are, and move none?"""
+    return "state" in part.name
 
 
 def _for_simulator(member: Member) -> bool:

@@ -127,6 +127,8 @@ def nodes_of(
     ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of which launch
     files say whether they run.
     """
+    # No supported release has a node that is called as before: nothing reads its section.
+    given = [it for it in given if it.name.rpartition("/")[2] not in plugin_bases()[NODE].older]
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections, known)
     either = {**alternatives(given, known), **spawned}
@@ -177,8 +179,6 @@ def _left_out(
 def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
     """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
     another program of the package that sends the same, as ukf_filter_node?"""
-    if _is_old(given):
-        return False
     if given.known == node.name:
         return True
     entry = known.get(given.known)
@@ -195,12 +195,7 @@ def children_of(node: NodeFacts) -> Iterator[str]:
 def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
     """Is it a controller that a file declares, or a known node with a process of its own?"""
     node = known.get(given.known)
-    return bool(given.manager) or (node is not None and not node.host and not _is_old(given))
-
-
-def _is_old(given: GivenNode) -> bool:
-    """Is it a name that the node has in no supported release, as recoveries_server?"""
-    return given.name.rpartition("/")[2] in plugin_bases()[NODE].older
+    return bool(given.manager) or (node is not None and not node.host)
 
 
 def _of_stack(

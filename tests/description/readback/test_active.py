@@ -197,6 +197,17 @@ def test_a_topic_that_is_kept_is_an_end_like_others() -> None:
         assert parted == (topic == "/eye")
 
 
+def test_a_word_that_topics_are_made_of_is_no_topic() -> None:
+    """gazebo_ros_camera.cpp publishes <camera_name>/image_raw, nothing on the word alone."""
+    camera = plugin("gazebo_ros_camera", "<camera_name>eye</camera_name>")[8:-9]
+    camera = f'<gazebo reference="a"><sensor name="s" type="camera">{camera}</sensor></gazebo>'
+    rule = "<ros><remapping>~/out:={}</remapping></ros>"
+    for out, parted in (("eye", False), ("eye/image_raw", True)):
+        imu = plugin("gazebo_ros_imu_sensor", rule.format(out)).replace('"p"', '"q"')
+        found = rewrite(robot(camera + imu), "robot1", distro="humble").findings
+        assert ("MB438" in {it.code for it in found}) == parted
+
+
 def test_services_of_the_world_keep_their_names() -> None:
     """gz-sim UserCommands.cc: /world/<world>/set_pose is served once, by the world."""
     for layout in ("postfix", "tf-per-robot"):

@@ -14,7 +14,7 @@ import pytest
 from multibot_rewrite import rewrite, rewrite_all
 from multibot_rewrite.base.naming import LAYOUTS, make_naming
 from multibot_rewrite.description.readback.meeting import meetings
-from multibot_rewrite.description.readback.nodes import TOPIC
+from multibot_rewrite.description.readback.nodes import BELOW, TOPIC
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
@@ -30,7 +30,7 @@ def model(attributes: str, inside: str = DRIVE.format("cmd_vel")) -> str:
 
 def topics(text: bytes, release: str, path: str = "topic") -> list[str]:
     found = read(text, "m.sdf", load_vocabulary((), release)).names
-    return [it.name for it in found if it.kind == TOPIC and it.path == path]
+    return [it.name for it in found if it.kind in (TOPIC, BELOW) and it.path == path]
 
 
 def arm(namespace: str) -> str:

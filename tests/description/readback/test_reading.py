@@ -189,9 +189,9 @@ def test_a_place_is_the_number_among_elements_of_the_tag() -> None:
 def test_topics_are_below_the_word_that_a_plugin_makes_them_of() -> None:
     """gazebo_ros_camera.cpp: image_transport topics are <camera_name>/image_raw."""
     text = plugin("libgazebo_ros_camera.so", "<camera_name>front</camera_name>")
-    assert "/front" in names(text, "topic")
+    assert "/front" in names(text, "topics below")
     within = text.replace("<camera_name>", "<ros><namespace>a</namespace></ros><camera_name>")
-    assert "/a/front" in names(within, "topic")
+    assert "/a/front" in names(within, "topics below")
 
 
 def test_a_particle_emitter_has_a_topic() -> None:

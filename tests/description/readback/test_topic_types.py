@@ -215,4 +215,4 @@ def test_what_is_below_a_stem_is_one_name_where_robots_may_meet() -> None:
         f"<robot name='r'><gazebo><sensor name='s' type='camera'>{plugin}</sensor></gazebo></robot>"
     )
     found = read(text.encode(), "r.urdf", load_vocabulary((), NEWEST_LTS)).names
-    assert [it.name for it in found if it.kind == "topic"] == ["/s"]
+    assert [it.name for it in found if it.kind == "topics below"] == ["/s"]

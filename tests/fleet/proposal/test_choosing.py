@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,25 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
     assert f"{two}/digger.urdf, {two}/tractor.urdf" in said
     assert f"name one: multibot init {two}/digger.urdf" in said
     assert not (two / "fleet.yaml").exists()
+
+
+@pytest.mark.more
+def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) -> None:
+    """The command that is named is about the same folder, and answers the question."""
+    (two / "tractor.urdf").rename(two / "tractor")
+    (two / "more").mkdir()
+    files = [two / "more" / f"{it} file.yaml" for it in ("a", "b")]
+    for it in files:
+        it.write_text(f"amcl: {{ros__parameters: {{base_frame_id: {it.name[0]}_base}}}}\n")
+    assert init(two / "more", str(two / "digger.urdf")) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1
+    assert f"{files[0]} (a_base), {files[1]} (b_base)" in said
+    command = said.strip().rpartition("name one: multibot init ")[2]
+    assert shlex.split(command) == [*map(str, (two / "more", two / "digger.urdf", files[0]))]
+    assert taken(two, str(two / "digger.urdf"), str(files[0]))["companions"]["params"] == [
+        "more/a file.yaml"
+    ]
 
 
 @pytest.mark.more

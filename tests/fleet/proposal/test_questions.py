@@ -104,6 +104,20 @@ def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
     assert fleet["arguments"] == {"prefix": "{robot}/"}
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("answer", "taken"), [("", []), ("2", ["b.yaml"])])
+def test_of_two_files_that_fit_alike_one_is_asked_for(
+    answer: str, taken: Sequence[str], folder: Path
+) -> None:
+    for name in ("a", "b"):
+        text = f"amcl: {{ros__parameters: {{base_frame_id: {name}_base}}}}\n"
+        (folder / f"{name}.yaml").write_text(text)
+    shown, fleet = talked(folder, ["", "", answer, *[""] * 4], "rover.urdf")
+    assert "2 files have parameters of amcl, and names that the robot has not" in shown
+    assert "1: a.yaml (a_base)" in shown and "The one that is meant [1/2/none] (none)" in shown
+    assert fleet["companions"].get("params", []) == taken
+
+
 WARNED = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="pi" value="3"/>

@@ -16,7 +16,9 @@ KINDS = [
     ("r.urdf", ROBOT, "descriptions"), ("r.urdf", "<other/>", ""),
     ("r.xacro", ROBOT, "descriptions"), ("r.xacro", "<robot xmlns:a='b'/>", ""),
     ("r.srdf.xacro", ROBOT, "srdf"), ("r.xacro", '<robot name="r"><group name="g"/></robot>', "srdf"),
-    ("r.sdf", "<sdf><model/></sdf>", "descriptions"), ("r.sdf", "<sdf><world/></sdf>", "worlds"),
+    ("r.sdf", "<sdf><model/></sdf>", "descriptions"),
+    ("r.model", "<sdf><model/></sdf>", "descriptions"),
+    ("r.model", "ply", ""), ("r.sdf", "<sdf><world/></sdf>", "worlds"),
     ("w.world", "<sdf><world/></sdf>", "worlds"), ("r.sdf", "<sdf/>", ""),
     ("r.sdf", "<sdf><model><static> true </static></model></sdf>", ""),
     ("r.sdf", "<sdf><model><static>1</static></model></sdf>", ""),
@@ -37,11 +39,14 @@ KINDS = [
     ("other.yaml", "a: 1", ""), ("t.xml", "<root><BehaviorTree/></root>", "behavior_trees"),
     ("t.xml", "<root/>", ""), ("a.launch.py", "", "launch"), ("a_launch.yaml", PARAMS, "launch"),
     ("a.launch.xml", "", "launch"), ("launch.py", "", ""), ("a.txt", ROBOT, ""),
+    ("launch/up.py", "def generate_launch_description():", "launch"), ("launch/up.py", "", ""),
+    ("launch/up.xml", "<launch/>", "launch"), ("up.py", "def generate_launch_description():", ""),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "text", "kind"), KINDS, ids=[f"{a}-{c}" for a, _, c in KINDS])
 def test_a_file_is_for_one_thing(name: str, text: str, kind: str, tmp_path: Path) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text(text)
     found = search([str(tmp_path)])
     path = str(tmp_path / name)
@@ -61,6 +66,18 @@ def test_what_a_build_has_written_is_no_other_robot(tmp_path: Path) -> None:
     made = {"fleet__manifest_dot_json": "{}", "fleet__plan_dot_yaml": "robots: {}"}
     put(tmp_path, own_dot_urdf=ROBOT, fleet__robot1__own_dot_urdf=ROBOT, **made)
     assert search([str(tmp_path)]).descriptions == (str(tmp_path / "own.urdf"),)
+
+
+def test_a_description_in_a_folder_that_is_named_is_there_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder as an absolute path, the description as a relative one."""
+    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__a_dot_urdf=ROBOT,
+        config__p_dot_yaml=PARAMS)  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    found = search([str(tmp_path), "urdf/a.urdf"])
+    assert found.params == (str(tmp_path / "config" / "p.yaml"),)
+    assert found.descriptions == ("urdf/a.urdf",)
 
 
 def test_hidden_and_built_folders_are_left_out(tmp_path: Path) -> None:
@@ -129,3 +146,17 @@ def test_of_a_file_that_cannot_be_read_nothing_is_known(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"a\xff")
     assert searching.text_of(str(tmp_path / "a")) == "a\ufffd"
     assert searching.data_of_file(str(tmp_path / "gone")) == b""
+
+
+@pytest.mark.parametrize("many", [2, 3])
+def test_files_that_include_each_other_are_no_parts(many: int, tmp_path: Path) -> None:
+    """A loop has no first file; whoever expands one of them gets the reason."""
+    for at in range(many):
+        include = f'<xacro:include filename="{(at + 1) % many}.xacro"/>'
+        (tmp_path / f"{at}.xacro").write_text(f'<robot name="r">{include}</robot>')
+    (tmp_path / "part.xacro").write_text(ROBOT)
+    (tmp_path / "top.xacro").write_text(
+        '<robot name="r"><xacro:include filename="part.xacro"/></robot>'
+    )
+    found = [Path(it).name for it in search([str(tmp_path)]).descriptions]
+    assert found == [*(f"{at}.xacro" for at in range(many)), "top.xacro"]

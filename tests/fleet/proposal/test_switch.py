@@ -161,3 +161,23 @@ def test_a_hardware_class_that_is_an_argument(plugin: str, hardware: str, folder
     text = text.replace("gz_ros2_control::GazeboSimROS2ControlPlugin", "control")
     (folder / "rover.urdf.xacro").write_text(text)
     assert fleet_of(folder)["arguments"] == {"driver": hardware}
+
+
+@pytest.mark.more
+def test_a_file_of_controllers_that_launch_files_give_is_given(folder: Path) -> None:
+    """A launch file gives a node of the fleet a value, too, which stands in the fleet file then."""
+    write(folder, "use_sim", "true")
+    xacro = folder / "rover.urdf.xacro"
+    declared = '<xacro:arg name="simple" default="true"/><xacro:arg name="controllers" default=""/>'
+    text = xacro.read_text().replace('<xacro:arg name="simple" default="true"/>', declared)
+    xacro.write_text(text.replace("$(find rover)/control.yaml", "$(arg controllers)"))
+    ekf = "ekf_filter_node: {ros__parameters: {base_link_frame: base_link}}\n"
+    (folder / "ekf.yaml").write_text(ekf)
+    node = "Node(executable='ekf_node', name='ekf_filter_node', parameters=[{'frequency': 20.0}])"
+    (folder / "up.launch.py").write_text(node)
+    fleet = fleet_of(folder)
+    assert fleet["arguments"] == {"controllers": "control.yaml"}
+    assert {"ekf_filter_node": {"frequency": 20.0}} in fleet["companions"]["params"]
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
+    loaded = f"<parameters>{folder}/out/robot1/control.yaml</parameters>"
+    assert loaded in (folder / "out" / "robot1" / "rover.urdf").read_text()

@@ -331,3 +331,11 @@ def test_a_route_server_has_the_names_of_its_plugins() -> None:
     assert "~/again/reroute" in names(node, "serves")
     assert "~/slow/reroute" not in names(node, "serves")
     assert not [it.name for it in node.endpoints if "costmap" in it.name]
+
+
+def test_a_section_with_a_name_of_before_is_of_no_node() -> None:
+    """nav2_behaviors' server is called behavior_server since Humble, whatever a file has."""
+    text = "recoveries_server: {ros__parameters: {costmap_topic: local_costmap/costmap_raw}}\n"
+    stack = load_stack("nav2", "jazzy")
+    found = nodes_of(stack, given(text), load_nodes("jazzy"))
+    assert [it.name for it in found.nodes] == [it.name for it in stack]
