@@ -243,3 +243,12 @@ def test_each_property_is_known_by_all_its_tags(tmp_path: Path) -> None:
         blocks = (f"<{one}>1</{one}>\n<{other}>2</{other}>" for one, other in pairs)
         seen = lint(tmp_path, ROBOT + BLOCK.format("tip", "".join(blocks)), ("MB210",))
         assert [it.message.split()[0] for it in seen] == [other for _, other in pairs]
+
+
+def test_xacro_in_a_comment_leaves_nothing_unexpanded(tmp_path: Path) -> None:
+    """xacro keeps comments, also those that hold an include."""
+    joint = '<joint name="j" type="fixed"><parent link="c"/><child link="b"/></joint>'
+    text = f'<robot name="r"><!-- <xacro:include filename="x"/> --><link name="b"/>{joint}</robot>'
+    (tmp_path / "r.urdf").write_text(text)
+    found = lint_file(str(tmp_path / "r.urdf"), Settings(select=("MB202",)))
+    assert [it.code for it in found] == ["MB202"]

@@ -92,10 +92,11 @@ def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:
 
 
 def uses_xacro(document: Document) -> bool:
-    """A cheap look before the search: is a prefix bound to xacro, and is it used?"""
+    """Is a prefix bound to xacro, and is it used? A cheap look first; a comment does not count."""
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
-    return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
+    seen = any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
+    return seen and any("xacro" in str(it.tag) for it in document.elements)
 
 
 def worlds(inventory: Inventory) -> Iterator[Problem]:
