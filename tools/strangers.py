@@ -211,7 +211,7 @@ def _is_told(why: str, told: str) -> bool:
 
 def short(why: str, it: Stranger) -> str:
     """A reason without the place of the checkout, and no longer than a table takes."""
-    place = re.sub(rf"\S*/{re.escape(it.name.replace('/', '+'))}/", "", why)
+    place = re.sub(rf"\S*/{re.escape(it.name.replace('/', '+'))}(/|: )", "", why)
     plain = place.removeprefix("multibot: ")
     return plain if len(plain) <= LONGEST else f"{plain[: LONGEST - 3]}..."
 

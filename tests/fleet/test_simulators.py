@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 from nav2_graphs import environment
 from plans import optional, own
 
@@ -179,3 +180,75 @@ def test_no_controller_sent_joint_states_before_a_rewrite_either(
     main(["plan", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "plan.yaml")])
     said = capsys.readouterr().err
     assert "which no node publishes any more" not in said and "MG316" in said
+
+
+MODEL = """\
+<?xml version="1.0"?><sdf version="1.9"><model name="rover">
+  <plugin filename="gz-sim-velocity-control-system" name="gz::sim::systems::VelocityControl">{}</plugin>
+  <link name="base_link"><inertial><mass>1</mass></inertial></link>
+</model></sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "hears"),
+    [
+        ("", "/model/robot1/cmd_vel"),
+        ("<topic>/model/rover/cmd_vel</topic>", "/model/robot1_rover/cmd_vel"),
+    ],
+)
+def test_a_topic_that_is_written_out_is_bridged_as_it_is(
+    given: str, hears: str, tmp_path: Path
+) -> None:
+    """VelocityControl.cc makes a topic of the model's name, as it is spawned, where none is given."""
+    (tmp_path / "rover.sdf").write_text(MODEL.format(given))
+    words = "layout: frames-per-robot\naffix: prefix\ndistro: jazzy\nsimulator: gazebo\n"
+    (tmp_path / "f.yaml").write_text(f"{words}description: rover.sdf\nrobots: [{{name: robot1}}]\n")
+    main(["build", str(tmp_path / "f.yaml"), "-o", str(tmp_path / "out"), "--force"])
+    rows = yaml.safe_load((tmp_path / "out" / "robot1" / "bridge.yaml").read_text())
+    assert [it["gz_topic_name"] for it in rows] == [hears]
+    if given:
+        assert f"<topic>{hears}</topic>" in (tmp_path / "out" / "robot1" / "rover.sdf").read_text()
+
+
+OWN = """\
+<robot name="rover">
+  <link name="base_link"/><link name="wheel"/>
+  <joint name="turn" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
+  {}
+</robot>
+"""
+PLUGIN = '<gazebo><plugin name="own" filename="libacme.so">{}</plugin></gazebo>'
+KNOWN = '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so"/></gazebo>'
+SENSOR = (
+    '<gazebo reference="wheel"><sensor name="s" type="ray"><plugin name="p" filename="libacme.so">'
+)
+HARDWARE = (
+    '<ros2_control name="h" type="system"><hardware><plugin>acme/Base</plugin></hardware>'
+    '<joint name="turn"><command_interface name="velocity"/></joint></ros2_control>'
+)
+REAL = "simulator: none\n"
+
+
+@pytest.mark.parametrize(
+    ("parts", "more", "said"),
+    [
+        (PLUGIN.format("<left>turn</left>") + KNOWN, "", "names the joint turn"),
+        (PLUGIN.format("<on>rover::wheel</on>") + KNOWN, "", "names the link wheel"),
+        (PLUGIN.format("<rate>5</rate>"), "", "is all that may move it"),
+        (PLUGIN.format("<rate>5</rate>") + KNOWN, "", ""),
+        (PLUGIN.format("<left>turn</left>"), REAL, ""),
+        (f"{SENSOR}<left>turn</left></plugin></sensor></gazebo>", "", ""),
+        (HARDWARE, f"{REAL}stack: ros2_control\n", "names the joint turn"),
+        (HARDWARE, REAL, ""),
+    ],
+)
+def test_a_drive_that_nobody_has_read_is_told(
+    parts: str, more: str, said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "own.urdf").write_text(OWN.format(parts))
+    fleet = f"layout: both\naffix: prefix\ndistro: humble\n{more}description: own.urdf\n"
+    (tmp_path / "f.yaml").write_text(f"{fleet}robots: [{{name: robot1}}, {{name: robot2}}]\n")
+    gaps = closed_plan(plan_fleet(read_fleet(str(tmp_path / "f.yaml"), "", {}))).gaps
+    found = [it.message for it in gaps if it.code == "MF844"]
+    assert [said in it for it in found] == ([True] if said else [])
