@@ -547,3 +547,37 @@ def test_a_tag_of_a_joint_has_no_effect_in_a_link_and_the_reverse() -> None:
             seen = lint_data("r.urdf", text.encode(), NEW._replace(distro="jazzy"))
             told = [it for it in seen if it.message.endswith("has no effect")]
             assert len(told) == (len(tags.split()) if belongs not in ("", home) else 0), told
+
+
+# The parameters by which each plugin is told the joints that it turns, from their sources.
+DRIVEN = {
+    "gz-sim-diff-drive-system": "left_joint right_joint",
+    "gz-sim-ackermann-steering-system": "left_joint right_joint left_steering_joint "
+    "right_steering_joint",
+    "gz-sim-mecanum-drive-system": "front_left_joint front_right_joint back_left_joint "
+    "back_right_joint",
+    "gz-sim-joint-controller-system": "joint_name",
+    "gz-sim-joint-position-controller-system": "joint_name",
+    "gz-sim-joint-trajectory-controller-system": "joint_name",
+    "libgazebo_ros_diff_drive.so": "left_joint right_joint",
+    "libgazebo_ros_ackermann_drive.so": "front_left_joint front_right_joint rear_left_joint "
+    "rear_right_joint left_steering_joint right_steering_joint",
+    "libgazebo_ros_tricycle_drive.so": "steering_joint actuated_wheel_joint",
+}
+
+
+def test_a_joint_that_a_plugin_turns_needs_an_effort() -> None:
+    """Of 0 it has no force in a simulator: a warning, and a note for a joint that nothing turns."""
+    joint = (
+        '<link name="l_{0}"/><joint name="{0}" type="continuous"><parent link="b"/>'
+        '<child link="l_{0}"/><limit effort="0" velocity="1"/></joint>'
+    )
+    for library, tags in DRIVEN.items():
+        names = [*tags.split(), "other"]
+        plugin = "".join(f"<{it}>{it}</{it}>" for it in names)
+        text = (
+            f'<robot name="r"><link name="b"/>{"".join(map(joint.format, names))}'
+            f'<gazebo><plugin name="p" filename="{library}">{plugin}</plugin></gazebo></robot>'
+        )
+        found = lint_data("r.urdf", text.encode(), Settings(select=("MB515",), distro="jazzy"))
+        assert [it.level for it in found] == ["warning"] * (len(names) - 1) + ["note"], library
