@@ -35,7 +35,9 @@ def run(options: argparse.Namespace) -> int:
         where = plural(len(made.spaced), "description")
         note(options, f"argument {made.namespace}: what ROS names in {where}; proved")
     for it in made.launches:
-        note(options, f"{it}: it hands {made.argument} on; proved")
+        given = made.namespace and f"{made.namespace}:=".encode() in made.after[it]
+        what = f"{made.argument} and {made.namespace}" if given else made.argument
+        note(options, f"{it}: it hands {what} on; proved")
     for path, name in made.already.items():
         note(options, f"{path}: it has such an argument already: {name}")
     for one in made.left:

@@ -17,6 +17,7 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.kinds import BRIDGE, PARAMS, kind_of
@@ -24,14 +25,14 @@ from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.producers.launch.bridges import expands, is_bridge
+from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
     Launched,
     file_of,
     models_in_simulator,
 )
-from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.rules.files.bridges import (
     GzTopic,
     GzTopics,
@@ -41,7 +42,7 @@ from multibot_rewrite.rules.files.bridges import (
 )
 from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import Settings
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.records import NOWHERE, Place
 
 # What a program refuses or leaves out: references, what is missing, names that ROS refuses.
 _REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
@@ -139,30 +140,46 @@ def _given(it: LaunchedNode) -> dict[str, object]:
     return found
 
 
+class _Told(NamedTuple):
+    """The rows of a bridge: of a file, or of its arguments, which stand at a place."""
+
+    file: str
+    text: str
+    expanded: bool
+    place: Place
+
+
 def _bridges(launched: Launched) -> Iterator[Finding]:
-    """What is wrong with the rows of bridge files, beside all models that the launch file spawns."""
+    """What is wrong with the rows of bridges, beside all models that the launch file spawns."""
     models = models_in_simulator(launched)
     known = _topics(models) if models and not launched.models.lost else {}
-    for path, expanded in dict.fromkeys(_bridge_files(launched)):
+    for told in dict.fromkeys(it for node in launched.nodes for it in _told(node)):
         # Names below the namespace of a bridge are not those of the file.
-        mine = {} if expanded else known
-        for it in _of_bridge(path, launched.release, mine):
-            # The description is the one that is spawned: the row does not work.
-            yield it._replace(level=ERROR) if mine or it.code != no_gz_topic.code else it
+        mine = {} if told.expanded else known
+        for it in _of_bridge(told, launched.release, mine):
+            # The description is the one that is spawned: the row does not work. What is not known may
+            # send what one that stands in the launch file reads.
+            at = told.place
+            sure = bool(mine) and (at == NOWHERE or launched.whole)
+            one = it._replace(level=ERROR) if sure or it.code != no_gz_topic.code else it
+            yield one if at == NOWHERE else one._replace(file=at.file, line=at.line, column=1)
 
 
-def _bridge_files(launched: Launched) -> Iterator[tuple[str, bool]]:
-    for it in launched.nodes:
-        given = it.values.get("config_file") if is_bridge(it) else None
-        if given and os.path.isfile(str(given.value)):
-            yield os.path.realpath(str(given.value)), expands(it)
+def _told(it: RunningNode) -> Iterator[_Told]:
+    given = it.values.get("config_file") if is_bridge(it) else None
+    if given and os.path.isfile(str(given.value)):
+        path = os.path.realpath(str(given.value))
+        yield _Told(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
+    if text := told_rows(it):
+        yield _Told("bridge.yaml", text, expands(it), it.place)
 
 
-def _of_bridge(path: str, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:
+def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:
     every: Declared = {it: {} for kinds in KINDS.values() for it in kinds}
     names = CompanionNames(every, _NAMING, "")
+    text = told.text.encode()
     try:
-        file = read_named(BRIDGE, read_file(path), path, Context(names, names, {}, release))
+        file = read_named(BRIDGE, text, told.file, Context(names, names, {}, release))
     except InputError:
         return ()
     file = file._replace(memo={GzTopics: GzTopics(known)} if known else {})

@@ -15,7 +15,7 @@ from multibot_rewrite.rules.check import ABSENCE, inconclusive_where_in_doubt, j
 from multibot_rewrite.rules.domains import in_domain
 from multibot_rewrite.rules.system.differing import COMPARED
 from multibot_rewrite.rules.system.equal_robots import less_than_another_robot
-from multibot_rewrite.system.domains import named, side_by_side, unnamed
+from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, index
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, System
@@ -56,12 +56,22 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     The robot of a domain where none has a name is called by its number."""
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
-    found = {at: [in_domain(it, at) for it in one.findings] for at, one in each.items()}
-    told = {name for own in found.values() for it in own for name in it.names}
-    compared = [unnamed(it) for it in together.findings if it.code in BETWEEN_ROBOTS]
+    spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
+    told = {
+        spaces[at] + name for at, one in each.items() for it in one.findings for name in it.names
+    }
+    compared = [
+        unnamed(it)
+        for it in together.findings
+        if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names)
+    ]
     every = [
-        *(_sent_elsewhere(it, together, each, at) for at, own in found.items() for it in own),
-        *(_sent_elsewhere(it, together, each) for it in compared if told.isdisjoint(it.names)),
+        *(
+            _sent_elsewhere(in_domain(it, at), together, each, at)
+            for at, one in each.items()
+            for it in one.findings
+        ),
+        *(_sent_elsewhere(it, together, each) for it in compared),
     ]
     return together._replace(findings=tuple(sorted(every, key=lambda it: it.code)))
 

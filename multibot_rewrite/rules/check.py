@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from fnmatch import fnmatchcase
 from types import ModuleType
 
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
@@ -60,6 +61,7 @@ from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, ind
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
 from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
+from multibot_rewrite.system.records import clocks as time_by_node
 from multibot_rewrite.system.tf_copies import without_bridged
 
 _SYSTEM = (
@@ -113,7 +115,20 @@ def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
     with gc_paused():
         found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
-        return differing.unexplained(_of_readers(found))
+        return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+
+
+def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
+    """Where nothing joins a robot with the map, its map in the frame `map` is no fault of its own."""
+    lost = {it.robot for it in found if it.code == localized.map_not_joined.code}
+    unknown = frame_ids.frame_id_unknown.code
+    return [
+        it
+        for it in found
+        if it.code != unknown
+        or it.robot not in lost
+        or not {*WORLD_FRAMES}.issuperset(map(seen.plain_frame, it.names))
+    ]
 
 
 def _of_readers(found: Sequence[Finding]) -> list[Finding]:
@@ -202,10 +217,13 @@ def _without_planned(plan: Index, graph: System) -> System:
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
-    """The findings; those about something missing are inconclusive in an incomplete view."""
+    """The findings; those about something missing are inconclusive in an incomplete view. What a
+    parameter says of the time of a node is known there, too."""
     if not doubts(graph):
         return found
-    return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
+    told, mixed = time_by_node(graph), clocks.clocks_mixed.code
+    sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
+    return [it if it in sure else _inconclusive(it) for it in found]
 
 
 def doubts(graph: System) -> tuple[Caveat, ...]:

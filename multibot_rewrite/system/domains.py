@@ -74,9 +74,14 @@ def side_by_side(seen: Mapping[int, System]) -> System:
     )
 
 
+def space_of(domain: int) -> str:
+    """The namespace of a robot without a name beside those of other domains."""
+    return f"/{_WORD}{domain}"
+
+
 def named(view: System, domain: int) -> System:
     """What was seen of a robot without a name, below a name for its domain."""
-    space = f"/{_WORD}{domain}"
+    space = space_of(domain)
     ends = (it._replace(name=space + it.name, node=space + it.node) for it in view.ends)
     edges = (
         it._replace(topic=space + it.topic, publishers=tuple(space + one for one in it.publishers))

@@ -394,6 +394,15 @@ def test_the_window_of_one_robot_in_its_namespace_keeps_its_panels() -> None:
     assert [panel["Name"] for panel in shown(layout="L4")["Panels"]] == ["Displays", "Time"]
 
 
+def test_the_topic_of_a_panel_is_the_robots_in_its_window() -> None:
+    """rviz_plugin_tutorials teleop_panel.cpp saves the topic that it sends on."""
+    panel = "  - Class: acme/Teleop\n    Name: Teleop\n    Topic: /cmd_vel\n"
+    text = CONFIG.replace("Panels:\n", f"Panels:\n{panel}", 1)
+    windows = [yaml.safe_load(it.text) for it in make(text, layout="L1")[0]]
+    topics = [it["Topic"] for window in windows for it in window["Panels"] if "Topic" in it]
+    assert topics == ["/robot1/cmd_vel", "/robot2/cmd_vel"]
+
+
 def test_bare_frames_stay_and_topics_do_not() -> None:
     made = manager(layout="L1")
     assert made["Global Options"]["Fixed Frame"] == "odom"

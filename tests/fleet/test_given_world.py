@@ -13,6 +13,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.outputs.given_world import world_topics
 
 BOAT = """<sdf version="1.9"><model name="boat"><link name="hull"/>
 <link name="mast"><sensor name="imu" type="imu"/></link></model></sdf>"""
@@ -129,3 +130,18 @@ def test_what_is_no_world(
     assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 2
     assert wanted in capsys.readouterr().err
     assert not (fleet.parent / "out").exists()
+
+
+def test_what_a_world_sends_is_known(tmp_path: Path) -> None:
+    """SceneBroadcaster is not in this world, so its topics are not there; Gazebo's own has it."""
+    file = tmp_path / "lake.sdf"
+    file.write_text(WORLD)
+    found = world_topics(str(file))
+    assert found == {
+        "/model/boat/pose": "",
+        "/world/lake/clock": "gz.msgs.Clock",
+        "/world/lake/stats": "gz.msgs.WorldStatistics",
+    }
+    file.write_text(WORLD.replace("gz-sim-physics-system", "gz-sim-scene-broadcaster-system"))
+    assert world_topics(str(file))["/world/lake/pose/info"] == "gz.msgs.Pose_V"
+    assert world_topics("")["/world/empty/dynamic_pose/info"] == "gz.msgs.Pose_V"

@@ -249,7 +249,7 @@ def test_the_whole_record_of_a_stack() -> None:
         known="plain",
         releases="kilted",
         plugin="p",
-        usual=(("rate", "5"),),
+        usual=(("rate", 5),),
     )
     driver = LIBRARY.nodes["costmap/driver"]
     cell = Stack("what it is", ("base",), (driver, renamed), "jazzy+", "box")
@@ -516,3 +516,15 @@ def test_a_world_needs_a_system_for_each_sensor() -> None:
         **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
     }
     assert DEFAULTS == ("physics", "user-commands", "scene-broadcaster")
+
+
+def test_a_word_in_brackets_stands_for_something() -> None:
+    for path, names, others in (
+        ("rate", ("rate",), ("rates", "a.rate")),
+        ("<joint>.p", ("arm.p", "a.b.p"), (".p", "p", "arm.pp")),
+        ("gains.<joint>.p", ("gains.arm.p",), ("gains..p", "gains.arm.i", "gain.arm.p")),
+        ("<a>.map.<b>.x", ("l.map.r.x",), ("l.mapp.r.x", ".map.r.x", "l.map..x", "l.m.r.x")),
+        ("of.<a>.to.<b>", ("of.x.to.y",), ("of.x.y", "of.x.to.", "of.to.y")),
+    ):
+        known = Declared(path, "double", "", "", "", "")
+        assert [it for it in (*names, *others) if known.has_name(it)] == [*names], path

@@ -9,6 +9,7 @@ import pytest
 
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.files.named import robot_name
+from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import Settings
 
@@ -227,3 +228,16 @@ def test_a_joint_that_cannot_move_has_limits_too(tmp_path: Path) -> None:
     urdf = URDF.format("r").replace('lower="-1" upper="1"', 'lower="0.5" upper="0.5"')
     assert "MB813" in lint(tmp_path, STATE.format("jl", "0"), urdf)
     assert "MB813" not in lint(tmp_path, STATE.format("jl", "0.5"), urdf)
+
+
+def test_a_xacro_that_another_includes_is_no_urdf_of_an_srdf(tmp_path: Path) -> None:
+    """An included URDF may be a robot by itself, as one that a world or a cell takes in."""
+    for name in ("arm.urdf", "arm.xacro", "part.xacro", "part.urdf", "nameless.urdf", "arm.srdf"):
+        word = "" if name.startswith("nameless") else f' name="{name}"'
+        (tmp_path / name).write_text(f"<robot{word}/>")
+    paths = [str(it) for it in sorted(tmp_path.iterdir())]
+    included = frozenset(it for it in paths if "part" in it)
+    found = named_urdfs(paths, included)
+    assert [name for name, _ in found] == ["arm.urdf", "arm.xacro", "part.urdf"]
+    assert [path for _, path in found] == [str(tmp_path / name) for name, _ in found]
+    assert named_urdfs([it for it in paths if not it.endswith(".srdf")], included) == ()

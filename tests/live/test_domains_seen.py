@@ -214,6 +214,19 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     assert page.read_text()
 
 
+def test_names_are_those_of_their_domain() -> None:
+    """What is told of /scan in one domain is not told of /scan in another."""
+    views = {at: running(at) for at in (11, 12, 13)} | {14: running(14, left_out="lidar")}
+    ends = [
+        it._replace(name="/lidar/laser") if it.node == "/lidar" else it for it in views[13].ends
+    ]
+    views[13] = views[13]._replace(ends=tuple(ends))
+    found = diagnose_domains({it: diagnose(view) for it, view in views.items()}).findings
+    (renamed, lost) = sorted(found, key=lambda it: it.code)
+    assert renamed.message.endswith("/lidar publishes /lidar/laser, in domain 13")
+    assert lost.message.startswith("domain 14 has no lidar, as domain 11 has")
+
+
 def test_what_a_robot_lacks_and_another_domain_has_is_told_with_it() -> None:
     """A lidar that was started with another ROS_DOMAIN_ID."""
     whole = running(12, "/robot2")

@@ -14,6 +14,7 @@ from graph_cases import qos
 from graph_examples import read_example, read_system
 from healthy_systems import SYSTEMS, plan
 from node_answers import told
+from open_faults import without_edge
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import InputError
@@ -75,6 +76,13 @@ def codes(text: str, topic: str, frame: str) -> list[str]:
     """Of an example in which a message on ``topic`` names ``frame``."""
     seen = read_system(text)
     return [it.code for it in judge(index(heard(seen.system, topic, frame), Whose(*seen[1:6])))]
+
+
+def test_a_map_that_nothing_joins_with_its_robot_is_one_finding() -> None:
+    graph = without_edge("odom", "/robot2/tf")(nav())
+    assert [it.code for it in diagnose(graph).findings] == ["MG415"]
+    with_map = heard(graph, "/robot2/map", "map")
+    assert [it.code for it in diagnose(with_map).findings] == ["MG415"]
 
 
 def test_a_camera_has_several_topics_and_one_finding() -> None:

@@ -74,6 +74,8 @@ def transform(parent: str, child: str, seconds: float) -> bytes:
         # Of what a busy machine loses the median is left.
         ([1.0, 1.1, 1.2, 1.9, 2.0, 2.1], 10.0, 0.0),
         ([1.0, 1.1, 1.2], 0.0, 0.0),
+        # A clock that began at 0.
+        ([0.0, 0.2, 0.4, 0.6], 5.0, 0.0),
         ([5.0, 5.0, 5.0, 5.0, 5.0], 0.0, 0.0),
         ([], 0.0, 0.0),
         ([9.0, 9.5, 1.0, 1.5, 2.0, 0.5], 2.0, 8.5),

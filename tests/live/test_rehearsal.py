@@ -15,7 +15,9 @@ from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.fleet.checks.closed_plan import bridged_by
 from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
@@ -25,6 +27,7 @@ from multibot_rewrite.live.rehearsal import (
     StubEndpoint,
     StubNode,
     action_parts,
+    bridge_stub,
     from_order,
     split_over_processes,
     stub_nodes,
@@ -177,6 +180,22 @@ def test_the_plan_has_the_substituted_types(layout: str) -> None:
         for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
     ]
     assert not [it for it in played if it.kind == ACTION]
+
+
+def test_the_bridge_of_a_plan_has_its_topics_and_what_the_world_serves() -> None:
+    """By the rows of its file (ros_gz_bridge bridge_config.cpp)."""
+    rows = """\
+- {topic_name: /clock, ros_type_name: rosgraph_msgs/msg/Clock, direction: GZ_TO_ROS}
+- {topic_name: /r1/cmd_vel, ros_type_name: geometry_msgs/msg/Twist, direction: ROS_TO_GZ}
+- {service_name: /world/hall/control, ros_type_name: ros_gz_interfaces/srv/ControlWorld}
+"""
+    topics = bridged_by([OutputFile("bridge.yaml", rows.encode())])
+    ((_, stub),) = bridge_stub(topics)
+    assert [it[:4] for it in stub.endpoints] == [
+        (TOPIC, PUBLISHES, "/clock", "rosgraph_msgs/msg/Clock"),
+        (TOPIC, SUBSCRIBES, "/r1/cmd_vel", "geometry_msgs/msg/Twist"),
+        (SERVICE, SERVES, "/world/hall/control", "ros_gz_interfaces/srv/ControlWorld"),
+    ]
 
 
 def test_what_is_seen_of_substitutes_has_the_types_of_the_plan() -> None:

@@ -49,6 +49,15 @@ def test_the_description_has_the_tree_that_was_heard(layout: str) -> None:
     assert {it.attrib["name"] for it in root.iter("joint")} == {f"{it}_joint" for it in ROVER}
 
 
+def test_of_robots_with_bare_frames_the_first_ones_tree_is_written() -> None:
+    """One tf topic each, and no frame has a robot's name: robot2 has a second laser."""
+    graph = small_fleet.healthy("L1")
+    more = next(it for it in graph.edges if it.topic.startswith("/robot2/"))
+    graph = graph._replace(edges=(*graph.edges, more._replace(child="laser2")))
+    root = ET.fromstring(suggested(graph)["robot.urdf"])
+    assert {it.attrib["name"] for it in root.iter("link")} == {"base_link", "laser"}
+
+
 def test_parents_stand_above_their_children() -> None:
     root = ET.fromstring(suggested(graph_cases.healthy("postfix"))["robot.urdf"])
     links = [it.attrib["name"] for it in root.iter("link")]

@@ -12,6 +12,7 @@ from multibot_rewrite.producers.launch import places
 from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
 from multibot_rewrite.producers.launch.stand_in import packages, parameters, values
+from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import LaunchConfiguration, LaunchContext
 from multibot_rewrite.system.records import Place
 
@@ -314,3 +315,37 @@ def test_the_descriptions_that_were_read(tmp_path: Path) -> None:
     path = os.path.realpath(tmp_path / "a.urdf")
     given = [str(tmp_path / it) for it in ("a.urdf", "link.urdf", "gone.urdf", "")]
     assert list(descriptions_in(given)) == [(path, ParameterText(path, "<robot/>", path))]
+
+
+# launch jazzy frontend/grammar.lark: text, arguments with and without quotes, one inside another.
+WRITTEN = {
+    "": "",
+    "a b": "a b",
+    "$(var n)": "5",
+    "a$(var n)$(var word)b": "a5wb",
+    "$(env HERE)": "home",
+    "$(env NOT_HERE)x": None,
+    "$(env NOT_HERE 'x y')": "x y",
+    '$(env NOT_HERE "x y")': "x y",
+    "$(env NOT_HERE '')": "",
+    "$(eval '1 + $(var n)')": "6",
+    '$(eval "1 + $(var n)")': "6",
+    "$(eval '\\'$(var word)\\' == \\'w\\'')": "True",
+    "$(env NOT_HERE $(var n))": "5",
+    "$(dirname)/x.yaml": "/launch/x.yaml",
+    "$(not $(var yes))": "false",
+    "$(if $(var yes) a b)": "a",
+}
+
+
+def test_texts_of_launch_files_in_xml_and_yaml(context: LaunchContext) -> None:
+    for text, wanted in WRITTEN.items():
+        parts = parse_substitution(text)
+        if wanted is None:
+            with pytest.raises(Exception, match="NOT_HERE"):
+                [it.perform(context) for it in parts]
+            continue
+        assert "".join(it.perform(context) for it in parts) == wanted, text
+    for text in ("$(var n", "$(nope x)", "$(arg x)", "$(env HERE 'x)", "$(var 'n)"):
+        with pytest.raises(ValueError, match=r"closed|needs launch|Unknown|substitution"):
+            parse_substitution(text)

@@ -54,6 +54,14 @@ CASES = {
         '</link><gazebo reference="${prefix}base"><sensor name="${prefix}bump" type="contact">'
         "<contact><collision>${prefix}base_collision</collision></contact></sensor></gazebo>",
     ),
+    "behind what another property has": (
+        '<xacro:property name="lead" value="/"/><link name="base"/><gazebo reference="base">'
+        '<sensor name="lidar" type="gpu_lidar"><gz_frame_id>${lead}base</gz_frame_id></sensor>'
+        "</gazebo>",
+        '<xacro:property name="lead" value="/"/><link name="${prefix}base"/>'
+        '<gazebo reference="${prefix}base"><sensor name="${prefix}lidar" type="gpu_lidar">'
+        "<gz_frame_id>${lead}${prefix}base</gz_frame_id></sensor></gazebo>",
+    ),
     "ros2_control and its joints": (
         '<link name="base"/><link name="a"/><joint name="j" type="revolute"><parent link="base"/>'
         '<child link="a"/><limit effort="1" velocity="1" lower="0" upper="1"/></joint>'

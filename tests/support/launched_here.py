@@ -39,7 +39,6 @@ _CHANGED = (
 def read_here(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     """From now on ``launch_graph`` asks no other process; ``folder`` gets its temporary files."""
     monkeypatch.setattr(child, "_asked", lambda order: _read(order, folder))
-    child.launch_graph.cache_clear()
 
 
 def _read(order: LaunchOrder, folder: Path) -> LaunchGraph:

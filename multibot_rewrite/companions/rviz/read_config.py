@@ -108,7 +108,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         cls = text_of(item, "Class")
         below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
         names = data["displays"].get(cls, data["any"])
-        places = () if what == "panels" or cls == GROUP else tuple(_places(item, names))
+        places = () if cls == GROUP else tuple(_places(item, names))
         known = what != "displays" or cls == GROUP or cls in data["displays"]
         flag = data["flags"].get(cls, "")
         yield RvizItem(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))

@@ -94,7 +94,8 @@ def shared_with(
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, vocabulary)
     if next(document.root.iter("link"), None) is None:
-        yield Problem(document.root, "the robot has no link", None, "", (), NO_LINK)
+        hint = "give the file that its links are in, whole or as a xacro"
+        yield Problem(document.root, "the robot has no link", None, hint, (), NO_LINK)
 
 
 def _would_share(

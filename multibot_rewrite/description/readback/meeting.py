@@ -25,7 +25,13 @@ from multibot_rewrite.description.readback.nodes import (
     full_name,
     itself,
 )
-from multibot_rewrite.description.readback.reading import FRAME, NODE, Reading, RuntimeName
+from multibot_rewrite.description.readback.reading import (
+    FRAME,
+    IN_CODE,
+    NODE,
+    Reading,
+    RuntimeName,
+)
 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
@@ -33,6 +39,7 @@ OPENED = "MB412"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
+_FIXED = "it is in the code of the plugin, so no description moves it"
 _ALLOWED = "allow it with --shared-topics"
 _ALLOW = f"rename it for each robot, or {_ALLOWED}"
 _ADVICE = {
@@ -137,8 +144,10 @@ def advice(name: RuntimeName) -> str:
         return "ROS 1 has one /tf: use --layout frames-per-robot"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
+    if name.path == IN_CODE:
+        return f"{_FIXED}: use --layout tf-per-robot, or allow it with --shared-frames"
     if name.path.startswith("/") and code_of(name) in _ADVICE:
-        return f"it is in the code of the plugin, so no description moves it: {_ALLOWED}"
+        return f"{_FIXED}: {_ALLOWED}"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

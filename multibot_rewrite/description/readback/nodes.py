@@ -288,8 +288,9 @@ def _sends(
     frames: tuple[tuple[str, str], ...],
     links: Container[str],
 ) -> Iterator[tuple[str, str]]:
-    """Of a plugin that publishes tf: from its odometry frame to a link."""
-    own = [path for path, frame in frames if frame not in links]
-    base = [path for path, frame in frames if frame in links]
+    """Of a plugin that publishes tf: from its odometry frame to a link, which a prefix of frames may
+    be before."""
+    base = [path for path, frame in frames if frame in links or frame.rpartition("/")[2] in links]
+    own = [path for path, _ in frames if path not in base]
     if "/tf" in section.publishes and own and base and sends_odometry(plugin, section):
         yield own[0], base[0]

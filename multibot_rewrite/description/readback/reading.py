@@ -34,6 +34,8 @@ from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 
 NODE, FRAME = "node", "frame"
+# Where a frame is written that no parameter holds.
+IN_CODE = "its code"
 # Elements besides plugins and sensors that have a topic, by what holds it.
 WITH_TOPICS = (
     ("gazebo", "particle_emitter"),
@@ -232,7 +234,7 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
     for entry in host.section.hardwired:
         kind, _, name = entry.partition(":")
         if kind == FRAME:
-            yield RuntimeName(FRAME, name, tag, host.number, "its code")
+            yield RuntimeName(FRAME, name, tag, host.number, IN_CODE)
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:

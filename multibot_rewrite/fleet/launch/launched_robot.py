@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import os
+import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from multibot_rewrite.base.rosnames import RemapRule
 from multibot_rewrite.description.sources.own_names import filled
@@ -42,7 +45,21 @@ def launched_robot(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """All that these launch files start, with the robot in the place of ``{robot}``; raises as
     ``launched_robot``."""
-    return joined([launch_graph(it) for it in _own(orders, robot)])
+    return joined([_graph(it, _times(it.file)) for it in _own(orders, robot)])
+
+
+@lru_cache
+def _graph(order: LaunchOrder, times: tuple[int, ...]) -> LaunchGraph:
+    """Robots without a word of their own ask for the same launch file; ``times`` tell its changes."""
+    return launch_graph(order)
+
+
+def _times(file: str) -> tuple[int, ...]:
+    try:
+        found = os.stat(file)
+    except OSError:  # it is told by who reads it
+        return (time.monotonic_ns(),)
+    return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:

@@ -70,6 +70,28 @@ def expands(it: RunningNode) -> bool:
     return it.value("expand_gz_topic_names") is True
 
 
+def told_rows(it: RunningNode) -> str:
+    """The topics in the arguments of a bridge, as its file would have them; nothing for no such row."""
+    found = [_ROW.fullmatch(word) for word in it.arguments] if it.program in _BRIDGES else []
+    rows = [one for one in found if one and one["way"] and "/srv/" not in one["type"]]
+    ways = {word: name for name, word in _WAYS.items()}
+    entries = [
+        {BOTH: one["name"], "ros_type_name": one["type"], "gz_type_name": one["gz"]}
+        | {"direction": ways[one["way"]]}
+        for one in rows
+    ]
+    return yaml.safe_dump(entries, sort_keys=False) if entries else ""
+
+
+def refused_rows(it: RunningNode) -> Iterator[str]:
+    """The arguments of a bridge that are to be a row and are none: it ends then."""
+    for word in it.arguments if it.program in _BRIDGES else ():
+        row = _ROW.fullmatch(word)
+        whole = row is not None and (row["way"] or "/srv/" in row["type"])
+        if "@" in word and not whole:
+            yield word
+
+
 def _rows_of(it: RunningNode) -> Iterator[Row]:
     yield from _told(it.program, it.arguments)
     given = it.values.get("config_file")

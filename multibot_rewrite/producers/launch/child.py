@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.child import python, variables
@@ -20,7 +19,6 @@ SECONDS = 120
 _INSIDE = "MULTIBOT_READS_LAUNCH"
 
 
-@lru_cache
 def launch_graph(order: LaunchOrder) -> LaunchGraph:
     """What a launch file or system_model.yaml starts.
 

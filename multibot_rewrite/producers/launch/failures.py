@@ -59,9 +59,16 @@ def failure(error: BaseException) -> str:
 
 def _line(error: BaseException) -> str:
     """The line of a launch file in Python that raised it."""
-    frames = extract_tb(error.__traceback__)
+    # launch has an error of its own around it.
+    frames = extract_tb((error.__cause__ or error).__traceback__)
     name = os.path.basename(frames[-1].filename) if frames else ""
     return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
+
+
+def lost_file(error: BaseException) -> str:
+    """What to do about a file that is not there; nothing for another error."""
+    lost = isinstance(error.__cause__ or error, FileNotFoundError)
+    return "; put it there, or source the built workspace that has it" if lost else ""
 
 
 def _variable(error: BaseException) -> str:

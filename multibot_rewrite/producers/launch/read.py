@@ -16,6 +16,7 @@ from multibot_rewrite.producers.launch.failures import (
     NOT_THERE,
     UNSET,
     failure,
+    lost_file,
     missing_module,
     missing_package,
     not_installed,
@@ -87,7 +88,7 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
     if name in missing and add_file(error, folder):
         return
     if not name or name in missing:
-        raise UnreadableError(failure(error)) from error
+        raise UnreadableError(f"{failure(error)}{lost_file(error)}") from error
     if package:
         add_empty(package, folder)
     else:

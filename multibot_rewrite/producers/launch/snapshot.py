@@ -53,6 +53,7 @@ from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, R
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
     DESCRIPTION,
+    SIMULATED,
     Knowledge,
     bound_of,
     running_nodes,
@@ -109,7 +110,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
         tuple(_nodes(nodes, parts)),
-        tuple(end for part in parts for end in part.endpoints),
+        tuple(_without_own_time([end for part in parts for end in part.endpoints])),
         tuple(_frames(parts)),
         Environment(caveats=caveats),
         release=known.release,
@@ -301,6 +302,13 @@ def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
         yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
 
 
+def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
+    """Without those who wait for a time that nobody sends, and have it of the simulator around them
+    (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
+    sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends)
+    yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
+
+
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
     """Each transform once, with all who send it."""
     senders: dict[tuple[str, Edge], list[str]] = defaultdict(list)
@@ -315,11 +323,17 @@ def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterat
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
     are known; a value that only a run tells is untold. What sends transforms that hold for ever needs
     no time, and a bridge passes on the time that is in the data."""
-    unknown = {it.place for it in notes if it.parameters}
+    notes = [it for it in notes if it.parameters]
+    # A file that is lost is told where components are loaded, not at each of them.
+    unknown, lost = {it.place for it in notes}, {it.place.file for it in notes if it.file}
     for it in nodes:
         given = it.value(SIM_TIME)
         # An empty text is the output of a program that is not run here.
-        untold = SIM_TIME in it.untold or given == "" or (given is None and it.place in unknown)
+        untold = (
+            SIM_TIME in it.untold
+            or given == ""
+            or (given is None and (it.place in unknown or it.place.file in lost))
+        )
         if is_bridge(it):
             continue
         if untold:

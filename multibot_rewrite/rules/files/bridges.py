@@ -213,8 +213,8 @@ class GzTopic(NamedTuple):
     "MB879",
     "bridge-row-without-gz-topic",
     WARNING,
-    what="A bridge row reads a gz topic that no sensor or plugin of the description sends, "
-    "while one sends another topic of that type. Or the description has the topic with "
+    what="A bridge row reads a gz topic that neither the description nor the world sends, "
+    "while one of them sends another topic of that type. Or the description has the topic with "
     "another type or direction. Asked by `build` and `plan`, which know the robot and how "
     "it is spawned.",
     why="The bridge waits for data that never comes.",

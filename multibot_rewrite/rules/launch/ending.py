@@ -2,7 +2,8 @@
 """Programs of a launch file that end as soon as they start.
 
 Source: robot_state_publisher jazzy robot_state_publisher.cpp (its robot_description is XML); rmw
-validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double).
+validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double); ros_gz_bridge jazzy
+parameter_bridge.cpp.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from itertools import pairwise
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.rosnames import check_node_name
+from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import RunningNode
@@ -27,8 +29,8 @@ _NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
     "MG729",
     "program-ends-at-once",
     what="A program that a launch file starts ends at once. That is a robot_state_publisher "
-    "without a description or with its path, a node name that ROS refuses, or a spawner with an "
-    "unreadable pose.",
+    "without a description or with its path, or a node name that ROS refuses. A spawner does with an "
+    "unreadable pose, a bridge with an unreadable row.",
     why="The launch goes on without it: there is no tf of the robot, or no robot in the simulator.",
     fix="Give robot_description the text, such as `Command(['xacro ', path])`; write names with "
     "letters, digits and underscores, and a pose with numbers.",
@@ -51,6 +53,9 @@ def ends(launched: Launched) -> Iterator[Finding]:
                     message = f"{it.executable}: {flag} {word} is no number"
                     yield at(ends, it.place, message, "write a number")
     for node in launched.nodes:
+        for word in refused_rows(node):
+            message = f"{node.full_name}: {word!r} is no row of a bridge"
+            yield at(ends, node.place, message, "write TOPIC@ROS_TYPE[GZ_TYPE, or ] to Gazebo")
         if (node.place.file, node.place.line) not in unsure:
             yield from _described(node)
 

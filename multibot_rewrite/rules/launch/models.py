@@ -186,18 +186,24 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
     beside=ROVERS,
 )
 def not_brought(launched: Launched) -> Iterator[Finding]:
-    """By the places of their topics: two models of one description have them in one order."""
+    """By the topics without the names of the models: those of two descriptions mean other things."""
     from multibot_rewrite.rules.launch.rows import out_of_gazebo
 
     told = out_of_gazebo(launched)
-    models = [(it, [*_sent(it)]) for it in models_in_simulator(launched)]
-    for it, own in models:
-        alike = [sent for _, sent in models if [kind for kind, _ in sent] == [k for k, _ in own]]
-        for at_, (_, gz) in enumerate(own):
-            if gz not in told and any(sent[at_][1] in told for sent in alike):
+    models = models_in_simulator(launched)
+    brought = {_plain(model, one) for model in models for one in _sent(model) if one[1] in told}
+    for it in models:
+        for kind, gz in _sent(it):
+            if gz not in told and _plain(it, (kind, gz)) in brought:
                 message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
                 hint = "add a row to ROS for it, as another model has one"
                 yield at(not_brought, it.place, message, hint, names=(gz,))
+
+
+def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
+    """A topic of a model without its name."""
+    kind, gz = topic
+    return kind, "/".join(word for word in gz.split("/") if word != model.name)
 
 
 def _sent(model: InSimulator) -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from functools import cache, partial
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten
+from multibot_rewrite.base.wording import SEVERAL, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, robots_of
 from multibot_rewrite.system.ownership import SEPARATORS
@@ -124,7 +124,9 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
             f" {_who(senders)}",
-            _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own), elsewhere),
+            _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
+            or _sent_there(seen, frame, robot, elsewhere)
+            or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere else WARNING,
             robot=robot,
             node=senders[0],
@@ -203,13 +205,25 @@ def _nameless(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _remedy(senders: Sequence[str], meant: Sequence[str], elsewhere: Sequence[str]) -> str:
-    if meant:
-        word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
-        return f"set the frame of {_who(senders)} to {word}"
+def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
+    if not meant:
+        return ""
+    word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
+    return f"set the frame of {_who(senders)} to {word}"
+
+
+def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
+    """Which node of another robot sends it, and what this robot has of that kind; else where it is."""
+    edges = (edge for tree in seen.trees for edge in tree.edges if edge.child == frame)
+    there = next((it.publishers[0] for it in edges if len(it.publishers) == 1), "")
+    if there and robot and seen.robot(there):
+        wanted = robot, seen.plain(there)
+        mine = next((it for it in seen.nodes if (seen.robot(it), seen.plain(it)) == wanted), "")
+        remedy = f"see the log of {mine}" if mine else f"start such a node for {robot}"
+        return f"{there} sends it on its own tf: {remedy}"
     if elsewhere:
-        return f"it is on {and_then(elsewhere)}: who sends it there is to send it here, too"
-    return f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf"
+        return f"it is on {shorten(elsewhere)}: who sends it there is to send it here, too"
+    return ""
 
 
 def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:

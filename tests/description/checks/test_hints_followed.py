@@ -5,6 +5,9 @@ Expected: the word, and that the hint names what was written here (never what th
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from multibot_rewrite import rewrite
@@ -55,6 +58,18 @@ OPENARM = (
     '<joint name="openarm_joint1"><command_interface name="position"/></joint></ros2_control>'
 )
 WINCH = '<gazebo><plugin name="w" filename="libacme_winch.so"/></gazebo>'
+ARM = (
+    '<ros2_control name="s" type="system"><hardware><plugin>acme/Arm</plugin></hardware>'
+    "</ros2_control>"
+)
+MARK = '<acme at="base"/>'
+SAWYER = (
+    '<gazebo><plugin name="c" filename="libsawyer_gazebo_ros_control.so">'
+    "<robotNamespace>/a</robotNamespace></plugin></gazebo>"
+)
+SERVED = ["FKService", "IKService"]
+KOBUKI = '<gazebo><plugin name="k" filename="libgazebo_ros_kobuki.so"/></gazebo>'
+EYE = '<gazebo reference="base"><sensor name="s" type="rgbd_camera"><camera/></sensor></gazebo>'
 
 
 class Followed(NamedTuple):
@@ -66,7 +81,7 @@ class Followed(NamedTuple):
     code: str
     hint: str
     after: str
-    options: dict[str, str]
+    options: dict[str, Any]
 
 
 ROWS = (
@@ -89,7 +104,52 @@ ROWS = (
         OPENARM,
         {"layout": "tf-per-robot"},
     ),
-    Followed(WINCH, "postfix", "jazzy", "MB902", "opens: nothing", "", {}),
+    Followed(
+        WINCH,
+        "postfix",
+        "jazzy",
+        "MB902",
+        "opens: nothing",
+        WINCH,
+        {"vocabulary": "[plugin acme_winch]\nopens: nothing\n"},
+    ),
+    Followed(
+        ARM,
+        "postfix",
+        "jazzy",
+        "MB903",
+        "opens: nothing",
+        ARM,
+        {"vocabulary": "[hardware acme/Arm]\nopens: nothing\n"},
+    ),
+    Followed(
+        MARK,
+        "postfix",
+        "jazzy",
+        "MB901",
+        "add a line to a vocabulary file: a uses/declares site",
+        MARK,
+        {"vocabulary": "[element acme]\nat: robot\n@at uses link\n"},
+    ),
+    Followed(
+        SAWYER,
+        "postfix",
+        "humble",
+        "MG305",
+        "allow it with --shared-topics",
+        SAWYER,
+        {"shared_topics": [f"ExternalTools/right/PositionKinematicsNode/{it}" for it in SERVED]},
+    ),
+    Followed(
+        KOBUKI,
+        "both",
+        "humble",
+        "MG402",
+        "allow it with --shared-frames",
+        KOBUKI,
+        {"shared_frames": ["odom"]},
+    ),
+    Followed(EYE, "tf-per-robot", "jazzy", "MB437", "--layout both", EYE, {"layout": "both"}),
     Followed(
         SENSORS,
         "postfix",
@@ -140,9 +200,13 @@ ROWS = (
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[it.code for it in ROWS])
-def test_what_the_hint_says_ends_in_proved(row: Followed) -> None:
+def test_what_the_hint_says_ends_in_proved(row: Followed, tmp_path: Path) -> None:
     before = rewrite(ROVER.format(row.text), "robot1", layout=row.layout, distro=row.distro)
     assert before.not_proved
     assert [it.hint for it in before.findings if it.code == row.code and row.hint in it.hint]
     options = {"layout": row.layout, "distro": row.distro, **row.options}
+    if "vocabulary" in options:
+        file = tmp_path / "acme.vocab"
+        file.write_text(options["vocabulary"])
+        options["vocabulary"] = [str(file)]
     assert rewrite(ROVER.format(row.after), "robot1", **options).not_proved == ()

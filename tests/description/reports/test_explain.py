@@ -146,6 +146,26 @@ def test_the_command_prints_place_rewriter_and_result(capsys: pytest.CaptureFixt
     assert "for bob: 'left_wheel_joint_bob'" in out
 
 
+# Line of ROBOT -> words of each kind of value: as it is, kept, of nobody, and what is put in.
+PRINTED = {
+    4: ("kept by [element joint] ", ": an enumeration: revolute, fixed"),
+    7: ("] gets for bob: ", "    <remapping>cmd_vel:=cmd_vel/bob</remapping>"),
+    8: ("claimed by [plugin gazebo_ros_diff_drive] ", "  stays as it is"),
+    11: ("  value: 'laser'\n  claimed by no rewriter: it holds the name 'laser'",),
+}
+
+
+def test_the_command_prints_each_kind_of_value(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "r.urdf").write_text(ROBOT)
+    for line, words in PRINTED.items():
+        assert main(["--why", f"{tmp_path}/r.urdf:{line}", "bob"]) == 0
+        out = capsys.readouterr().out
+        assert [it for it in words if it not in out] == [], out
+    assert "claimed by" not in out.replace("claimed by no rewriter", "")
+
+
 @pytest.mark.parametrize(
     ("place", "words"),
     [

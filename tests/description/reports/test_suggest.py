@@ -276,6 +276,10 @@ def test_odd_values_become_comments_and_stay_on_their_line() -> None:
 def test_a_file_of_any_name(name: str, tmp_path: Path) -> None:
     text = vocabulary_text(suggested(plugin("<x>hip</x>")), name)
     assert loaded(text, tmp_path).vocabulary.find("plugin", "acme")[0].sites[0].kinds == ("joint",)
+    # Its whole path in the head, its last word in each section.
+    path = " ".join(name.split())
+    assert text.startswith(f"# Guessed from {path}:")
+    assert f"\nabout: guessed from {path.split('/')[-1]}, not checked\n" in text
 
 
 @pytest.mark.more

@@ -75,6 +75,13 @@ def test_removal_undoes_affix_for_every_kind(layout: str, side: str, topics: str
         assert_inverse(naming, kind, text, ROBOT, namespaced)
 
 
+def test_a_stem_below_a_namespace_is_the_robots_already_unless_it_is_absolute() -> None:
+    """gazebo_ros puts its namespace before /camera no more than rcl does."""
+    naming = make_naming("both")
+    for text, moved in (("/eye", True), ("/eye/left", True), ("eye", False), ("eye/", False)):
+        assert (affix(naming, "stem", text, namespaced=True) is not None) is moved, text
+
+
 @pytest.mark.slow
 @given(
     st.sampled_from(LAYOUTS),

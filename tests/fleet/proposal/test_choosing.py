@@ -8,8 +8,16 @@ from typing import Any
 
 import pytest
 import yaml
+from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal.choosing import may_be_partners
+from multibot_rewrite.fleet.proposal.fitting import fitting
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.system.records import NOWHERE
 
 PACKAGE = "<package><name>{}</name></package>"
 
@@ -349,3 +357,52 @@ def test_the_arguments_of_the_srdf_alone_are_given(tmp_path: Path) -> None:
     fleet = taken(tmp_path, "--force")
     assert "srdf" not in fleet
     assert "arguments" not in fleet
+
+
+# Node, parameter, value -> is it a name that the robot has not? It has base_link, turn, /front/scan.
+NAMES = (
+    ("amcl", "base_frame_id", "base_link", False), ("amcl", "base_frame_id", "chassis", True),
+    ("amcl", "odom_frame_id", "odom", False), ("amcl", "base_frame_id", "$(var tf)base", False),
+    ("amcl", "scan_topic", "front/scan", False), ("amcl", "scan_topic", "/rear/scan", True),
+    ("amcl", "scan_topic", "scan", False), ("amcl", "laser_model_type", "beam", False),
+    ("joint_trajectory_controller", "joints", ["turn"], False),
+    ("joint_trajectory_controller", "joints", ["turn", "lift"], True),
+    # A body in the world that the node itself makes.
+    ("static_transform_publisher", "child_frame_id", "camera", False), ("driver", "base", "x", False),
+)  # fmt: skip
+
+
+def test_names_in_parameters_are_held_against_the_description() -> None:
+    known = load_known_nodes("", "jazzy")
+    text = (
+        '<robot name="r"><link name="base_link"/><joint name="turn"/><gazebo><topic>/front/scan'
+        "</topic></gazebo></robot>"
+    )
+    looked = Looked("r.urdf", root=etree.fromstring(text))
+    for node, name, value, strange in NAMES:
+        given = GivenNode(node, node, "", {name: Given(value, NOWHERE)}, NOWHERE)  # type: ignore[arg-type]
+        found = fitting(looked, "p.yaml", [given], known, ())
+        assert (found.nodes, bool(found.strange)) == ({node}, strange), (name, value)
+
+
+def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
+    tmp_path: Path,
+) -> None:
+    launch = tmp_path / "a.launch.py"
+    launch.write_text("xacro = 'car.urdf.xacro'; model = 'van/model.sdf'\n")
+    every = (
+        "bus.urdf",
+        "bus/model.sdf",
+        "car.sdf",
+        "car.urdf.xacro",
+        "car/model.sdf",
+        "van/model.sdf",
+    )
+    found = Found(every=every, launch=(str(launch),))
+    for path, partners in (
+        ("car.urdf.xacro", ["car.sdf", "car/model.sdf", "van/model.sdf"]),
+        ("bus.urdf", ["bus/model.sdf"]),
+        ("car.sdf", ["car.urdf.xacro"]),
+        ("truck.sdf", []),
+    ):
+        assert [*may_be_partners(path, found)] == partners, path

@@ -74,6 +74,16 @@ def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
 
 
 @pytest.mark.more
+def test_the_parameters_that_the_description_loads_go_before_those_called_like_it(
+    folder: Path,
+) -> None:
+    write(folder, "use_sim", "false")
+    (folder / "rover.yaml").write_text(CONTROL.replace("50", "60"))
+    params = fleet_of(folder)["companions"]["params"]
+    assert [Path(it).name for it in params] == ["control.yaml"]
+
+
+@pytest.mark.more
 def test_a_real_robot_gets_the_other_value(folder: Path) -> None:
     write(folder, "use_sim", "true")
     fleet = fleet_of(folder, "--simulator", "none")
