@@ -83,7 +83,7 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     assert init(package, "rover.urdf") == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1
-    assert "husky.yaml (husky_base); " in said and "tb3.yaml (tb3/front/scan)" in said
+    assert "husky.yaml (husky_base), " in said and "tb3.yaml (tb3/front/scan)" in said
     assert said.endswith("husky.yaml\n")
     (package / "nav.launch.py").write_text(GIVES)
     assert made(package, "rover.urdf")["companions"]["params"] == ["tb3.yaml"]
