@@ -31,12 +31,16 @@ def test_the_examples_are_there() -> None:
 
 
 STACKS = list(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
-LAYOUTS = ["postfix", "tf-per-robot", "frames-per-robot", "both", "frame-prefix"]
-# No file is written: the rover has no such plugin; move_group takes no prefix of frames (MF837); and
-# no rule in a container reaches a costmap of Lyrical, whose names keep the robot's namespace.
+# Frames of nodes without a parameter file are those of their code: build says so (MG402).
+LAYOUTS = ["postfix", "tf-per-robot", "both"]
 REFUSED = {
-    ("humble", "", "gazebo_ros2_control"),
-    ("", "frame-prefix", "moveit"),
+    # The rover has no such plugin, and Jazzy no Gazebo Classic.
+    ("", "", "gazebo_ros2_control"),
+    # The spawner waits for a description that somebody else sends.
+    ("", "", "no_robot_state_publisher"),
+    # The base is base_link by default, and that of the rover is base_footprint.
+    *(("", "", it) for it in ("cartographer", "robot_localization", "robot_localization_gps")),
+    # No rule in a container of Lyrical reaches a costmap, whose names have the robot at the end.
     *(("lyrical", "postfix", it) for it in STACKS if it.endswith("_composed")),
 }
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"

@@ -156,7 +156,9 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
 
 
 def _components(given: _Given, container: str) -> Iterator[Component]:
-    for name, it in given.names.started.items():
+    left = dict(_left(given))
+    mine = ((name, it) for name, it in given.names.started.items() if name not in left)
+    for name, it in mine:
         if it.way == COMPONENT and it.node.home.container == container and name in given.facts:
             program = program_of(given.facts[name], given.release)
             if program is not None and program.plugin:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.base.rosnames import expand, resolve_bound
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
@@ -22,7 +22,7 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED
+from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.launch.declaration import (
     FIRST,
     LAUNCH,
@@ -32,6 +32,7 @@ from multibot_rewrite.rules.launch.declaration import (
     node_of,
 )
 from multibot_rewrite.rules.launch.joints import read_by_joints
+from multibot_rewrite.system.records import SERVICE
 
 _SPAWNER = node_of("controller_manager", "spawner", ("arm",))
 _MANAGER = node_of("controller_manager", "ros2_control_node")
@@ -60,6 +61,7 @@ _ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
 _OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
 _LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
 _AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
+_CHANGE = "/change_state"
 _UNSURE = "a node that is not known may; see what is incomplete"
 
 
@@ -298,12 +300,12 @@ def _activates_itself(it: RunningNode) -> bool:
 
 
 def _listed(it: RunningNode) -> Iterator[str]:
+    """The nodes whose services a manager calls, which its rules may say
+    (nav2_lifecycle_manager, lifecycle_service_client.cpp)."""
     names = it.value("node_names")
-    yield from (
-        (expand(str(one), it.namespace, "") for one in names or ())
-        if isinstance(names, list)
-        else ()
-    )
+    bound = bound_of(it.name, it.namespace, it.rules)
+    for one in names if isinstance(names, list) else ():
+        yield resolve_bound(f"{one}{_CHANGE}", SERVICE, bound).removesuffix(_CHANGE)
 
 
 @launch_rule(
