@@ -40,8 +40,9 @@ REFUSED = {
     ("", "", "no_robot_state_publisher"),
     # The base is base_link by default, and that of the rover is base_footprint.
     *(("", "", it) for it in ("cartographer", "robot_localization", "robot_localization_gps")),
-    # No rule in a container of Lyrical reaches a costmap, whose names have the robot at the end.
-    *(("lyrical", "postfix", it) for it in STACKS if it.endswith("_composed")),
+    # Nav2 of Lyrical sends TwistStamped, the rover's drive takes Twist; and no rule in a container
+    # reaches a costmap whose names have the robot at the end.
+    *(("lyrical", "", it) for it in STACKS if it.startswith(("nav2", "navigation"))),
 }
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"
 
