@@ -1,6 +1,6 @@
 # Made by share/make.py.
 complete -c multibot -l version -d 'show the version'
-complete -c multibot -n __fish_use_subcommand -f -a adopt -d 'Give a description package an argument for a prefix.'
+complete -c multibot -n __fish_use_subcommand -f -a adopt -d 'Give a description package a prefix and a namespace.'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
