@@ -32,6 +32,7 @@ from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 # Of these kinds a robot has one file, of the others any number.
 ONE = ("rviz", "bridge")
 KINDS = ("params", "rviz", "bridge", "moveit", "behavior_trees")
+_TWO_FILTERS = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
 # A stack, and nodes in a parameter file that say so: all of them, then none of these.
 _STACKS = (
     ("nav2", ("amcl", "controller_server"), ()),
@@ -40,7 +41,8 @@ _STACKS = (
     ("localization", ("amcl",), ("controller_server",)),
     ("slam_toolbox", ("slam_toolbox",), ("controller_server",)),
     ("robot_localization", ("ekf_node",), ()),
-    ("robot_localization", ("ekf_filter_node",), ("ekf_node",)),
+    ("robot_localization", ("ekf_filter_node",), ("ekf_node", *_TWO_FILTERS)),
+    ("robot_localization_gps", _TWO_FILTERS, ()),
     ("teleop", ("teleop_twist_joy_node",), ()),
 )
 _MANAGER = "controller_manager"

@@ -6,7 +6,7 @@ A file and a stack that disagree: the file wins, and the disagreement is a note.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
@@ -136,12 +136,12 @@ def nodes_of(
     names = {it.name for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.name in names}
     sent = {child for node in kept for child in children_of(node)}
-    other = [it for it in stack if it not in kept]
-    for it in (it for it in given if it.name not in names and _may_run(it, known)):
-        meant = next((one for one in other if _stands_for(it, one, known)), None)
-        if meant and not it.manager:
+    more = [it for it in given if it.name not in names and _may_run(it, known)]
+    meant = dict(_meant([it for it in stack if it not in kept], more, known))
+    for it in more:
+        if it.name in meant:
             entry = known[it.known]
-            nodes.append(filled(entry, it)._replace(when=meant.when, known=entry.kind))
+            nodes.append(filled(entry, it)._replace(when=meant[it.name].when, known=entry.kind))
             continue
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
@@ -174,6 +174,17 @@ def _left_out(
         elif sections[node.name] or not any(_stands_for(it, node, known) for it in given):
             kept.append(node)
     return findings, kept
+
+
+def _meant(
+    stack: Iterable[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+) -> Iterator[tuple[str, NodeFacts]]:
+    """The one node of the files that stands for each of these nodes of the stack; of several, as two
+    filters with rules of their own, it is not known which."""
+    for node in stack:
+        found = [it.name for it in given if not it.manager and _stands_for(it, node, known)]
+        if len(found) == 1:
+            yield found[0], node
 
 
 def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:

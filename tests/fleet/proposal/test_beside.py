@@ -73,6 +73,10 @@ def test_a_bridge_is_for_a_simulated_robot(simulator: str, tmp_path: Path) -> No
         (["slam_toolbox"], ["slam_toolbox"]),
         (["ekf_node"], ["robot_localization"]),
         (["ekf_filter_node"], ["robot_localization"]),
+        (
+            ["ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform"],
+            ["robot_localization_gps"],
+        ),
         (["teleop_twist_joy_node"], ["teleop"]),
         (["driver"], []),
     ],
