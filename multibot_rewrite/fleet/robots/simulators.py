@@ -130,7 +130,7 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
     switch = switch_for(spec.simulated or spec.description, given, suits, BOUNDED)
     message = f"{wrong} is a simulator's, and robot {spec.name!r} is real"
     if not real:
-        message = f"{wrong} is a real robot's driver, and robot {spec.name!r} is simulated"
+        message = f"{wrong} is no simulator's, and robot {spec.name!r} is simulated"
     other = "gazebo" if real else "none"
     hint = f"write simulator: {other}, or give it hardware of its world"
     if switch:

@@ -100,7 +100,7 @@ def test_what_suits_stays(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("simulator", "value", "says"),
     [
-        ("gazebo", "false", "MF843 acme/Driver is a real robot's driver, and robot 'robot1' is"),
+        ("gazebo", "false", "MF843 acme/Driver is no simulator's, and robot 'robot1' is"),
         ("none", "true", "MF843 gz_ros2_control/GazeboSimSystem is a simulator's, and robot"),
     ],
 )
