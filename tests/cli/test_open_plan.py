@@ -113,7 +113,7 @@ def test_what_was_open_before_is_counted_where_it_is_asked_for(
     assert folder.check(folder.plan, "--fail-on", "note") == 1
     out, err = capsys.readouterr()
     assert "note: MG316 no known node sends /visual/twist" in out
-    assert "1 note: as planned (" in err
+    assert "1 note: as planned, with notes on the plan (" in err
 
 
 @pytest.mark.slow

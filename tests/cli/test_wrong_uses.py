@@ -275,7 +275,8 @@ def test_a_watch_without_a_plan(
 @pytest.mark.parametrize(
     ("verdict", "levels", "words"),
     [
-        (Verdict.PLANNED, (), "as planned"), (Verdict.PLANNED, (NOTE,), "as planned"),
+        (Verdict.PLANNED, (), "as planned"),
+        (Verdict.PLANNED, (NOTE,), "as planned, with notes on the plan"),
         (Verdict.PLANNED, (NOTE, WARNING), "as planned, but the plan has faults"),
         (Verdict.WRONG, (ERROR,), "not as planned, and the plan has faults"),
         (Verdict.INCONCLUSIVE, (), "inconclusive, the view may be incomplete"),

@@ -26,6 +26,7 @@ NEWEST = {
     "base/releases.py",
     "cli/declared/shared.py",
     "description/sources/release_said.py",
+    "fleet/proposal/release_of_files.py",
     "rules/settings.py",
 }
 

@@ -26,9 +26,10 @@ from multibot_rewrite.description.sources.packages import HIGHEST, package_folde
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import text_slot
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
+from multibot_rewrite.fleet.robots.own_values import YARP_FILES
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 
-CONFIGURATION, INTERFACE = "yarpConfigurationFile", "yarpRobotInterfaceConfigurationFile"
+CONFIGURATION, INTERFACE = YARP_FILES
 MOST_INCLUDED = 50
 _URI = re.compile(r"(?:model|package)://([^/]+)/(.+)")
 _INCLUDE = re.compile(r'^[ \t]*\[include\b[^"\n]*"([^"\n]+)"', re.MULTILINE)

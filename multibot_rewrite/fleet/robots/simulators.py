@@ -200,7 +200,7 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
         why = _named(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
         if why:
             who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
-            message = f"{who} {why}, and nobody has read it: whether it drives is not shown"
+            message = f"{who} {why}, and its code is not known: whether it drives is not shown"
             yield at_robot(UNREAD_DRIVE, robot, message, SAY_IT)
 
 
