@@ -17,12 +17,14 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
 from multibot_rewrite.rules.launch.judge import judge_launch, placed
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
 )
+from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 
 
 def run(options: argparse.Namespace) -> int:
@@ -41,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *(placed(_certain(it), made) for it in seen.findings))
+    every = (*found, *(placed(_certain(it, made), made) for it in seen.findings))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 
@@ -51,10 +53,16 @@ def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchO
     return [it._replace(trusted=True) for it in orders]
 
 
-def _certain(it: Finding) -> Finding:
-    """A claim that no hardware meets is an error where all that is started is known."""
+def _certain(it: Finding, made: Launched) -> Finding:
+    """A claim that no hardware meets is an error where all that is started is known. The odometry of a
+    robot that is in no simulator may come from a driver that is started apart."""
     claims = it.code in (interface_not_exported.code, interface_claimed_twice.code)
-    return it._replace(level=ERROR) if claims and it.level == WARNING else it
+    if claims and it.level == WARNING:
+        return it._replace(level=ERROR)
+    apart = it.code == tf_tree_in_pieces.code and not any(one.spawned for one in made.models.found)
+    if apart and it.names and not any(edge.parent == it.names[0] for edge in made.system.edges):
+        return it._replace(level=WARNING)
+    return it
 
 
 def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:

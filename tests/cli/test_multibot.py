@@ -111,7 +111,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         ((), "multibot: no COMMAND given, use one of adopt, build"),
         (("dance",), "multibot: unknown command 'dance'; see multibot --help"),
         (("chek",), "multibot: unknown command 'chek'; did you mean 'check'?"),
-        (("--quiet", "check"), "write the command first, for example: multibot init --quiet"),
+        (("--quiet", "check"), "write the command first, for example: multibot adopt --quiet"),
         (("--undo",), "write the command first, for example: multibot build --undo"),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
