@@ -14,7 +14,7 @@ EVERY = (*CLASSES, *QUESTIONS, *UNSEEN)
 ODD = faults("oddities")
 # What only a note tells: a value that is the default, parameters of another release.
 QUIET = {
-    *("initial_pose_not_used", "q_jtc_integer", "q_stamped_in_jazzy"),
+    *("initial_pose_not_used", "u_mux_output_stamped", "q_jtc_integer", "q_stamped_in_jazzy"),
     *(
         "q_topic_for_frame",
         "q_control_plugin_name",
@@ -39,7 +39,7 @@ UNTOLD = {
     *("w_mapping_of_listed", "w_ekf_base_is_camera", "w_ackermann_four_steered"),
     *("w_fake_link_heavy", "w_step_of_a_second"),
     *("q_keepout_as_layer", "u_pursuit_turns_and_reverses", "v_camera_type_word"),
-    *("u_gz_control_node", "u_mux_output_stamped", "v_map_not_there"),
+    *("u_gz_control_node", "v_map_not_there"),
 }
 
 

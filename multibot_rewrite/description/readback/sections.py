@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
 from lxml.etree import _Element
@@ -17,8 +16,6 @@ from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, Vocabu
 _LIBRARY = lazy_compile(r"(?:.*/)?(?:lib)?(.*?)(?:\.so|\.dylib|\.dll)?")
 _SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
 ROS_1, ROS_2 = "1", "2"
-# Of a comment: how many elements after it a rewrite has put into a plugin.
-_PUT = lazy_compile(r"\s*multibot \S+ \+(\d+)\b.*", re.DOTALL)
 # Every plugin that is not known and has a <ros> is a node.
 WITH_ROS = "any_with_ros"
 
@@ -52,26 +49,14 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
     """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in
-    a robot without them the release that reads more of the parameters counts, ROS 2 if both do. A <ros>
-    that a rewrite has put there, behind its comment, says nothing of other plugins."""
+    a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    if old is None or plugin.find("ros") is not None:
-        return new
-    tree = plugin.getroottree()
-    if tree.find("ros2_control") is not None or any(map(_is_authored, tree.iter("ros"))):
+    own = plugin.find("ros") is not None
+    if old is None or own or plugin.getroottree().find("ros2_control") is not None:
         return new
     tags = {child.tag for child in plugin}
     return old if len(tags & old.tags) > len(tags & new.tags) else new
-
-
-def _is_authored(ros: _Element) -> bool:
-    before = [*ros.itersiblings(preceding=True)]
-    for at, it in enumerate(before):
-        put = _PUT.fullmatch(it.text or "") if not isinstance(it.tag, str) else None
-        if put and sum(isinstance(one.tag, str) for one in before[:at]) < int(put[1]):
-            return False
-    return True
 
 
 def hardware_class(system: _Element) -> str:

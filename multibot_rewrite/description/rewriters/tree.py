@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import NAMESPACES
 from multibot_rewrite.base.model import Site, VocabularyError
 from multibot_rewrite.description.rewriters.text import text_at
@@ -281,31 +280,15 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-_ADDED = lazy_compile(r" multibot \S+ \+(\d+) ")
-
-
 def _is_of_ros_2(root: _Element) -> bool:
-    if root.find("ros2_control") is not None:
-        return True
-    return any(not _is_added(it) for it in root.iter("ros"))
-
-
-def _is_added(ros: _Element) -> bool:
-    """Has a rewrite added it? Its comment before what it adds says how many elements these are."""
-    after = 1
-    for it in ros.itersiblings(preceding=True):
-        count = None if isinstance(it.tag, str) else _ADDED.match(it.text or "")
-        if count is not None and after <= int(count[1]):
-            return True
-        after += isinstance(it.tag, str)
-    return False
+    return root.find("ros2_control") is not None
 
 
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. So is every
-    plugin of a robot with a ``ros2_control``, or with a ``ros`` elsewhere that no rewrite has added.
+    plugin of a robot with a ``ros2_control``; a ``ros`` elsewhere may be one that a rewrite added.
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
     own = element.find("ros") is not None

@@ -29,9 +29,6 @@ QUIET_SECONDS = 3.5
 # Where all participants that there can be are known. Their nodes and endpoints follow at once, or one
 # after another where a program starts.
 ALL_KNOWN_SECONDS = 1.5
-# Where all of this machine are, and no other was seen: who is new is answered at once by all who hear
-# one of the five messages with which it announces itself, in its first half second.
-ALL_HERE_SECONDS = 2.0
 # More than this of one delay is a pause: of the process, or of the machine.
 DELAY_SECONDS = 0.5
 # So much of its time a look may wait for a processor.

@@ -191,20 +191,15 @@ def _wait_until_settled(
 
 def _enough(session: GraphSession) -> float:
     """How many seconds without a change are enough: fewer where every participant of this machine has
-    announced itself, and there is no other, by range or as far as is seen."""
+    announced itself, and the range allows no other machine."""
     asked = environment.settings(os.environ)
-    if asked.static_peers or asked.discovery_server:
+    if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
     here = participants_here(session.ros.context.get_domain_id())
-    if not announced or len(announced) != here:
-        return assemble.QUIET_SECONDS
-    if asked.range == LOCALHOST:
-        return assemble.ALL_KNOWN_SECONDS
-    machines = {environment.machine(it) for it in announced}
-    alone = len(machines) == 1 and "" not in machines and here > 1
-    return assemble.ALL_HERE_SECONDS if alone else assemble.QUIET_SECONDS
+    known = bool(announced) and len(announced) == here
+    return assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
 
 
 class _ChangeTimes:
