@@ -22,19 +22,6 @@ NO_LAUNCH = (
     "launch is not installed here, and its stand-in does not know all of it: source ROS 2 "
     "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 )
-# What launch says of the file, too.
-OF_THE_FILE = (
-    *(
-        "SyntaxError:",
-        "NameError:",
-        "XMLSyntaxError:",
-        "RecursionError:",
-        "FileNotFoundError:",
-        "AttributeError: module 'launch_file'",
-    ),
-    *("the environment variable", "it ends itself", "it starts the program"),
-    "it has to be given",
-)
 
 
 def main() -> int:
@@ -50,8 +37,8 @@ def main() -> int:
             with standing_in() if stands_in else nullcontext():
                 graph = read_graph(order, folder)._replace(stood_in=stands_in)
         except UnreadableError as error:
-            own = str(error).startswith(OF_THE_FILE) or "of ROS 1" in str(error)
-            print(f"{error}; {NO_LAUNCH}" if stands_in and not own else error, file=sys.stderr)
+            doubtful = stands_in and not error.of_file
+            print(f"{error}; {NO_LAUNCH}" if doubtful else error, file=sys.stderr)
             return UNREADABLE
     with os.fdopen(answer, "w", encoding="utf-8") as out:
         out.write(to_json(graph))

@@ -17,7 +17,12 @@ import yaml
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
-from multibot_rewrite.producers.launch.failures import failure, is_unset, missing_package
+from multibot_rewrite.producers.launch.failures import (
+    failure,
+    is_unset,
+    missing_module,
+    missing_package,
+)
 from multibot_rewrite.producers.launch.kept_paths import (
     LIMIT,
     is_made,
@@ -67,11 +72,17 @@ class Visit(NamedTuple):
     later: str = ""
     events: int = 0
 
-    def note(
-        self, message: str, parameters: bool = False, file: str = "", fails: bool = False
-    ) -> None:
+    def note(self, message: str, parameters: bool = False, file: str = "") -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one, as those of a ``file``."""
-        self.notes.append(LaunchNote(self.place, message, parameters, file, fails))
+        self.notes.append(LaunchNote(self.place, message, parameters, file))
+
+    def failed(
+        self, error: BaseException, message: str = "", parameters: bool = False, fails: bool = False
+    ) -> None:
+        """The same of what raised an error; ``message`` is what is said in place of its words."""
+        missing = missing_package(error) or missing_module(error)
+        known = (message or failure(error), parameters, "", fails, missing, is_unset(error))
+        self.notes.append(LaunchNote(self.place, *known))
 
 
 def is_wanted(action: Any, context: Any) -> bool:
@@ -217,13 +228,14 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
     except Exception as error:
         # A value may be the output of a program that is not started; other ones fail in a launch, too.
         if _FAILS in str(error) or is_unset(error):
-            here.note(failure(error), parameters=True)
+            here.failed(error, parameters=True)
         elif isinstance(error, FileNotFoundError) and not missing_package(error):
             # Its folder may be a link to sources, which is gone when this is read.
             path = os.path.realpath(str(error.filename))
             here.note(_lost(path), parameters=True, file=path)
         elif not isinstance(given, dict):
-            here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
+            message = f"a parameter file is not known: {failure(error)}"
+            here.failed(error, message, parameters=True)
         if isinstance(given, dict):
             names = (text(name, here.context) for name in given)
             yield from (_values({})._replace(untold=name) for name in names)

@@ -26,7 +26,8 @@ _NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argume
 _NO_VALUE = re.compile(
     r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
 )
-UNSET = "the launch configuration"
+# The file as Python has it, in launch and in its stand-in; without a description it makes none.
+_MODULE = "launch_file"
 _ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 _TRIED = re.compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
 _OF_ROS_1 = re.compile(
@@ -34,7 +35,6 @@ _OF_ROS_1 = re.compile(
     r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
 )
 _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $(var NAME), exec="
-NOT_THERE = re.compile(r"package '(\w+)' is not installed here")
 
 
 def failure(error: BaseException) -> str:
@@ -45,7 +45,8 @@ def failure(error: BaseException) -> str:
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     if name := _no_value(error):
-        return f"{UNSET} {name!r} is not set; give it with {name}:=VALUE, or where this is included"
+        hint = f"give it with {name}:=VALUE, or where this is included"
+        return f"the launch configuration {name!r} is not set; {hint}"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
@@ -114,6 +115,16 @@ def is_unset(error: BaseException) -> bool:
 def _no_value(error: BaseException) -> str:
     found = _NO_VALUE.search(str(error))
     return (found[1] or found[2]) if found else ""
+
+
+def is_of_file(error: BaseException) -> bool:
+    """Does launch not read the file either? It is no program or XML, it is of ROS 1, or it asks for
+    what is not there."""
+    inner = error.__cause__ or error
+    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, SystemExit)
+    without = isinstance(inner, AttributeError) and getattr(inner.obj, "__name__", "") == _MODULE
+    old = _OF_ROS_1.search(str(error)) is not None
+    return isinstance(inner, own) or without or old or bool(_variable(error))
 
 
 def is_no_text(error: BaseException) -> bool:

@@ -13,9 +13,8 @@ from multibot_rewrite.producers.launch.commands import faults, read_commands
 from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
-    NOT_THERE,
-    UNSET,
     failure,
+    is_of_file,
     lost_file,
     missing_module,
     missing_package,
@@ -34,7 +33,12 @@ from multibot_rewrite.system.records import Place
 
 
 class UnreadableError(Exception):
-    """The launch file itself cannot be read; the message says why."""
+    """The launch file itself cannot be read; the message says why. ``of_file`` says that launch would
+    not read it either, wherever it is installed."""
+
+    def __init__(self, message: str, *, of_file: bool = True) -> None:
+        super().__init__(message)
+        self.of_file = of_file
 
 
 def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
@@ -88,7 +92,8 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
     if name in missing and add_file(error, folder):
         return
     if not name or name in missing:
-        raise UnreadableError(f"{failure(error)}{lost_file(error)}") from error
+        text = f"{failure(error)}{lost_file(error)}"
+        raise UnreadableError(text, of_file=is_of_file(error)) from error
     if package:
         add_empty(package, folder)
     else:
@@ -98,8 +103,7 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
 
 def _lost(notes: Iterable[LaunchNote]) -> list[str]:
     """The packages that are missing where something was started."""
-    found = (NOT_THERE.search(it.message) for it in notes)
-    return list(dict.fromkeys(it[1] for it in found if it))
+    return list(dict.fromkeys(it.missing for it in notes if it.missing))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:
@@ -138,7 +142,7 @@ def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
     file itself may be given to it, and what is not known may set one."""
     known = True
     for it in notes:
-        unset = it.message.startswith(UNSET) and it.place.file != path
+        unset = it.unset and it.place.file != path
         fails = it.fails or (known and unset)
         known = known and (fails or it.parameters)
         yield it._replace(fails=fails)

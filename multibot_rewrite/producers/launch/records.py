@@ -78,13 +78,16 @@ class LaunchedNode(NamedTuple):
 class LaunchNote(NamedTuple):
     """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
     known, and what a parameter file sets for it is not: the ``file``, where that is not there.
-    ``fails`` where the launch ends there on every machine."""
+    ``fails`` where the launch ends there on every machine. ``missing`` is the package that is not
+    installed here, ``unset`` says that a launch configuration has no value."""
 
     place: Place
     message: str
     parameters: bool = False
     file: str = ""
     fails: bool = False
+    missing: str = ""
+    unset: bool = False
 
 
 class UnreadArgument(NamedTuple):

@@ -98,7 +98,8 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     reason = failure(error)
     if here.later and is_unset(error):
         reason = f"{reason.partition(';')[0]}; {_ENDED}"
-    here.note(f"{here.later} {reason}".strip(), fails=is_certain(error, here.place.file))
+    message = f"{here.later} {reason}".strip()
+    here.failed(error, message, fails=is_certain(error, here.place.file))
 
 
 def _at(entity: Any, seen: Visit) -> Visit:
