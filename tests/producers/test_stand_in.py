@@ -292,7 +292,7 @@ launch:
 
 @pytest.mark.parametrize(
     ("text", "lines"),
-    [(XML, (2, 3, 4)), (YAML, (2, 5, 8)), ("<launch", (1,) * 3), ("- [", (1,) * 3)],
+    [(XML, (2, 3, 4)), (YAML, (2, 4, 8)), ("<launch", (1,) * 3), ("- [", (1,) * 3)],
 )
 def test_the_line_of_a_node_in_xml_and_yaml(
     text: str, lines: tuple[int, int, int], tmp_path: Path

@@ -12,17 +12,17 @@ import ast
 import os
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any
 
 import yaml
-from lxml import etree
 
-from multibot_rewrite.base.bounded import compose_yaml, load_yaml
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.fleet.proposal.searching import text_of
+from multibot_rewrite.producers.launch.entities import Entity, root_of
 
 # What is not plain.
 UNKNOWN = object()
@@ -59,7 +59,7 @@ def launch_text(path: str) -> LaunchText:
     try:
         text = text_of(path) if path.endswith(".py") else _in_python(path)
         every = list(ast.walk(ast.parse(text)))
-    except (SyntaxError, ValueError, RecursionError, yaml.YAMLError):
+    except (SyntaxError, ValueError, TypeError, RuntimeError, yaml.YAMLError):
         every = []
     calls = [it for it in every if isinstance(it, ast.Call)]
     declared = ((word_of(argument(it, "name", 0)), it) for it in _called(calls, _DECLARE))
@@ -183,111 +183,49 @@ _READERS: Mapping[type, Callable[[Reading, Any, int], Any]] = {
 }  # fmt: skip
 
 
-class _Action(NamedTuple):
-    """An element of an XML launch file, or a mapping of one in YAML: its line, its attributes, which
-    are texts or lists of them, and what is in it."""
-
-    tag: str
-    line: int
-    attributes: Mapping[str, Any]
-    inner: tuple[_Action, ...]
-
-
 def _in_python(path: str) -> str:
-    """The actions of a file in XML or YAML as Python, each in its line; raises yaml.YAMLError,
-    ValueError."""
-    text = text_of(path)
-    tops = _of_xml(text) if text.lstrip().startswith("<") else _of_yaml(compose_yaml(text))
+    """The actions of a file in XML or YAML as Python, each in its line; raises as ``root_of``."""
     lines: dict[int, list[str]] = defaultdict(list)
-    for it in _every(tops):
+    for it in root_of(text_of(path).encode()).every():
         made = _MADE.get(it.tag)
         if made:
             lines[it.line].append(made(it).replace(_HERE, repr(os.path.dirname(path) or os.curdir)))
     return "\n".join("; ".join(lines[at]) for at in range(1, max(lines, default=0) + 1))
 
 
-def _every(its: Iterable[_Action]) -> Iterator[_Action]:
-    for it in its:
-        yield it
-        yield from _every(it.inner)
-
-
-def _of_xml(text: str) -> list[_Action]:
-    parser = etree.XMLParser(resolve_entities=False, remove_comments=True, remove_pis=True)
-    try:
-        return [_of_element(etree.fromstring(text.encode(), parser))]
-    except etree.XMLSyntaxError as error:
-        raise ValueError(str(error)) from None
-
-
-def _of_element(it: etree._Element) -> _Action:
-    inner = tuple(map(_of_element, it.iterchildren("*")))
-    return _Action(
-        str(it.tag),
-        cast("int", it.sourceline),
-        {str(k): str(v) for k, v in it.attrib.items()},
-        inner,
-    )
-
-
-def _of_yaml(node: yaml.Node | None) -> Iterator[_Action]:
-    """The actions in a list of mappings with one key each, or below ``launch`` and ``children``."""
-    if isinstance(node, yaml.MappingNode):
-        for key, value in node.value:
-            if key.value in ("launch", "children"):
-                yield from _of_yaml(value)
-    for each in node.value if isinstance(node, yaml.SequenceNode) else ():
-        for key, value in each.value if isinstance(each, yaml.MappingNode) else ():
-            yield _of_mapping(str(key.value), key.start_mark.line + 1, value)
-
-
-def _of_mapping(tag: str, line: int, node: yaml.Node) -> _Action:
-    attributes: dict[str, Any] = {}
-    inner = [*_of_yaml(node)]
-    for key, value in node.value if isinstance(node, yaml.MappingNode) else ():
-        its = value.value if isinstance(value, yaml.SequenceNode) else [value]
-        if all(isinstance(it, yaml.ScalarNode) for it in its):
-            texts = [it.value for it in its]
-            attributes[key.value] = texts[0] if its == [value] else texts
-        elif key.value != "children":
-            own = (it for it in its if isinstance(it, yaml.MappingNode))
-            inner += [_of_mapping(key.value, it.start_mark.line + 1, it) for it in own]
-    return _Action(tag, line, attributes, tuple(inner))
-
-
-def _made_node(it: _Action) -> str:
-    own = {"executable": it.attributes.get("exec"), "name": it.attributes.get("name")}
+def _made_node(it: Entity) -> str:
+    own = {"executable": it.values.get("exec"), "name": it.values.get("name")}
     words = [f"{key}={_made_text(value)}" for key, value in own.items() if value is not None]
-    files = [_made_text(one.attributes["from"]) for one in _inside(it, "param", "from")]
+    files = [_made_text(one.values["from"]) for one in _inside(it, "param", "from")]
     values = ", ".join(f"{name!r}: {value}" for name, value in _made_values(it, ""))
     rules = (
-        f"({_made_text(one.attributes['from'])}, {_made_text(one.attributes.get('to', ''))})"
+        f"({_made_text(one.values['from'])}, {_made_text(one.values.get('to', ''))})"
         for one in _inside(it, "remap", "from")
     )
     given = ", ".join([*files, f"{{{values}}}"])
     return f"Node({', '.join(words)}, parameters=[{given}], remappings=[{', '.join(rules)}])"
 
 
-def _inside(it: _Action, tag: str, key: str) -> Iterator[_Action]:
-    return (one for one in it.inner if one.tag == tag and key in one.attributes)
+def _inside(it: Entity, tag: str, key: str) -> Iterator[Entity]:
+    return (one for one in it.below if one.tag == tag and key in one.values)
 
 
-def _made_values(it: _Action, above: str) -> Iterator[tuple[str, str]]:
+def _made_values(it: Entity, above: str) -> Iterator[tuple[str, str]]:
     """The parameters in an element, those below one with its name in front."""
     for one in _inside(it, "param", "name"):
-        name = f"{above}{one.attributes['name']}"
+        name = f"{above}{one.values['name']}"
         yield from _made_values(one, f"{name}.")
-        if "value" in one.attributes:
-            is_text = one.attributes.get("type") == "str"
-            apart = "value-sep" in one.attributes
-            value = one.attributes["value"]
-            yield name, _UNREAD if apart else _made_text(value) if is_text else _made_value(value)
+        if "value" in one.values:
+            made = _made_text if one.values.get("type") == "str" else _made_value
+            yield name, made(one.values["value"])
 
 
 def _made_value(it: Any) -> str:
     """A value as launch has it: of what a text says in YAML."""
     if isinstance(it, list):
         return f"[{', '.join(map(_made_value, it))}]"
+    if not isinstance(it, str):
+        return repr(it)
     try:
         return _made_text(it) if "$" in it else repr(load_yaml(it))
     except yaml.YAMLError:
@@ -309,26 +247,26 @@ def _made_piece(it: str) -> str:
     return f"{made}({_made_text(rest.strip())})" if made else _UNREAD
 
 
-def _made_include(it: _Action) -> str:
+def _made_include(it: Entity) -> str:
     values = (
-        f"({one.attributes['name']!r}, {_made_text(one.attributes.get('value', ''))})"
+        f"({one.values['name']!r}, {_made_text(one.values.get('value', ''))})"
         for one in _inside(it, "arg", "name")
     )
-    file = _made_text(it.attributes.get("file", ""))
+    file = _made_text(it.values.get("file", ""))
     return f"{_INCLUDE}({file}, launch_arguments=[{', '.join(values)}])"
 
 
-def _made_argument(it: _Action) -> str:
+def _made_argument(it: Entity) -> str:
     """An ``arg``, or a ``let``, of which one with a condition may not count."""
-    value = it.attributes.get("default", it.attributes.get("value"))
-    if value is None or {"if", "unless"} & it.attributes.keys():
+    value = it.values.get("default", it.values.get("value"))
+    if value is None or {"if", "unless"} & it.values.keys():
         value = None
-    return f"{_DECLARE}({it.attributes.get('name', '')!r}, default_value={_made_text(value)})"
+    return f"{_DECLARE}({it.values.get('name', '')!r}, default_value={_made_text(value)})"
 
 
 # What stands for the folder of the file.
 _HERE = "__folder__"
-_MADE: Mapping[str, Callable[[_Action], str]] = {
+_MADE: Mapping[str, Callable[[Entity], str]] = {
     "node": _made_node, "lifecycle_node": _made_node, "composable_node": _made_node,
     "include": _made_include, "arg": _made_argument, "let": _made_argument,
 }  # fmt: skip

@@ -5,17 +5,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache, wraps
 from types import FrameType
 from typing import Any
 
 import yaml
-from lxml import etree
 
-from multibot_rewrite.base.bounded import compose_yaml
-from multibot_rewrite.companions.yaml_text import line_of, pairs
+from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.producers.launch.entities import root_of
 from multibot_rewrite.system.records import Place
 
 _KEPT = "multibot_place"
@@ -70,36 +69,12 @@ def _lines(file: str) -> dict[tuple[str, str], int]:
     """The first line with each package and program, in a file in XML or YAML."""
     if not os.path.isfile(file):
         return {}
-    with open(file, encoding="utf-8", errors="replace") as source:
-        text = source.read()
     try:
-        found = [
-            *(_in_xml(text) if text.lstrip().startswith("<") else _in_yaml(compose_yaml(text)))
-        ]
-    except (ValueError, etree.XMLSyntaxError, yaml.YAMLError):
+        every = [*root_of(read_bytes(file)).every()]
+    except (ValueError, TypeError, RuntimeError, SyntaxError, yaml.YAMLError):
         return {}
-    return {_started(given): line for line, given in reversed(found)}
+    return {_started(it.values): it.line for it in reversed(every) if it.tag in _ELEMENTS}
 
 
-def _started(given: Mapping[str, str]) -> tuple[str, str]:
-    return given.get("pkg", ""), given.get("plugin") or given.get("exec", "")
-
-
-def _in_xml(text: str) -> Iterator[tuple[int, dict[str, str]]]:
-    parser = etree.XMLParser(resolve_entities=False)
-    for it in etree.fromstring(text.encode(), parser).iter(*_ELEMENTS):
-        given = {str(key): str(value) for key, value in it.attrib.items()}
-        yield int(str(it.sourceline or 0)), given
-
-
-def _in_yaml(node: yaml.Node | None) -> Iterator[tuple[int, dict[str, str]]]:
-    if isinstance(node, yaml.SequenceNode):
-        for below in node.value:
-            yield from _in_yaml(below)
-    for key, below in node.value if isinstance(node, yaml.MappingNode) else ():
-        if getattr(key, "value", "") in _ELEMENTS:
-            for it in below.value if isinstance(below, yaml.SequenceNode) else [below]:
-                scalars = ((one.value, two) for one, two in pairs(it))
-                given = {name: it.value for name, it in scalars if isinstance(it, yaml.ScalarNode)}
-                yield line_of(it), given
-        yield from _in_yaml(below)
+def _started(given: Mapping[str, Any]) -> tuple[str, str]:
+    return str(given.get("pkg", "")), str(given.get("plugin") or given.get("exec", ""))

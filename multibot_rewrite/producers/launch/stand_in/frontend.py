@@ -13,9 +13,9 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, read_bytes
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.launch.stand_in.entities import Entity, root_of
+from multibot_rewrite.producers.launch.entities import Entity, root_of
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution
 
@@ -40,7 +40,7 @@ class Form(NamedTuple):
 
 def description_in(path: str) -> Any:
     """The launch description of a file in XML or YAML; raises what launch raises for a wrong one."""
-    made = [_made(it) for it in root_of(path).below]
+    made = [_made(it) for it in root_of(read_bytes(path)).below]
     return import_module("launch").LaunchDescription(made)
 
 

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A launch file in XML or YAML -> its elements, alike for both, each with its line.
+
+Source: launch jazzy, launch_xml and launch_yaml, entity.py and parser.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import yaml
+from lxml import etree
+
+from multibot_rewrite.base.bounded import compose_yaml, load_yaml
+from multibot_rewrite.companions.yaml_text import line_of
+
+_SEPARATOR, _CHILDREN = "-sep", "children"
+_TEXT = "tag:yaml.org,2002:str"
+
+
+class Entity:
+    """An element of a launch file: its values and the entities below it, which a reader takes away."""
+
+    def __init__(self, tag: str, line: int, values: dict[str, Any], below: list[Entity]) -> None:
+        self.tag, self.line, self.values, self.below = tag, line, values, below
+
+    def every(self) -> Iterator[Entity]:
+        """It, and all below it."""
+        yield self
+        for it in self.below:
+            yield from it.every()
+
+    def take(self, name: str) -> Any:
+        """A value; raises AttributeError where it is not there."""
+        if name not in self.values:
+            raise AttributeError(f"Attribute {name!r} not found in Entity {self.tag!r}")
+        return self.values.pop(name)
+
+    def all(self, tag: str) -> list[Entity]:
+        """The entities of a tag below this one."""
+        found = [it for it in self.below if it.tag == tag]
+        self.below = [it for it in self.below if it.tag != tag]
+        return found
+
+    def check(self) -> None:
+        """Raise ValueError for what nobody took."""
+        if self.below:
+            tags = {it.tag for it in self.below}
+            raise ValueError(f"Unexpected nested tag(s) found in `{self.tag}`: {tags}")
+        if self.values:
+            names = set(self.values)
+            raise ValueError(f"Unexpected attribute(s) found in `{self.tag}`: {names}")
+
+
+def root_of(data: bytes) -> Entity:
+    """The root of a launch file; raises what launch raises for another file."""
+    if data.lstrip().startswith(b"<"):
+        root = _of_xml(etree.fromstring(data, etree.XMLParser(resolve_entities=False)))
+    else:
+        root = _of_document(compose_yaml(data.decode()))
+    if root.tag != "launch":
+        raise RuntimeError("Expected 'launch' as root tag")
+    return root
+
+
+def _of_xml(element: etree._Element) -> Entity:
+    values: dict[str, Any] = {str(key): str(value) for key, value in element.attrib.items()}
+    for name in [it for it in values if f"{it}{_SEPARATOR}" in values]:
+        values[name] = values[name].split(values.pop(f"{name}{_SEPARATOR}"))
+    below = [_of_xml(it) for it in element if isinstance(it.tag, str)]
+    return Entity(str(element.tag), int(str(element.sourceline or 0)), values, below)
+
+
+def _of_document(node: yaml.Node | None) -> Entity:
+    if not isinstance(node, yaml.MappingNode) or len(node.value) != 1:
+        raise RuntimeError("Expected only one root")
+    ((key, body),) = node.value
+    return _of_yaml(str(key.value), line_of(key), body)
+
+
+def _of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
+    if isinstance(node, yaml.SequenceNode):
+        return Entity(tag, line, {}, [*_in_list(node)])
+    if not isinstance(node, yaml.MappingNode):
+        raise TypeError(f"Expected a dict or list in {tag!r}")
+    values: dict[str, Any] = {}
+    own: list[Entity] = []
+    below: list[Entity] = []
+    for key, value in node.value:
+        name = str(key.value)
+        if name == _CHILDREN:
+            below += _in_list(value)
+        elif _is_of_entities(value):
+            own += [_of_yaml(name, line_of(it), it) for it in value.value]
+        else:
+            values[name] = _plain(value)
+    return Entity(tag, line, values, [*own, *below])
+
+
+def _is_of_entities(node: yaml.Node) -> bool:
+    first = node.value[:1] if isinstance(node, yaml.SequenceNode) else []
+    return any(isinstance(it, yaml.MappingNode) for it in first)
+
+
+def _in_list(node: yaml.Node) -> Iterator[Entity]:
+    for it in node.value if isinstance(node, yaml.SequenceNode) else ():
+        if not isinstance(it, yaml.MappingNode) or len(it.value) != 1:
+            one = "a dictionary with only one key, which is the entity type"
+            raise RuntimeError(f"Subentities must be {one}")
+        yield from (_of_yaml(str(key.value), line_of(key), value) for key, value in it.value)
+
+
+def _plain(node: yaml.Node) -> Any:
+    """The value of a node as YAML has it."""
+    if isinstance(node, yaml.SequenceNode):
+        return [_plain(it) for it in node.value]
+    if isinstance(node, yaml.MappingNode):
+        return {str(key.value): _plain(it) for key, it in node.value}
+    return node.value if node.tag == _TEXT else load_yaml(node.value)
