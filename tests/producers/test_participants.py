@@ -12,19 +12,24 @@ import pytest
 
 from multibot_rewrite.live.staged import stage
 from multibot_rewrite.producers.ros import assemble, observe
-from multibot_rewrite.producers.ros.participants import participants_at, participants_here, ports_in
+from multibot_rewrite.producers.ros.participants import (
+    lost_here,
+    participants_at,
+    participants_here,
+    sockets_in,
+)
 
 TABLE = """\
    sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
- 7225: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 274152
- 9183: 00000000:1CF3 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 274145
- 9184: 00000000:1CE8 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 274150
+ 7225: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 274152 2 0000000000000000 0
+ 9183: 00000000:1CF3 00000000:0000 07 0:0 00:0 0 0 0 274145 2 0000000000000000 0
+ 9184: 00000000:1CE8 00000000:0000 07 0:0 00:0 0 0 0 274150 2 0000000000000000 12
 """
 
 
-def test_ports_of_a_table() -> None:
-    assert ports_in(TABLE) == [7410, 7411, 7400]
-    assert ports_in("") == []
+def test_ports_and_losses_of_a_table() -> None:
+    assert sockets_in(TABLE) == [(7410, 0), (7411, 0), (7400, 12)]
+    assert sockets_in("") == []
 
 
 def test_a_participant_has_an_even_port_behind_those_of_its_domain() -> None:
@@ -36,6 +41,7 @@ def test_a_participant_has_an_even_port_behind_those_of_its_domain() -> None:
 
 
 DOMAIN = 93
+KNOWN, LONG = assemble.ALL_KNOWN_SECONDS, assemble.QUIET_SECONDS
 LOCAL = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
@@ -66,10 +72,28 @@ def test_a_rehearsal_is_in_the_domain_of_the_environment_if_that_is_free(
     assert stage(None)["ROS_DOMAIN_ID"] == "42"
 
 
+@pytest.mark.usefixtures("port_in_use")
+def test_what_a_full_buffer_loses_is_counted() -> None:
+    assert lost_here(DOMAIN) == 0
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for _ in range(2000):
+            sender.sendto(bytes(1000), ("127.0.0.1", 7400 + 250 * DOMAIN + 10))
+    assert 0 < lost_here(DOMAIN) < 2000
+    assert lost_here(DOMAIN + 1) == 0
+
+
+def test_a_loss_since_the_look_began_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setattr(observe, "participants_here", lambda _: 1)
+    monkeypatch.setattr(observe, "lost_here", lambda domain: {DOMAIN: 5}[domain])
+    assert observe._enough(session(1), 5) == KNOWN
+    assert observe._enough(session(1), 4) == LONG
+
+
 def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     assert participants_here(DOMAIN) in (0, None)
-    assert observe._enough(session()) == assemble.QUIET_SECONDS
+    assert observe._enough(session(), 0) == assemble.QUIET_SECONDS
 
 
 def session(*participants: int) -> Any:
@@ -80,11 +104,7 @@ def session(*participants: int) -> Any:
     node = SimpleNamespace(
         get_publishers_info_by_topic=lambda _, no_mangle: ends if no_mangle else []
     )
-    context = SimpleNamespace(get_domain_id=lambda: DOMAIN)
-    return SimpleNamespace(node=node, ros=SimpleNamespace(context=context))
-
-
-KNOWN, LONG = assemble.ALL_KNOWN_SECONDS, assemble.QUIET_SECONDS
+    return SimpleNamespace(node=node, domain=lambda: DOMAIN)
 
 
 @pytest.mark.parametrize(
@@ -118,4 +138,4 @@ def test_less_is_enough_where_each_port_is_announced(
     monkeypatch.delenv("ROS_DISCOVERY_SERVER", raising=False)
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
-    assert observe._enough(session(*announced)) == seconds
+    assert observe._enough(session(*announced), 0) == seconds

@@ -34,6 +34,10 @@ class GraphSession(NamedTuple):
         """Seconds since the observation began."""
         return time.monotonic() - self.started
 
+    def domain(self) -> int:
+        """The ROS_DOMAIN_ID that is observed."""
+        return int(self.ros.context.get_domain_id())
+
     def over(self) -> bool:
         """Whether it has to end, also in the midst of queries."""
         return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS

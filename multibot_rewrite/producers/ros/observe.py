@@ -26,7 +26,7 @@ from multibot_rewrite.producers.ros.look import (
     receive,
     view,
 )
-from multibot_rewrite.producers.ros.participants import participants_here
+from multibot_rewrite.producers.ros.participants import lost_here, participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
@@ -155,6 +155,7 @@ def _wait_until_settled(
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
     queried: object = None
+    lost = lost_here(session.domain())
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
         receive(session, pause)
@@ -168,7 +169,7 @@ def _wait_until_settled(
             session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
-        quiet = _enough(session)
+        quiet = _enough(session, lost)
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
@@ -189,16 +190,17 @@ def _wait_until_settled(
     return "", clock, ()
 
 
-def _enough(session: GraphSession) -> float:
+def _enough(session: GraphSession, lost: int) -> float:
     """How many seconds without a change are enough: fewer where every participant of this machine has
-    announced itself, and the range allows no other machine."""
+    announced itself, the range allows no other machine, and no more datagrams than ``lost`` before
+    were lost: Fast DDS sends them again after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
-    here = participants_here(session.ros.context.get_domain_id())
-    known = bool(announced) and len(announced) == here
+    here = participants_here(session.domain())
+    known = bool(announced) and len(announced) == here and lost_here(session.domain()) == lost
     return assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
 
 
@@ -255,7 +257,7 @@ def _snapshot(
         *more,
     ]
     around = Environment(
-        session.ros.context.get_domain_id(),
+        session.domain(),
         asked.range,
         asked.static_peers,
         ros.middleware(),

@@ -8,9 +8,17 @@ found is 7400 + 250 * domain + 10 + 2 * number.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
+
+
+class Socket(NamedTuple):
+    """A local port, and how many datagrams were lost since it is open because its buffer was full."""
+
+    port: int
+    lost: int
 
 
 def participants_at(ports: Iterable[int], domain: int) -> int:
@@ -19,19 +27,32 @@ def participants_at(ports: Iterable[int], domain: int) -> int:
     return len({it for it in inner if _UNICAST <= it < _A_DOMAIN and it % 2 == 0})
 
 
-def ports_in(table: str) -> list[int]:
-    """The local ports in a table of Linux, as ``/proc/net/udp`` has them."""
+def sockets_in(table: str) -> list[Socket]:
+    """Those in a table of Linux, as ``/proc/net/udp`` has them: the last column are the drops."""
     rows = (line.split() for line in table.splitlines()[1:])
-    return [int(row[1].rpartition(":")[2], 16) for row in rows if len(row) > 1]
+    return [
+        Socket(int(row[1].rpartition(":")[2], 16), int(row[-1])) for row in rows if len(row) > 1
+    ]
 
 
 def participants_here(domain: int) -> int | None:
     """Those of a domain that run on this machine; None where nobody can tell: no Linux."""
-    ports: list[int] = []
+    found = _sockets_here()
+    return None if found is None else participants_at((it.port for it in found), domain)
+
+
+def lost_here(domain: int) -> int:
+    """How many datagrams for a domain this machine has lost; 0 where nobody can tell."""
+    first = _FIRST + _A_DOMAIN * domain
+    return sum(it.lost for it in _sockets_here() or () if first <= it.port < first + _A_DOMAIN)
+
+
+def _sockets_here() -> list[Socket] | None:
+    found: list[Socket] = []
     try:
         for path in TABLES:
             with open(path) as file:
-                ports += ports_in(file.read())
+                found += sockets_in(file.read())
     except (OSError, ValueError):
         return None
-    return participants_at(ports, domain)
+    return found
