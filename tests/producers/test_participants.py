@@ -86,17 +86,17 @@ def test_a_loss_since_the_look_began_is_waited_for(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setattr(observe, "participants_here", lambda _: 1)
     monkeypatch.setattr(observe, "lost_here", lambda domain: {DOMAIN: 5}[domain])
-    assert observe._enough(session(1), 5) == KNOWN
-    assert observe._enough(session(1), 4) == LONG
+    assert observe._enough(session(1, lost=5)) == KNOWN
+    assert observe._enough(session(1, lost=4)) == LONG
 
 
 def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     assert participants_here(DOMAIN) in (0, None)
-    assert observe._enough(session(), 0) == assemble.QUIET_SECONDS
+    assert observe._enough(session()) == assemble.QUIET_SECONDS
 
 
-def session(*participants: int) -> Any:
+def session(*participants: int, lost: int = 0) -> Any:
     """One that sees a topic of the middleware with an end of each of these participants of Fast DDS, on
     the machines of their first digit."""
     prefixes = ([1, 15, it // 10, 0, *[it] * 8] for it in participants)
@@ -104,7 +104,7 @@ def session(*participants: int) -> Any:
     node = SimpleNamespace(
         get_publishers_info_by_topic=lambda _, no_mangle: ends if no_mangle else []
     )
-    return SimpleNamespace(node=node, domain=lambda: DOMAIN)
+    return SimpleNamespace(node=node, domain=lambda: DOMAIN, lost=lost)
 
 
 @pytest.mark.parametrize(
@@ -138,4 +138,4 @@ def test_less_is_enough_where_each_port_is_announced(
     monkeypatch.delenv("ROS_DISCOVERY_SERVER", raising=False)
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
-    assert observe._enough(session(*announced), 0) == seconds
+    assert observe._enough(session(*announced)) == seconds

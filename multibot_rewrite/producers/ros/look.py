@@ -21,7 +21,8 @@ GRACE_SECONDS = 1.0
 
 class GraphSession(NamedTuple):
     """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
-    what is seen so far: a text, or a snapshot."""
+    what is seen so far: a text, or a snapshot. ``lost``: the datagrams for its domain that this machine
+    had lost before."""
 
     ros: ros.Session
     node: Any
@@ -29,6 +30,7 @@ class GraphSession(NamedTuple):
     stop: threading.Event
     started: float
     tell: Callable[[bytes], None]
+    lost: int
 
     def now(self) -> float:
         """Seconds since the observation began."""

@@ -83,8 +83,9 @@ def _open_session(
     request: Request, stop: threading.Event, tell: Callable[[bytes], None]
 ) -> Iterator[GraphSession]:
     with ros.opened() as opened:
+        lost = lost_here(opened.context.get_domain_id())
         node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
-        yield GraphSession(opened, node, request, stop, time.monotonic(), tell)
+        yield GraphSession(opened, node, request, stop, time.monotonic(), tell, lost)
 
 
 def take_snapshot(session: GraphSession) -> System:
@@ -155,7 +156,6 @@ def _wait_until_settled(
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
     queried: object = None
-    lost = lost_here(session.domain())
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
         receive(session, pause)
@@ -169,7 +169,7 @@ def _wait_until_settled(
             session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
-        quiet = _enough(session, lost)
+        quiet = _enough(session)
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
@@ -190,17 +190,19 @@ def _wait_until_settled(
     return "", clock, ()
 
 
-def _enough(session: GraphSession, lost: int) -> float:
+def _enough(session: GraphSession) -> float:
     """How many seconds without a change are enough: fewer where every participant of this machine has
-    announced itself, the range allows no other machine, and no more datagrams than ``lost`` before
-    were lost: Fast DDS sends them again after its heartbeat of 3 s."""
+    announced itself, the range allows no other machine, and no datagram was lost since its node is
+    there: Fast DDS sends it again after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
     here = participants_here(session.domain())
-    known = bool(announced) and len(announced) == here and lost_here(session.domain()) == lost
+    known = (
+        bool(announced) and len(announced) == here and lost_here(session.domain()) == session.lost
+    )
     return assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
 
 
