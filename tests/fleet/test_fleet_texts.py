@@ -453,6 +453,11 @@ def test_a_namespace_of_the_description_is_not_overwritten(
     assert [it.code for it in findings] == codes
 
 
+def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
+    bodies = classic(SPACE), f"<!-- {classic(SPACE)} -->"
+    assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
+
+
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))

@@ -17,10 +17,8 @@ from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
-    Pose,
-)
+from multibot_rewrite.description.steps.document import without_comments
+from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
@@ -84,7 +82,7 @@ def is_simulated(robot: RewrittenRobot) -> bool:
 
 def is_classic(robot: RewrittenRobot) -> bool:
     """Is its simulator Gazebo Classic?"""
-    return CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
+    return CLASSIC_PLUGIN.encode() in without_comments(robot.simulated or robot.description)
 
 
 def simulators(plan: FleetPlan) -> list[str]:
