@@ -234,8 +234,9 @@ OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
     [
         ("gazebo_ros_control", "", True),
         ("gazebo_ros2_control", "", False),
-        # gazebo_ros_pkgs has it for both: its parameters of ROS 1 are another finding.
-        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", False),
+        # gazebo_ros_pkgs has it for both, with other parameters.
+        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", True),
+        ("gazebo_ros_diff_drive", "<ros><remapping>cmd_vel:=go</remapping></ros>", False),
     ],
 )
 def test_a_plugin_of_ros_1_is_told(fleet: Any, name: str, inside: str, told: bool) -> None:
