@@ -108,8 +108,8 @@ OF_WIRE = '<param name="network_interface">eth0</param>'
 def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     text: str, path: str, numbers: list[str | None] | None
 ) -> None:
-    """quadruped_ros2_control HardwareUnitree.h: lo and domain 1 where nothing is written. KUKA's driver
-    has no default. An interface of a computer is no number: nobody can raise it."""
+    """quadruped_ros2_control HardwareUnitree.h: lo and domain 1 where nothing is written.
+    An interface of a computer is no number: nobody can raise it."""
     one = rewrite(text, "a", distro="jazzy")
     three = [*rewrite_all(text, ["a", "b", "c"], distro="jazzy")]
     assert len({it.findings for it in three}) == 1
