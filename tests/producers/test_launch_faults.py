@@ -468,6 +468,11 @@ _MIXED = (
 _ROW = 'Node(package="ros_gz_bridge", executable="parameter_bridge", arguments=["{}"])'
 _DRIVER = 'Node(package="acme", executable="driver", name="driver")'
 _GAZEBO = 'ExecuteProcess(cmd=["gzserver", {}"-s", "libgazebo_ros_factory.so"])'
+_AMCL = (
+    'Node(package="nav2_amcl", executable="amcl", name="amcl", namespace="r1", '
+    'remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])'
+)
+_BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     # launch jazzy include_launch_description.py, declare_launch_argument.py, launch_configuration.py
@@ -507,6 +512,8 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
+    "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
+    "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.
     "a time of its own, beside what is not known": ("MG503", True, "", (*_MIXED, _DRIVER)),
     "the plugin with the clock": (
