@@ -11,7 +11,7 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
@@ -70,7 +70,7 @@ def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
 
 
 def _kept(
-    made: Iterable[RawSection], before: Iterable[RawSection], shared: Collection[str]
+    made: Iterable[RawSection], before: Iterable[RawSection], shared: frozenset[str]
 ) -> Iterator[RawSection]:
     """What a rewrite adds for a node of each robot has no place in one that serves all."""
     there = {it.path: {key.value for key, _ in pairs(it.body)} for it in before}

@@ -24,6 +24,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.links_and_joints import end_of
 from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
 from multibot_rewrite.description.joining.touching import ALWAYS, NEVER, Touching, touching
 from multibot_rewrite.description.readback.xml import read_xml
@@ -127,7 +128,7 @@ def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[t
     """Pairs of links of two parts with nothing that has a shape between them."""
     beside: dict[str, set[str]] = defaultdict(set)
     for joint in described.iterchildren("joint"):
-        one, other = (_link_of(joint, tag) for tag in ("parent", "child"))
+        one, other = (end_of(joint, tag) for tag in ("parent", "child"))
         beside[one].add(other)
         beside[other].add(one)
     shaped = _shaped(described)
@@ -137,11 +138,6 @@ def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[t
             for other in _near(link, beside, shaped):
                 if other not in own:
                     yield min(link, other), max(link, other)
-
-
-def _link_of(joint: _Element, tag: str) -> str:
-    found = joint.find(tag)
-    return "" if found is None else found.get("link", "")
 
 
 def _shaped(described: _Element) -> set[str]:
