@@ -8,6 +8,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.moveit.file_kind import SIMPLE
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText
@@ -24,7 +25,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
 from multibot_rewrite.producers.evidence.hardware import Exported, exported
-from multibot_rewrite.producers.evidence.moveit import MANAGER, planning_system
+from multibot_rewrite.producers.evidence.moveit import planning_system
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
@@ -183,7 +184,7 @@ def system_after(
     said = (
         semantics(read_document(robot.srdf, path).root, written.root, path) if robot.srdf else NONE
     )
-    moveit = [it.yaml for it in own if MANAGER in it.text]
+    moveit = [it.yaml for it in own if SIMPLE in it.text]
     exports = exported(written.root, robot.member.source.file)
     control = _control(given, evidence, exports, moveit, said)
     return RobotSystem(control, of_robot(whole, robot.spec.namespace))
