@@ -314,7 +314,7 @@ def test_the_command_reports_and_compares(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["nowhere.launch.py"], "does not exist"),
+        (["nowhere.launch.py"], "No such file"),
         (["no_such_package", "x.launch.py"], "no_such_package"),
         (["a", "b", "c"], "FILE NAME:=VALUE"),
         (["x.launch.py", "robots=2"], "NAME:=VALUE"),
