@@ -137,7 +137,7 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
         read = list(_first(reader, connections, HEADERS))
         found = map(read_header_frame, read)
         frames = dict.fromkeys(it for it in found if it is not None)
-        pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it)
+        pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it, default=())
     elif type_ == CLOCK_TYPE:
         back = _back(_first(reader, connections, TRANSFORMS))
     qos = tuple(_qos(it) for own in connections for it in _profiles(own))
