@@ -18,7 +18,6 @@ from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
 from multibot_rewrite.cli.report import (
-    TEXT,
     About,
     check_report,
     chosen,
@@ -116,8 +115,6 @@ def _recorded(options: argparse.Namespace, plan: System) -> int:
 
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
-    if options.watch and (options.select or options.ignore or options.format != TEXT):
-        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if options.suggest:
         raise UsageError("--suggest begins a plan: leave out PLAN")
     check_report(options, printed=False)

@@ -21,6 +21,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import is_screen, note, shown
 from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.report import TEXT
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import ABSENCE
@@ -48,6 +49,8 @@ def check_source(options: argparse.Namespace) -> None:
                 raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if watching and (options.select or options.ignore or options.format != TEXT):
+        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if getattr(options, "state", False) and (saved or options.zenoh):
         raise UsageError("--state asks nodes of the live graph: leave out --snapshot and --zenoh")
     if saved and options.zenoh:

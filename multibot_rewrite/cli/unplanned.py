@@ -15,7 +15,6 @@ from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
-    TEXT,
     About,
     by_themselves,
     check_report,
@@ -84,8 +83,6 @@ def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None
     live.check_source(options)
     if domains and options.suggest:
         raise UsageError("--suggest is for one domain: give one with --domain")
-    if options.watch and (options.select or options.ignore or options.format != TEXT):
-        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
@@ -168,7 +165,7 @@ def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
     return {**WORDS, Verdict.PLANNED: "no error, see the warnings"} if warned else WORDS
 
 
-def _watch(options: argparse.Namespace, domains: Sequence[int]) -> int:
+def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     last = follow(_looking(), live.watched(options, domains=domains), WORDS)
     if last is None:
         note(options, "ended before anything was seen")
