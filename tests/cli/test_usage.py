@@ -97,6 +97,7 @@ def test_a_file_with_a_colon_may_be_explained() -> None:
 # ---------------------------------------------------------------- the source of a graph
 
 
+EVERY = {"select": [], "ignore": [], "format": "text"}
 USUAL = {"snapshot": [], "zenoh": None, "watch": False, "state": False, "bag": None}
 
 
@@ -127,8 +128,8 @@ def test_a_graph_has_one_source(given: dict[str, object], message: str) -> None:
 
 @pytest.mark.parametrize(
     "given",
-    [{}, {"snapshot": ["g"]}, {"zenoh": "z"}, {"watch": True, "state": True}, {"bag": "b"},
-     {"zenoh": "z", "watch": True}],
+    [{}, {"snapshot": ["g"]}, {"zenoh": "z"}, {"watch": True, "state": True, **EVERY}, {"bag": "b"},
+     {"zenoh": "z", "watch": True, **EVERY}],
 )  # fmt: skip
 def test_one_source_is_enough(given: dict[str, object]) -> None:
     live.check_source(options(**{**USUAL, **given}))
