@@ -17,10 +17,7 @@ from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
-    Pose,
-)
+from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
