@@ -53,8 +53,6 @@ class Unknown(dict[Any, Any]):
         """As the text of something: raises LookupError."""
         raise LookupError(f"what is taken of {self._multibot_module!r} is not known")
 
-    evaluate = perform
-
 
 class _Module(ModuleType):
     def __getattr__(self, name: str) -> Unknown:

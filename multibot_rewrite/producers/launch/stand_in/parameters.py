@@ -123,10 +123,10 @@ def _flat(
 
 
 def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
-    if hasattr(value, "evaluate"):
-        return value.evaluate(context)
     if _is_substituted(value):
         return _read(text_of(context, value), text_of(context, name))
+    if hasattr(value, "evaluate"):
+        return value.evaluate(context)
     if isinstance(value, list | tuple):
         return _listed(context, value, name)
     if not isinstance(value, _PLAIN):
