@@ -14,12 +14,7 @@ from functools import cache
 from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in.frontend import description_in
-from multibot_rewrite.producers.launch.stand_in.values import (
-    Kept,
-    LaunchContext,
-    Text,
-    text_of,
-)
+from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, Text, text_of
 
 
 class Action(Kept):
