@@ -200,7 +200,13 @@ def test_a_plan_of_another_release_is_refused() -> None:
 def test_notes_about_a_plan_are_counted_where_nobody_asks_for_them(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    known = (("MF801", WARNING), ("MG316", NOTE), ("MG316", NOTE), ("MF844", NOTE), ("MG316", ERROR))
+    known = (
+        ("MF801", WARNING),
+        ("MG316", NOTE),
+        ("MG316", NOTE),
+        ("MF844", NOTE),
+        ("MG316", ERROR),
+    )
     gaps = tuple(Finding(code, level, "open") for code, level in known)
     plan = System(gaps=gaps)
     usual = {"select": [], "ignore": [], "quiet": False, "program": "multibot", "verbose": False}
