@@ -62,6 +62,8 @@ def options():
         "data_files": [
             ("share/ament_index/resource_index/packages", [f"resource/{name}"]),
             (f"share/{name}", ["package.xml"]),
+            # A workspace that is sourced has bin/ on the path, and lib/ not.
+            ("bin", found("resource/bin/*")),
             *((home, found(*patterns)) for home, patterns in packaging["data-files"].items()),
         ],
     }

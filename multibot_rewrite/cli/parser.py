@@ -175,7 +175,9 @@ def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
     section = parser.add_argument_group(group.title)
     for option in group.options:
         text = option.help.replace("%", "%%") if option.shown else argparse.SUPPRESS
-        section.add_argument(*option.names, help=text, **option.keywords)
+        made = section.add_argument(*option.names, help=text, **option.keywords)
+        if made.nargs == argparse.ZERO_OR_MORE:
+            made.required = False  # else a message about another one asks for it, too
 
 
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:

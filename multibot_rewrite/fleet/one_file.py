@@ -35,7 +35,7 @@ REASONS = {
     "MB876": ("name", "in a block of text"),
     "MB105": ("placeholder", "that a launch file has to replace"),
     "MB422": ("prefix parameter", "that no postfix reaches"),
-    "MB412": ("port or file", "shared by all robots"),
+    "MB412": ("resource", "shared by all robots"),
     "MF120": ("topic", "that remap rules move"),
     "MF203": ("tf topic", "that rviz2 has to be given"),
     "MB891": ("display", "not known"),
@@ -173,7 +173,7 @@ def _check_free(kind: str, data: bytes, file: str, context: Context) -> None:
     found = next((it for it in rests if it.text.strip("/") not in shared), None)
     if found:
         what = f"{file}:{found.line} names the {found.kind} {found.text!r}"
-        raise UsageError(f"{what}; give the robot's description with --urdf (urdf=)")
+        raise UsageError(f"{what}; give the robot's description with --urdf")
 
 
 def _for_robot(

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from refusals import said
 
-from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli import build, check, explain
 from multibot_rewrite.fleet.manifest import OutputChanges
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
@@ -24,12 +24,6 @@ def options(**given: Any) -> argparse.Namespace:
         "fleet": "f.yaml",
     }
     return argparse.Namespace(**{**usual, **given})
-
-
-def said(call: Any, *given: object) -> str:
-    with pytest.raises(UsageError) as caught:
-        call(*given)
-    return str(caught.value)
 
 
 def changes(**given: Any) -> OutputChanges:

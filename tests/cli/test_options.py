@@ -166,6 +166,8 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
         ("urdf-postfix a b --separator lnk=_", "'link'"),
         ("multibot help chek", "did you mean 'check'?"),
+        ("multibot rehearse", "required: INPUT; see"),
+        ("multibot rename a b", "required: FOLDER; see"),
         (f"multibot plan {FLEET} --layout L1", "leave out --layout"),
         (f"multibot plan {FLEET} robot1", "leave out ROBOT"),
         (f"multibot plan {PARAMS} robot1", "a parameter file; rewrite it with urdf-postfix"),

@@ -6,11 +6,12 @@ import argparse
 import io
 import os
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Generator, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
+from refusals import said
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError, UsageError
@@ -22,12 +23,6 @@ from multibot_rewrite.system.records import Parameter, System
 
 def options(**given: Any) -> argparse.Namespace:
     return argparse.Namespace(**given)
-
-
-def said(call: Callable[..., object], *given: object) -> str:
-    with pytest.raises(UsageError) as caught:
-        call(*given)
-    return str(caught.value)
 
 
 # ---------------------------------------------------------------- words

@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 import small_fleet
+from refusals import said
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.model import Edit, UsageError
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.cli import check, lint, live, plan, rewrite_use, unplanned
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.system.records import System
@@ -19,12 +20,6 @@ from multibot_rewrite.system.records import System
 
 def options(**given: Any) -> argparse.Namespace:
     return argparse.Namespace(**given)
-
-
-def said(call: Callable[..., object], *given: object) -> str:
-    with pytest.raises(UsageError) as caught:
-        call(*given)
-    return str(caught.value)
 
 
 # ---------------------------------------------------------------- urdf-postfix

@@ -20,7 +20,10 @@ import pytest
 import yaml
 from lxml import etree
 from vendor_arm_pages import text_of
-from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
+from vendor_sources import (
+    VARIABLE,
+    installed_sources,
+)
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.sources.whole import read_whole
@@ -138,16 +141,7 @@ LAYOUTS = ("frames-per-robot", "both", "tf-per-robot", "postfix")
 ROBOTS = ("left", "right", "middle")
 
 
-@pytest.fixture(scope="module")
-def sources(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The folder of checkouts, with its packages to be found as installed ones."""
-    folder = sources_folder()
-    if folder is None:
-        pytest.skip(WITHOUT)
-    environment = install(packages_below(folder), tmp_path_factory.mktemp("sources") / "prefix", {})
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("AMENT_PREFIX_PATH", environment["AMENT_PREFIX_PATH"])
-        yield folder
+sources = pytest.fixture(scope="module")(installed_sources)
 
 
 # The vendor's own argument in the fleet file, filled, or left: then names are the layout's alone.

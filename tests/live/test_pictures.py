@@ -20,7 +20,6 @@ from counted_steps import growth
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
-from paths import ROOT
 from plans import own as nodes_of
 from plans import told
 
@@ -49,7 +48,6 @@ from multibot_rewrite.system.records import MAY, PUBLISHES, Caveat, Edge, Node, 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
 ABSENT = "/robot2/bt_navigator"
-DOCS = ROOT / "docs" / "report.md"
 # What a page is made of.
 TAGS = frozenset(
     re.findall(

@@ -137,6 +137,8 @@ def test_ros2_run_finds_the_programs(workspace: Path) -> None:
         done = sourced(workspace, f"{folder / name} --version")
         assert done.returncode == 0, done.stderr
         assert TOML["project"]["version"] in done.stdout
+        by_name = sourced(workspace, f"command -v {name} && {name} --version").stdout
+        assert by_name == f"{folder.parents[1] / 'bin' / name}\n{done.stdout}"
 
 
 def python(workspace: Path, code: str, *words: str) -> str:

@@ -19,7 +19,6 @@ from multibot_rewrite.producers.launch import source_packages
 LAUNCH, BRIDGE = "fleet.launch.py", "robot2/bridge.yaml"
 ROVER, WORLD = "robot2/rover.urdf", "world.sdf"
 # What is given to robot2 alone.
-OF_TWO = "robot2/{}' if name == 'robot2' else f'{{name}}/{}"
 SYSTEM = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"'
 
 

@@ -164,7 +164,6 @@ def test_a_command_of_a_joystick(command: str, count: int, tmp_path: Path) -> No
     assert linted(tmp_path, "joy.yaml", text, ("MB897",)) == [("MB897", ERROR)] * count
 
 
-ROTOR = '<rotor_params><joint name="{}" mass="1" gear_ratio="9"/></rotor_params>'
 STATE = '<group_state name="home"{}><joint name="{}" value="0"/></group_state>'
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import pytest
 from postfix_command import Result, temporaries
+
+from multibot_rewrite.base.model import UsageError
 
 STOPPED, UNUSABLE = 1, 2
 XACRO = "http://www.ros.org/wiki/xacro"
@@ -34,3 +37,10 @@ def check_refusal(folder: Path, result: Result, code: int, words: Sequence[str])
     assert result.out == b""
     assert not (folder / "out.urdf").exists()
     assert temporaries(folder) == []
+
+
+def said(call: Callable[..., object], *given: object) -> str:
+    """What a call says that refuses what it is given."""
+    with pytest.raises(UsageError) as caught:
+        call(*given)
+    return str(caught.value)

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+
+import pytest
 
 VARIABLE = "MULTIBOT_SOURCES"
 WITHOUT = f"no vendors' sources: set {VARIABLE} to a folder with their checkouts"
@@ -67,3 +69,14 @@ def install(
         ),
         "PYTHONPATH": os.pathsep.join(filter(None, (above["PYTHONPATH"], *python))),
     }
+
+
+def installed_sources(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The folder of checkouts, with its packages to be found as installed ones."""
+    folder = sources_folder()
+    if folder is None:
+        pytest.skip(WITHOUT)
+    environment = install(packages_below(folder), tmp_path_factory.mktemp("sources") / "prefix", {})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AMENT_PREFIX_PATH", environment["AMENT_PREFIX_PATH"])
+        yield folder

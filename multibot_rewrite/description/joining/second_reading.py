@@ -14,11 +14,12 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import ProofError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.links_and_joints import WORLD, end_of
+from multibot_rewrite.description.checks.links_and_joints import WORLD
 from multibot_rewrite.description.checks.poses import Pose, placed, pose_of, pose_of_six
 from multibot_rewrite.description.joining.part import ReadPart
 from multibot_rewrite.description.joining.systems import has_all, like
 from multibot_rewrite.description.readback.xml import plain, read_xml
+from multibot_rewrite.description.rewriters.text import end_of
 
 _KINDS = ("link", "joint")
 # Metres, and entries of a matrix.

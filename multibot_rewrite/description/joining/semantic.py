@@ -24,10 +24,10 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.checks.links_and_joints import end_of
 from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
 from multibot_rewrite.description.joining.touching import ALWAYS, NEVER, Touching, touching
 from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.text import end_of
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import SRDF, collect, declarations
 from multibot_rewrite.description.steps.document import read_document

@@ -17,7 +17,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.naming import POSTFIX, Naming
 from multibot_rewrite.description.rewriters.switches import is_true
-from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.text import end_of, text_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 
 # What the spawner calls the model: no frame that robot_state_publisher sends has it in front.
@@ -78,16 +78,10 @@ def _canonical_link(host: etree._Element) -> str:
     if model.tag == "model":
         first = next(model.iter("link"), None)
         return str(model.get("canonical_link") or ("" if first is None else first.get("name", "")))
-    joints = [(_end(it, "parent"), _end(it, "child")) for it in model.iterchildren("joint")]
+    joints = [(end_of(it, "parent"), end_of(it, "child")) for it in model.iterchildren("joint")]
     children = {child for parent, child in joints if parent != WORLD}
     links = (str(link.get("name", "")) for link in model.iterchildren("link"))
     return next((it for it in links if it not in children and it != WORLD), "")
-
-
-def _end(joint: etree._Element, end: str) -> str:
-    """The link at one end of a URDF's joint."""
-    found = joint.find(end)
-    return "" if found is None else found.get("link", "")
 
 
 def model_of(host: etree._Element) -> etree._Element:

@@ -40,3 +40,9 @@ def kept_joints(root: etree._Element) -> frozenset[str]:
         for tag in ("preserveFixedJoint", "disableFixedJointLumping")
         if text_at(block, tag).lower() in ("true", "yes", "1")
     )
+
+
+def end_of(joint: etree._Element, tag: str) -> str:
+    """The link at an end of a URDF's joint, its ``parent`` or ``child``; empty without one."""
+    found = joint.find(tag)
+    return "" if found is None else found.get("link", "")

@@ -12,6 +12,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import compose_yaml
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.yaml_text import pairs
 
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
 _TYPES = ("bool", "double", "int", "string", "none")
@@ -40,25 +41,19 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
         return ()
     found = [
         found
-        for owner, below in _pairs(root)
+        for owner, below in pairs(root)
         for found in _parameters(owner.value, below, ())
         if found.path
     ]
     return tuple(found)
 
 
-def _pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
-    if not isinstance(node, yaml.MappingNode):
-        return []
-    return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
-
-
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
-    keys = {key.value: value for key, value in _pairs(node)}
+    keys = {key.value: value for key, value in pairs(node)}
     if _is_type(keys.get("type")):
         yield _parameter(owner, node, path, keys)
         return
-    for key, below in _pairs(node):
+    for key, below in pairs(node):
         yield from _parameters(owner, below, (*path, _segment(key.value)))
 
 

@@ -6,13 +6,16 @@ skipped without. What a vendor's own file claims and its own description lacks i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from controller_types import registered
-from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
+from vendor_sources import (
+    VARIABLE,
+    installed_sources,
+    packages_below,
+)
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.fleet.build import make_outputs
@@ -96,16 +99,7 @@ ROBOTS = {
 }
 
 
-@pytest.fixture(scope="module")
-def sources(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The folder of checkouts, with its packages to be found as installed ones."""
-    folder = sources_folder()
-    if folder is None:
-        pytest.skip(WITHOUT)
-    environment = install(packages_below(folder), tmp_path_factory.mktemp("sources") / "prefix", {})
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("AMENT_PREFIX_PATH", environment["AMENT_PREFIX_PATH"])
-        yield folder
+sources = pytest.fixture(scope="module")(installed_sources)
 
 
 @pytest.mark.slow

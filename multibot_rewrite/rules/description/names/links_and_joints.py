@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.naming import is_keyword
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.names.shared import BLANK, TOKEN, name_of_robot, named
 from multibot_rewrite.rules.subject import Subject
@@ -97,16 +98,12 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
 def reserved_name(subject: Subject) -> Iterator[Problem]:
     """Links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
-        if _is_reserved(name) or (kind == "joint" and name == WORLD):
+        if is_keyword(name) or (kind == "joint" and name == WORLD):
             yield Problem(element, f"SDF reserves the name {name!r}: no {kind} may have it", "name")
     robot = name_of_robot(subject)
-    if robot is not None and (_is_reserved(robot) or robot == WORLD):
+    if robot is not None and (is_keyword(robot) or robot == WORLD):
         message = f"SDF reserves the name {robot!r}: no model may have it"
         yield Problem(subject.document.root, message, "name")
-
-
-def _is_reserved(name: str) -> bool:
-    return len(name) >= 4 and name.startswith("__") and name.endswith("__")
 
 
 @rule(
