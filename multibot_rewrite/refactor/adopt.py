@@ -17,7 +17,6 @@ from itertools import chain
 from types import MappingProxyType
 
 from multibot_rewrite.base.arguments import checked
-from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, affix
 from multibot_rewrite.base.record import NamedTuple
@@ -63,6 +62,7 @@ from multibot_rewrite.refactor.source_edits import (
     edited,
     expected,
     first_difference,
+    place_of,
 )
 
 _PARTS = ("link", "joint")
@@ -319,11 +319,9 @@ def _not_written(it: Description) -> Iterator[Left]:
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
-            origin = it.read.origins.of(document.elements.index(one.parent))
-            source = it.read.sources[origin.file] if origin else b""
-            where = (origin.file, *locate(source, origin.start)) if origin else (it.path,)
+            where = place_of(it.read, document.elements.index(one.parent)) or it.path
             what = f"it takes {one.old!r} where no element says a {one.kind}; write it out"
-            yield Left(":".join(map(str, where)), what)
+            yield Left(where, what)
 
 
 def _fault(

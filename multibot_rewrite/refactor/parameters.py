@@ -48,22 +48,25 @@ def fillable(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, urdfs[0])
-            starts = sorted(set(_starts(file, names)), reverse=True)
+            starts = set(starts_of(file, names, PREFIXED))
             if starts:
-                texts = (_with(file.text, starts, it) for it in (f"$(var {argument})", tried))
+                words = (f"$(var {argument})", tried)
+                texts = (respelled(file.text, starts, 0, it) for it in words)
                 found[name] = Filled(path, data, *texts)
     return found
 
 
-def _starts(file: NamedFile, names: Collection[str]) -> Iterator[int]:
+def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -> Iterator[int]:
+    """Where in the text of a file names of these kinds begin."""
     for site in file.names:
-        if site.text in names and {site.kind, *KINDS.get(site.kind, ())} & set(PREFIXED):
+        if site.text in names and not {site.kind, *KINDS.get(site.kind, ())}.isdisjoint(kinds):
             start = file.text.find(site.text, site.slot.start + site.at, site.slot.end)
             if start >= 0:
                 yield start
 
 
-def _with(text: str, starts: Sequence[int], word: str) -> bytes:
-    for at in starts:
-        text = text[:at] + word + text[at:]
+def respelled(text: str, starts: Collection[int], size: int, word: str) -> bytes:
+    """A text with a word in place of so many characters from each start."""
+    for at in sorted(starts, reverse=True):
+        text = text[:at] + word + text[at + size :]
     return text.encode()

@@ -21,13 +21,12 @@ from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.rename_map import KINDS as DECLARED
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.refactor.named_elsewhere import files_below
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -36,6 +35,7 @@ from multibot_rewrite.refactor.package import (
     read_package,
     read_text,
 )
+from multibot_rewrite.refactor.parameters import respelled, starts_of
 from multibot_rewrite.refactor.source_edits import (
     Change,
     Composed,
@@ -44,6 +44,7 @@ from multibot_rewrite.refactor.source_edits import (
     edited,
     expected,
     first_difference,
+    place,
     source_edit,
     spans,
 )
@@ -189,9 +190,7 @@ def _in_place(it: Description, change: Change) -> SourceEdit:
     document = it.inventory.document
     span = next(spans(document, [change]))
     if span is None:
-        where = ":".join(
-            map(str, (it.path, *locate(document.source, document.starts[change.element])))
-        )
+        where = place(it.path, document.source, document.starts[change.element])
         raise InputError(
             f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
         )
@@ -245,46 +244,17 @@ def _beside(
         if symbol.old.encode() not in data or os.path.realpath(path) in after:
             continue
         with suppress(MultibotError):
-            starts = set(_starts(names_in_file(data, path, described), symbol))
+            file = names_in_file(data, path, described)
+            starts = set(starts_of(file, (symbol.old,), KINDS[symbol.kind]))
             if starts:
-                yield (
-                    path,
-                    (_replaced(data.decode(), starts, symbol), len(starts)),
-                )
-
-
-def _starts(file: NamedFile, symbol: _Symbol) -> Iterator[int]:
-    """Where in the text of a file the name is."""
-    for site in file.names:
-        if site.text == symbol.old and {*KINDS[symbol.kind]} & {
-            site.kind,
-            *DECLARED.get(site.kind, ()),
-        }:
-            start = file.text.find(symbol.old, site.slot.start + site.at, site.slot.end)
-            if start >= 0:
-                yield start
-
-
-def _replaced(text: str, starts: Iterable[int], symbol: _Symbol) -> bytes:
-    for start in sorted(starts, reverse=True):
-        text = text[:start] + symbol.new + text[start + len(symbol.old) :]
-    return text.encode()
+                text = respelled(file.text, starts, len(symbol.old), symbol.new)
+                yield path, (text, len(starts))
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
     """Lines that have the name, of files that do not change."""
     word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
-    for folder in package.found.folders:
-        for above, folders, names in os.walk(folder):
-            folders[:] = sorted(it for it in folders if it[0] != ".")
-            for name in sorted(names):
-                path = os.path.normpath(os.path.join(above, name))
-                if (
-                    name.endswith(_TEXTS)
-                    and os.path.isfile(path)
-                    and os.path.realpath(path) not in changed
-                ):
-                    data = read_bytes(path)
-                    yield from (
-                        f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data)
-                    )
+    for path in chain.from_iterable(files_below(it, _TEXTS) for it in package.found.folders):
+        if os.path.realpath(path) not in changed:
+            data = read_bytes(path)
+            yield from (f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data))
