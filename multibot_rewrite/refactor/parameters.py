@@ -51,7 +51,7 @@ def fillable(
             starts = set(starts_of(file, names, PREFIXED))
             if starts:
                 words = (f"$(var {argument})", tried)
-                texts = (respelled(file.text, starts, 0, it) for it in words)
+                texts = (respelled(file, data, starts, 0, it) for it in words)
                 found[name] = Filled(path, data, *texts)
     return found
 
@@ -65,8 +65,11 @@ def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -
                 yield start
 
 
-def respelled(text: str, starts: Collection[int], size: int, word: str) -> bytes:
-    """A text with a word in place of so many characters from each start."""
+def respelled(file: NamedFile, data: bytes, starts: Collection[int], size: int, word: str) -> bytes:
+    """The bytes of a file with a word in place of so many characters from each start of its text."""
+    text = file.text
+    # A byte order mark is none of the text.
+    mark = data[: len(data) - len(text.encode())]
     for at in sorted(starts, reverse=True):
         text = text[:at] + word + text[at + size :]
-    return text.encode()
+    return mark + text.encode()

@@ -247,8 +247,8 @@ def _beside(
             file = names_in_file(data, path, described)
             starts = set(starts_of(file, (symbol.old,), KINDS[symbol.kind]))
             if starts:
-                text = respelled(file.text, starts, len(symbol.old), symbol.new)
-                yield path, (text, len(starts))
+                made = respelled(file, data, starts, len(symbol.old), symbol.new)
+                yield path, (made, len(starts))
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:

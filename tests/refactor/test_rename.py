@@ -42,16 +42,18 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(package: Path) -> None:
+@pytest.mark.parametrize("mark", ["", "\ufeff"], ids=["plain", "byte order mark"])
+def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(
+    package: Path, mark: str
+) -> None:
+    (package / "controllers.yaml").write_text(mark + CONTROLLERS)
     made = rename_symbol("base_link", "chassis", str(package))
     robot = ROBOT.replace('value="base_link"', 'value="chassis"').replace(
         'parent="base_link"', 'parent="chassis"'
     )
     assert {Path(path).name: data.decode() for path, data in made.after.items()} == {
         "r.urdf.xacro": robot,
-        "controllers.yaml": CONTROLLERS.replace(
-            "base_frame_id: base_link", "base_frame_id: chassis"
-        ),
+        "controllers.yaml": mark + CONTROLLERS.replace("base_link", "chassis"),
     }
     assert made.places == 3
     assert made.mentions == (f"{package}/node.py:1",)
