@@ -14,6 +14,7 @@ from multibot_rewrite.base.record import NamedTuple
 PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
 URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"
 FLEET, PLAN, SNAPSHOT, LAUNCH, BAG, MAP = "fleet", "plan", "snapshot", "launch", "bag", "map"
+BUILT, RULES = "built", "rules"
 DESCRIPTIONS = (URDF, XACRO, SDF)
 _LOOKED_AT = 200_000
 
@@ -45,6 +46,8 @@ KINDS: Mapping[str, FileKind] = {
     LAUNCH: FileKind("a launch file", "use multibot check-launch, or multibot plan"),
     BAG: FileKind("a recording", "use multibot check --bag"),
     MAP: FileKind("a map for map_server", "it holds no robot's name, leave it out"),
+    BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
+    RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
 }
 _XML = (
     (LAUNCH, lazy_compile(rb"<launch[\s>]", 0)),
@@ -83,15 +86,18 @@ BESIDE = (
     (TREE, _XML[1][1]),
     (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
 )
-# What follows ``robots:`` in a fleet file is a list; a plan has the ways of its rules besides.
+# What follows ``robots:`` in a fleet file is a list; a plan has keys of its own besides, and rules
+# alone have no more than a layout and a release.
 _ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
 _OTHERS = (
     (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (PLAN, lazy_compile(rb"^robots:(?=.*^ways:)", re.MULTILINE | re.DOTALL)),
+    (PLAN, lazy_compile(rb"^(?:ignored_nodes|ways):", re.MULTILINE)),
+    (RULES, lazy_compile(rb"^layout:[^\n]*\n(?:distro:[^\n]*\n)?robots:", re.MULTILINE)),
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
 )
+_BUILT = b'"format": "multibot build'
 _SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
 _BAGS = (b"\x89MCAP0\r\n", b"SQLite format 3\0")
 
@@ -104,6 +110,8 @@ def recognised(data: bytes) -> str:
     if text.startswith(b"<"):
         return _first(_XML, text)
     if text.startswith(b"{"):
+        if _BUILT in text:
+            return BUILT
         ends = _SNAPSHOT.search(text)
         if b'"ways"' in text or (ends and b'"layout"' in text):
             return PLAN

@@ -9,6 +9,7 @@ import pytest
 from multibot_rewrite.base.file_kinds import KINDS, recognised, refuse_others
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchOrder
@@ -31,6 +32,8 @@ TEXTS = {
     "lua": 'options = {\n  map_frame = "map",\n}\n',
     "fleet": "layout: postfix\nrobots:\n  # two\n  - {name: robot1, description: a.urdf}\n",
     "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\nways: {}\n",
+    "built": '{\n "format": "multibot build 1",\n "robots": {"robot1": "robot1"}}',
+    "rules": "layout: postfix\ndistro: jazzy\nrobots:\n  robot1:\n    amcl: []\n",
     "snapshot": '{"schema": 2, "nodes": []}',
     "bag": "rosbag2_bagfile_information:\n  version: 5\n",
     "map": "image: hall.pgm\nmode: trinary\nresolution: 0.05\n",
@@ -84,6 +87,19 @@ def test_a_launch_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
 def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
     (it,) = lint_data(name, TEXTS[kind].encode(), Settings())
     assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
+
+
+def test_a_plan_is_known_without_the_ways_of_its_rules() -> None:
+    plan = "layout: postfix\nshared_nodes: {}\nignored_nodes: []\nrobots:\n  robot1: {}\n"
+    assert recognised(plan.encode()) == "plan"
+
+
+@pytest.mark.parametrize("kind", ["params", "rviz"])
+def test_a_fleet_file_is_not_made_of_another_file_alone(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"x.{'rviz' if kind == 'rviz' else 'yaml'}"
+    path.write_text(TEXTS[kind])
+    with pytest.raises(InputError, match=KINDS[kind].words):
+        search([str(path)])
 
 
 def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
@@ -94,6 +95,8 @@ def search(paths: Sequence[str]) -> Found:
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
+    if meant and not homes:
+        refuse_others(data_of_file(meant[0]), meant[0])
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):

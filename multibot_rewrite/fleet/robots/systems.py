@@ -85,7 +85,7 @@ def system_before(
             ends=tuple(_ends_of(robot, nodes, given, reading)),
             edges=tuple(_edges_of(robot, nodes, evidence, sent)),
             environment=DRIVERS,
-            lookups=tuple(_lookups(plain, evidence.known, said, sent)),
+            lookups=tuple(_lookups(plain, nodes, evidence.known, said, sent)),
         ),
     )
 
@@ -132,14 +132,20 @@ def _control(
 
 
 def _lookups(
-    given: Iterable[GivenNode],
+    given: Sequence[GivenNode],
+    nodes: Sequence[NodeFacts],
     known: Mapping[str, NodeFacts],
     said: Semantics,
     sent: Container[str],
 ) -> Iterator[Lookup]:
+    runs = {it.name: it for it in nodes}
     for it in given:
-        if it.known in known:
-            yield from lookups_of(f"/{it.name}", known[it.known], it.values)
+        # A costmap is known as a part of the server that has it.
+        if facts := known.get(it.known, runs.get(it.name)):
+            yield from lookups_of(f"/{it.name}", facts, it.values)
+    filed = {it.name for it in given}
+    for node in (it for it in nodes if it.name not in filed):
+        yield from lookups_of(f"/{node.name}", node, {})
     yield from (it for it in virtual_lookups(said) if it.frame not in sent)
 
 
