@@ -23,6 +23,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
+from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
@@ -117,7 +118,7 @@ def rename_symbol(
         raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
-    _check_free(symbol, package)
+    _check_free(symbol, package, changes)
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     sources = _sources(edits, package)
     after = edited(sources, edits)
@@ -142,24 +143,23 @@ def _check(symbol: _Symbol) -> None:
 
 
 def _named(symbol: _Symbol, package: Package) -> str:
-    known = {
-        name.text
-        for it in package.descriptions
-        for names in it.inventory.names
-        for name in names
-        if name.kind in KINDS[symbol.kind]
-    }
-    near = did_you_mean_one_of(symbol.old, sorted(known))
+    every = (_known(it, KINDS[symbol.kind]) for it in package.descriptions)
+    near = did_you_mean_one_of(symbol.old, sorted({it.text for it in chain.from_iterable(every)}))
     return f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
 
 
-def _check_free(symbol: _Symbol, package: Package) -> None:
-    """The new name is not that of another one."""
+def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
+    """The names of these kinds that are in a description: one that is nowhere declared is of none."""
+    return (one for one in chain.from_iterable(it.inventory.names) if one.kind in kinds)
+
+
+def _check_free(symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]]) -> None:
+    """The new name is not that of another one; a link is a frame, too."""
+    kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
-        for kind in KINDS[symbol.kind]:
-            claim = it.inventory.declared.get(kind, {}).get(symbol.new)
-            if claim is not None:
-                raise UsageError(f"{it.path} has a {kind} {symbol.new!r} already")
+        taken = [one for one in _known(it, kinds) if one.text == symbol.new]
+        if changes[it.path] and taken:
+            raise UsageError(f"{it.path} has a {taken[0].kind} {symbol.new!r} already")
 
 
 def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:

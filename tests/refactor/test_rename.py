@@ -184,3 +184,34 @@ def test_the_command_writes_all_or_shows_it(
     assert main(words) == 0
     assert "base_frame_id: chassis" in (package / "controllers.yaml").read_text()
     assert 'value="chassis"' in (package / "r.urdf.xacro").read_text()
+
+
+DRIVEN = """<robot name="r"><link name="base"/><gazebo>
+<plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>cmd_vel:=go</remapping>
+<remapping>odom:=wheels</remapping></ros><odometry_frame>odom</odometry_frame>
+<robot_base_frame>base</robot_base_frame></plugin></gazebo><gazebo reference="arm"/></robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kind", "taken"),
+    [
+        ("go", "wheels", "topic", "topic"),
+        ("odom", "base", "frame", "link"),
+        ("base", "odom", "link", "frame"),
+    ],
+)
+def test_a_name_that_is_only_used_is_taken_too(
+    tmp_path: Path, old: str, new: str, kind: str, taken: str
+) -> None:
+    (tmp_path / "r.urdf").write_text(DRIVEN)
+    with pytest.raises(UsageError, match=f"r.urdf has a {taken} '{new}' already"):
+        rename_symbol(old, new, str(tmp_path), kind=kind)
+
+
+def test_a_link_that_is_missed_and_a_name_of_another_robot_are_free(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(DRIVEN)
+    (tmp_path / "other.urdf").write_text('<robot name="other"><link name="palm"/></robot>')
+    for new in ("arm", "palm"):
+        made = rename_symbol("base", new, str(tmp_path))
+        assert [Path(it).name for it in made.after] == ["r.urdf"]
