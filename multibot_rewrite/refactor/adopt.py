@@ -52,6 +52,7 @@ from multibot_rewrite.refactor.package import (
     inventory_of,
     read_package,
     read_text,
+    texts_of,
 )
 from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
@@ -136,7 +137,7 @@ def _with_files_beside(
         folder, there.launch, made.argument, made.after, TRIED, trust, filled, space
     )
     # A plain description that becomes a xacro is one of them.
-    files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
+    files = {file for it in found for file in (*it.sources, it.path.removesuffix(".xacro"))}
     files |= {it.path for it in filled.values() if it.path in launches.after}
     elsewhere = [*named_elsewhere(folder, names, set(map(os.path.realpath, files)))]
     elsewhere += root_sections(there.params) if made.namespace else ()
@@ -201,7 +202,7 @@ def _with_namespace(
 ) -> Adopted:
     """With the argument for a namespace, too, where one changes names alone; ``own`` are arguments that
     descriptions have for that already, by their paths."""
-    texts = {os.path.realpath(path): data for it in found for path, data in _sources(it).items()}
+    texts = texts_of(found)
     prefix = free_name(found)
     has = (
         Left(path, f"it has an argument for a namespace: {it}") for path, it in own.items() if it
@@ -224,11 +225,6 @@ def _with_namespace(
 
 def _is_srdf(it: Description) -> bool:
     return it.inventory.format != "robot"
-
-
-def _sources(it: Description) -> Mapping[str, bytes]:
-    """The files that make a description."""
-    return it.read.sources if it.read else {}
 
 
 def _is_meant(it: Description) -> bool:

@@ -35,6 +35,7 @@ from multibot_rewrite.refactor.package import (
     as_named,
     read_package,
     read_text,
+    texts_of,
 )
 from multibot_rewrite.refactor.parameters import respelled, starts_of
 from multibot_rewrite.refactor.source_edits import (
@@ -119,9 +120,15 @@ def rename_symbol(
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
     _check_free(symbol, package, changes)
+    return _renamed(symbol, package, changes, how)
+
+
+def _renamed(
+    symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]], how: Expanding
+) -> Renaming:
+    """The package with the changes of its descriptions made, by their paths, and the files beside."""
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
-    sources = _sources(edits, package)
-    after = edited(sources, edits)
+    after = edited(texts_of(package.descriptions), edits)
     _prove(package, changes, after, how)
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
@@ -195,17 +202,6 @@ def _in_place(it: Description, change: Change) -> SourceEdit:
             f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
         )
     return SourceEdit(os.path.realpath(it.path), *span)
-
-
-def _sources(edits: Iterable[SourceEdit], package: Package) -> dict[str, bytes]:
-    """The bytes of each file that is edited, by real path, as it was read."""
-    known: dict[str, bytes] = {}
-    for it in package.descriptions:
-        texts = it.read.sources if it.read else {it.path: it.inventory.document.source}
-        known.update({os.path.realpath(path): data for path, data in texts.items()})
-    outside = sorted({it.file for it in edits} - known.keys())
-    assert not outside, outside
-    return {it.file: known[it.file] for it in edits}
 
 
 def _prove(
