@@ -93,15 +93,7 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
     if options.words[0].endswith(JOIN):
         yield from _listed(options)
         return
-    files: list[tuple[str, dict[str, str]]] = []
-    for word in options.words:
-        name, is_argument, text = word.partition(":=")
-        if not is_argument:
-            files.append((word, {}))
-        elif not files:
-            raise UsageError(f"{word}: write it behind the xacro that it is for")
-        else:
-            files[-1][1][name] = text
+    files = _files(options.words)
     many = len(files)
     ends = _for_each("--at", options.at, many)
     poses = _for_each("--pose", options.pose, many)
@@ -115,6 +107,19 @@ def _parts(options: argparse.Namespace) -> Iterator[Part]:
         where = at, _numbers(pose), prefix
         some, others = (tuple(filter(None, it.split(","))) for it in (yaml, plans))
         yield Part(file, *where, "", given, srdf or None, some, options.one_system, others, window)
+
+
+def _files(words: Sequence[str]) -> list[tuple[str, dict[str, str]]]:
+    files: list[tuple[str, dict[str, str]]] = []
+    for word in words:
+        name, is_argument, text = word.partition(":=")
+        if not is_argument:
+            files.append((word, {}))
+        elif not files:
+            raise UsageError(f"{word}: write it behind the xacro that it is for")
+        else:
+            files[-1][1][name] = text
+    return files
 
 
 def _listed(options: argparse.Namespace) -> Sequence[Part]:

@@ -17,7 +17,6 @@ from itertools import chain
 from types import MappingProxyType
 
 from multibot_rewrite.base.arguments import checked
-from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, affix
 from multibot_rewrite.base.record import NamedTuple
@@ -53,6 +52,7 @@ from multibot_rewrite.refactor.package import (
     inventory_of,
     read_package,
     read_text,
+    texts_of,
 )
 from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
@@ -63,6 +63,7 @@ from multibot_rewrite.refactor.source_edits import (
     edited,
     expected,
     first_difference,
+    place_of,
 )
 
 _PARTS = ("link", "joint")
@@ -136,7 +137,7 @@ def _with_files_beside(
         folder, there.launch, made.argument, made.after, TRIED, trust, filled, space
     )
     # A plain description that becomes a xacro is one of them.
-    files = {file for it in found for file in (*_sources(it), it.path.removesuffix(".xacro"))}
+    files = {file for it in found for file in (*it.sources, it.path.removesuffix(".xacro"))}
     files |= {it.path for it in filled.values() if it.path in launches.after}
     elsewhere = [*named_elsewhere(folder, names, set(map(os.path.realpath, files)))]
     elsewhere += root_sections(there.params) if made.namespace else ()
@@ -201,7 +202,7 @@ def _with_namespace(
 ) -> Adopted:
     """With the argument for a namespace, too, where one changes names alone; ``own`` are arguments that
     descriptions have for that already, by their paths."""
-    texts = {os.path.realpath(path): data for it in found for path, data in _sources(it).items()}
+    texts = texts_of(found)
     prefix = free_name(found)
     has = (
         Left(path, f"it has an argument for a namespace: {it}") for path, it in own.items() if it
@@ -224,11 +225,6 @@ def _with_namespace(
 
 def _is_srdf(it: Description) -> bool:
     return it.inventory.format != "robot"
-
-
-def _sources(it: Description) -> Mapping[str, bytes]:
-    """The files that make a description."""
-    return it.read.sources if it.read else {}
 
 
 def _is_meant(it: Description) -> bool:
@@ -319,11 +315,9 @@ def _not_written(it: Description) -> Iterator[Left]:
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
-            origin = it.read.origins.of(document.elements.index(one.parent))
-            source = it.read.sources[origin.file] if origin else b""
-            where = (origin.file, *locate(source, origin.start)) if origin else (it.path,)
+            where = place_of(it.read, document.elements.index(one.parent)) or it.path
             what = f"it takes {one.old!r} where no element says a {one.kind}; write it out"
-            yield Left(":".join(map(str, where)), what)
+            yield Left(where, what)
 
 
 def _fault(

@@ -23,7 +23,7 @@ _TAKEN = ("{*}arg", "{*}property", "{*}macro")
 def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
     """A name that no argument, property or parameter of a macro has."""
     taken: set[str] = set()
-    sources = {file: data for it in found if it.read for file, data in it.read.sources.items()}
+    sources = {file: data for it in found for file, data in it.sources.items()}
     # YAML that an expression loads is among them.
     for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
         for element in read_document(data, file).root.iter(*_TAKEN):

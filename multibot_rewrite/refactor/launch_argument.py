@@ -11,8 +11,8 @@ from __future__ import annotations
 import ast
 import os
 import re
-from collections.abc import Callable, Collection, Iterator
-from itertools import chain
+from collections.abc import Callable, Collection, Iterable, Iterator
+from itertools import accumulate, chain
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.record import NamedTuple
@@ -36,6 +36,7 @@ OF_ROBOT = (
     "controller_manager",
 )
 _NODE = rb"<node\b[^>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
+_Placed = ast.expr | ast.stmt | ast.keyword
 # Spawners of simulators read the topic that follows: in the namespace, if it is relative.
 _TOPIC = "robot_description"
 _OWN_SPACE = re.compile(rb"namespace", re.IGNORECASE)
@@ -79,13 +80,8 @@ def with_argument(
         place = f"{path}:{locate(source, own.start())[0]}"
         left = Left(place, "it has a namespace; give that to its xacro by hand")
         return made._replace(left=(*made.left, left)) if made.data else made
-    if path.endswith(".xml"):
-        return _of_xml(path, source, argument, parameters, space)
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return LaunchEdit(None, (Left(path, "it is no Python"),))
-    return _of_python(path, source, tree, argument, parameters, space)
+    change = _of_xml if path.endswith(".xml") else _of_python
+    return change(path, source, argument, parameters, space)
 
 
 def _both(argument: str, space: Space | None) -> tuple[list[str], list[str]]:
@@ -118,49 +114,65 @@ def _of_xml(
     return LaunchEdit(edited({path: source}, edits)[path], (), tuple(filled), space is not None)
 
 
+class _Text(NamedTuple):
+    """A launch file in Python, with the offsets at which its lines begin."""
+
+    path: str
+    source: bytes
+    tree: ast.Module
+    lines: list[int]
+
+    def begin(self, node: _Placed) -> int:
+        return self.lines[node.lineno - 1] + node.col_offset
+
+    def end(self, node: _Placed) -> int:
+        return self.lines[(node.end_lineno or 1) - 1] + (node.end_col_offset or 0)
+
+    def insert(self, at: int, text: str) -> SourceEdit:
+        return SourceEdit(self.path, at, at, text.encode())
+
+
 def _of_python(
-    path: str,
-    source: bytes,
-    tree: ast.Module,
-    argument: str,
-    parameters: Collection[str],
-    space: Space | None,
+    path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
 ) -> LaunchEdit:
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return LaunchEdit(None, (Left(path, "it is no Python"),))
+    lines = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
+    it = _Text(path, source, tree, lines)
     every, of_xacro = _both(argument, space)
-    lines = [0]
-    for line in source.splitlines(keepends=True):
-        lines.append(lines[-1] + len(line))
-
-    def at(line: int | None, column: int | None) -> int:
-        return lines[(line or 1) - 1] + (column or 0)
-
     commands = list(_lists_of(tree, "Command", _runs_xacro))
     actions = next(_lists_of(tree, "LaunchDescription", lambda _: True), None)
     if not commands or actions is None or not actions.elts:
         return LaunchEdit(None, (_left(path, source, b"xacro"),))
-    given = "".join(f', " {it}:=", LaunchConfiguration("{it}")' for it in of_xacro).encode()
-    ends = [at(it.elts[-1].end_lineno, it.elts[-1].end_col_offset) for it in commands]
-    edits = [SourceEdit(path, end, end, given) for end in ends]
-    first = at(actions.elts[0].lineno, actions.elts[0].col_offset)
-    gap = source[at(actions.lineno, actions.col_offset) + 1 : first]
-    gap = gap or b" "
-    declared = [f'DeclareLaunchArgument("{it}", default_value=""),'.encode() + gap for it in every]
-    edits.append(SourceEdit(path, first, first, b"".join(declared)))
-    for package in _nodes_of_robot(tree) if space else ():
-        end = at(package.end_lineno, package.end_col_offset)
-        indent = source[lines[package.lineno - 1] : at(package.lineno, package.col_offset)]
-        gap = b" " if indent.strip() else b"\n" + indent
-        inside = b',%snamespace=LaunchConfiguration("%s")' % (gap, every[-1].encode())
-        edits.append(SourceEdit(path, end, end, inside))
-    given_files = {it: found for it in parameters if (found := list(_given(tree, it)))}
-    for it in chain.from_iterable(given_files.values()):
-        begin, end = at(it.lineno, it.col_offset), at(it.end_lineno, it.end_col_offset)
-        edits.append(SourceEdit(path, begin, begin, b"ParameterFile("))
-        edits.append(SourceEdit(path, end, end, b", allow_substs=True)"))
-    used = [*_IMPORTS, *(["ParameterFile"] if given_files else [])]
-    edits += _imports(path, tree, at, used)
+    given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
+    edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
+    edits.append(_declared(it, actions, every))
+    edits += _spaced(it, space.name) if space else ()
+    files = {name: found for name in parameters if (found := list(_given(tree, name)))}
+    for one in chain.from_iterable(files.values()):
+        edits.append(it.insert(it.begin(one), "ParameterFile("))
+        edits.append(it.insert(it.end(one), ", allow_substs=True)"))
+    edits += _imports(it, [*_IMPORTS, *(["ParameterFile"] if files else [])])
     data = edited({path: source}, edits)[path]
-    return LaunchEdit(data, (), tuple(given_files), space is not None)
+    return LaunchEdit(data, (), tuple(files), space is not None)
+
+
+def _declared(it: _Text, actions: ast.List, arguments: Iterable[str]) -> SourceEdit:
+    """The arguments, declared before the first action, each as far from the next as that is."""
+    first = it.begin(actions.elts[0])
+    gap = it.source[it.begin(actions) + 1 : first].decode() or " "
+    every = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in arguments)
+    return it.insert(first, "".join(every))
+
+
+def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
+    """A namespace for what belongs to the description."""
+    for package in _nodes_of_robot(it.tree):
+        indent = it.source[it.lines[package.lineno - 1] : it.begin(package)].decode()
+        gap = " " if indent.strip() else f"\n{indent}"
+        yield it.insert(it.end(package), f',{gap}namespace=LaunchConfiguration("{space}")')
 
 
 def _nodes_of_robot(tree: ast.Module) -> Iterator[ast.keyword]:
@@ -210,26 +222,15 @@ def _is_said(node: ast.AST, file: str) -> bool:
     return os.path.basename(node.value) == file
 
 
-def _imports(
-    path: str,
-    tree: ast.Module,
-    at: Callable[[int | None, int | None], int],
-    used: Collection[str],
-) -> Iterator[SourceEdit]:
+def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
     """Imports of what the argument needs, after those that are there."""
-    known = {
-        it.asname or it.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom)
-        for it in node.names
-    }
-    last = [it for it in tree.body if isinstance(it, (ast.Import, ast.ImportFrom))][-1]
-    end = at(last.end_lineno, last.end_col_offset)
+    froms = [one for one in ast.walk(it.tree) if isinstance(one, ast.ImportFrom)]
+    known = {name.asname or name.name for one in froms for name in one.names}
+    last = [one for one in it.tree.body if isinstance(one, (ast.Import, ast.ImportFrom))][-1]
     homes = {**_IMPORTS, "ParameterFile": "launch_ros.parameter_descriptions"}
-    missing = [(homes[name], name) for name in used if name not in known]
-    text = "".join(f"\nfrom {home} import {name}" for home, name in missing)
+    text = "".join(f"\nfrom {homes[name]} import {name}" for name in used if name not in known)
     if text:
-        yield SourceEdit(path, end, end, text.encode())
+        yield it.insert(it.end(last), text)
 
 
 def _lists_of(

@@ -32,7 +32,7 @@ def named_elsewhere(
     some = "|".join(re.escape(it) for it in sorted(names, key=len, reverse=True))
     literal = re.compile(rf"([\"'])({some})\1".encode())
     word = re.compile(rf"(?<![\w./$-])()({some})(?![\w./-])".encode())
-    for path in _files(folder):
+    for path in files_below(folder, (*_CODE, *_DATA)):
         if os.path.realpath(path) in without:
             continue
         pattern = literal if path.endswith(_CODE) else word
@@ -66,9 +66,11 @@ def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
         yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
 
 
-def _files(folder: str) -> Iterator[str]:
+def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
+    """The files with such endings, without those that a build made."""
     for at, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
         for name in sorted(names):
-            if name.endswith((*_CODE, *_DATA)):
-                yield os.path.normpath(os.path.join(at, name))
+            path = os.path.normpath(os.path.join(at, name))
+            if name.endswith(endings) and os.path.isfile(path):
+                yield path

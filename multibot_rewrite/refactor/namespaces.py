@@ -14,7 +14,6 @@ from itertools import zip_longest
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.base.record import NamedTuple
@@ -30,7 +29,7 @@ from multibot_rewrite.description.steps.inserted import elements_of, lead_of
 from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of, place
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
@@ -80,7 +79,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
     edits, left = list(made.edits), [*left, *made.left]
     for (file, start), wanted in _added(every).items():
         if len(wanted) > 1:
-            where = ":".join(map(str, (file, *locate(texts[file], start))))
+            where = place(file, texts[file], start)
             left.append(Left(where, "its copies need different ROS names; write them out"))
         else:
             edits += _edits(file, texts[file], start, next(iter(wanted)), argument)

@@ -43,6 +43,11 @@ class Description(NamedTuple):
         """Its path, with its arguments."""
         return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
+    @property
+    def sources(self) -> Mapping[str, bytes]:
+        """The files that make it."""
+        return self.read.sources if self.read else {self.path: self.inventory.document.source}
+
 
 class Package(NamedTuple):
     """What a folder has: its files by kind, its descriptions, SRDFs among them, and those that could
@@ -104,10 +109,14 @@ def _lacks(pair: Inventory) -> int:
     return sum(not name.kind for names in pair.names for name in names)
 
 
+def texts_of(descriptions: Iterable[Description]) -> dict[str, bytes]:
+    """The bytes of all files that make the descriptions, by their real paths."""
+    every = (pair for it in descriptions for pair in it.sources.items())
+    return {os.path.realpath(path): data for path, data in every}
+
+
 def as_named(files: Mapping[str, bytes], descriptions: Iterable[Description]) -> dict[str, bytes]:
     """Files by the paths that they were read under, in place of their real ones."""
-    read = (
-        name for it in descriptions for name in (it.path, *(it.read.sources if it.read else ()))
-    )
+    read = (name for it in descriptions for name in (it.path, *it.sources))
     named = {os.path.realpath(name): name for name in read}
     return {named.get(path, path): data for path, data in files.items()}

@@ -48,22 +48,28 @@ def fillable(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, urdfs[0])
-            starts = sorted(set(_starts(file, names)), reverse=True)
+            starts = set(starts_of(file, names, PREFIXED))
             if starts:
-                texts = (_with(file.text, starts, it) for it in (f"$(var {argument})", tried))
+                words = (f"$(var {argument})", tried)
+                texts = (respelled(file, data, starts, 0, it) for it in words)
                 found[name] = Filled(path, data, *texts)
     return found
 
 
-def _starts(file: NamedFile, names: Collection[str]) -> Iterator[int]:
+def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -> Iterator[int]:
+    """Where in the text of a file names of these kinds begin."""
     for site in file.names:
-        if site.text in names and {site.kind, *KINDS.get(site.kind, ())} & set(PREFIXED):
+        if site.text in names and not {site.kind, *KINDS.get(site.kind, ())}.isdisjoint(kinds):
             start = file.text.find(site.text, site.slot.start + site.at, site.slot.end)
             if start >= 0:
                 yield start
 
 
-def _with(text: str, starts: Sequence[int], word: str) -> bytes:
-    for at in starts:
-        text = text[:at] + word + text[at:]
-    return text.encode()
+def respelled(file: NamedFile, data: bytes, starts: Collection[int], size: int, word: str) -> bytes:
+    """The bytes of a file with a word in place of so many characters from each start of its text."""
+    text = file.text
+    # A byte order mark is none of the text.
+    mark = data[: len(data) - len(text.encode())]
+    for at in sorted(starts, reverse=True):
+        text = text[:at] + word + text[at + size :]
+    return mark + text.encode()

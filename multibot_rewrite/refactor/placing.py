@@ -14,13 +14,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, tag_end
 from multibot_rewrite.refactor.package import Description
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, place_of
 
 # A file and an offset in it.
 Spot = tuple[str, int]
@@ -70,8 +69,9 @@ def placed(
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
         if spot is None or (spot == name.made and spot in others):
-            place = _place(found[name.of], name.change)
-            made.left.append(Left(place, f"{name.change.value!r} is put together"))
+            it = found[name.of]
+            where = place_of(it.read, name.change.element) or it.path
+            made.left.append(Left(where, f"{name.change.value!r} is put together"))
             continue
         made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
@@ -183,10 +183,3 @@ def _not_alone(names: Iterable[_Name]) -> set[Spot | None]:
         if it.change is None:
             found.add(it.made)
     return found
-
-
-def _place(it: Description, change: Change) -> str:
-    origin = it.read and it.read.origins.of(change.element)
-    if not it.read or not origin:
-        return it.path
-    return ":".join(map(str, (origin.file, *locate(it.read.sources[origin.file], origin.start))))

@@ -21,13 +21,13 @@ from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.rename_map import KINDS as DECLARED
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
+from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.refactor.named_elsewhere import files_below
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -35,7 +35,9 @@ from multibot_rewrite.refactor.package import (
     as_named,
     read_package,
     read_text,
+    texts_of,
 )
+from multibot_rewrite.refactor.parameters import respelled, starts_of
 from multibot_rewrite.refactor.source_edits import (
     Change,
     Composed,
@@ -44,6 +46,7 @@ from multibot_rewrite.refactor.source_edits import (
     edited,
     expected,
     first_difference,
+    place,
     source_edit,
     spans,
 )
@@ -116,10 +119,16 @@ def rename_symbol(
         raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
-    _check_free(symbol, package)
+    _check_free(symbol, package, changes)
+    return _renamed(symbol, package, changes, how)
+
+
+def _renamed(
+    symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]], how: Expanding
+) -> Renaming:
+    """The package with the changes of its descriptions made, by their paths, and the files beside."""
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
-    sources = _sources(edits, package)
-    after = edited(sources, edits)
+    after = edited(texts_of(package.descriptions), edits)
     _prove(package, changes, after, how)
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
@@ -141,24 +150,23 @@ def _check(symbol: _Symbol) -> None:
 
 
 def _named(symbol: _Symbol, package: Package) -> str:
-    known = {
-        name.text
-        for it in package.descriptions
-        for names in it.inventory.names
-        for name in names
-        if name.kind in KINDS[symbol.kind]
-    }
-    near = did_you_mean_one_of(symbol.old, sorted(known))
+    every = (_known(it, KINDS[symbol.kind]) for it in package.descriptions)
+    near = did_you_mean_one_of(symbol.old, sorted({it.text for it in chain.from_iterable(every)}))
     return f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
 
 
-def _check_free(symbol: _Symbol, package: Package) -> None:
-    """The new name is not that of another one."""
+def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
+    """The names of these kinds that are in a description: one that is nowhere declared is of none."""
+    return (one for one in chain.from_iterable(it.inventory.names) if one.kind in kinds)
+
+
+def _check_free(symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]]) -> None:
+    """The new name is not that of another one; a link is a frame, too."""
+    kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
-        for kind in KINDS[symbol.kind]:
-            claim = it.inventory.declared.get(kind, {}).get(symbol.new)
-            if claim is not None:
-                raise UsageError(f"{it.path} has a {kind} {symbol.new!r} already")
+        taken = [one for one in _known(it, kinds) if one.text == symbol.new]
+        if changes[it.path] and taken:
+            raise UsageError(f"{it.path} has a {taken[0].kind} {symbol.new!r} already")
 
 
 def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
@@ -189,24 +197,11 @@ def _in_place(it: Description, change: Change) -> SourceEdit:
     document = it.inventory.document
     span = next(spans(document, [change]))
     if span is None:
-        where = ":".join(
-            map(str, (it.path, *locate(document.source, document.starts[change.element])))
-        )
+        where = place(it.path, document.source, document.starts[change.element])
         raise InputError(
             f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
         )
     return SourceEdit(os.path.realpath(it.path), *span)
-
-
-def _sources(edits: Iterable[SourceEdit], package: Package) -> dict[str, bytes]:
-    """The bytes of each file that is edited, by real path, as it was read."""
-    known: dict[str, bytes] = {}
-    for it in package.descriptions:
-        texts = it.read.sources if it.read else {it.path: it.inventory.document.source}
-        known.update({os.path.realpath(path): data for path, data in texts.items()})
-    outside = sorted({it.file for it in edits} - known.keys())
-    assert not outside, outside
-    return {it.file: known[it.file] for it in edits}
 
 
 def _prove(
@@ -245,46 +240,17 @@ def _beside(
         if symbol.old.encode() not in data or os.path.realpath(path) in after:
             continue
         with suppress(MultibotError):
-            starts = set(_starts(names_in_file(data, path, described), symbol))
+            file = names_in_file(data, path, described)
+            starts = set(starts_of(file, (symbol.old,), KINDS[symbol.kind]))
             if starts:
-                yield (
-                    path,
-                    (_replaced(data.decode(), starts, symbol), len(starts)),
-                )
-
-
-def _starts(file: NamedFile, symbol: _Symbol) -> Iterator[int]:
-    """Where in the text of a file the name is."""
-    for site in file.names:
-        if site.text == symbol.old and {*KINDS[symbol.kind]} & {
-            site.kind,
-            *DECLARED.get(site.kind, ()),
-        }:
-            start = file.text.find(symbol.old, site.slot.start + site.at, site.slot.end)
-            if start >= 0:
-                yield start
-
-
-def _replaced(text: str, starts: Iterable[int], symbol: _Symbol) -> bytes:
-    for start in sorted(starts, reverse=True):
-        text = text[:start] + symbol.new + text[start + len(symbol.old) :]
-    return text.encode()
+                made = respelled(file, data, starts, len(symbol.old), symbol.new)
+                yield path, (made, len(starts))
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
     """Lines that have the name, of files that do not change."""
     word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
-    for folder in package.found.folders:
-        for above, folders, names in os.walk(folder):
-            folders[:] = sorted(it for it in folders if it[0] != ".")
-            for name in sorted(names):
-                path = os.path.normpath(os.path.join(above, name))
-                if (
-                    name.endswith(_TEXTS)
-                    and os.path.isfile(path)
-                    and os.path.realpath(path) not in changed
-                ):
-                    data = read_bytes(path)
-                    yield from (
-                        f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data)
-                    )
+    for path in chain.from_iterable(files_below(it, _TEXTS) for it in package.found.folders):
+        if os.path.realpath(path) not in changed:
+            data = read_bytes(path)
+            yield from (f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data))

@@ -84,14 +84,21 @@ def _trimmed(change: Change) -> tuple[int, int, str]:
 
 
 def _place(read: Expansion, document: Document, change: Change, touched: list[Piece]) -> str:
-    known = [it for it in touched if it.file in read.sources]
+    known = next((it for it in touched if it.file in read.sources), None)
     if known:
-        file, at = known[0].file, known[0].start
-        return ":".join(map(str, (file, *locate(read.sources[file], at))))
-    origin = read.origins.of(change.element)
-    if origin:
-        return ":".join(map(str, (origin.file, *locate(read.sources[origin.file], origin.start))))
-    return document.file
+        return place(known.file, read.sources[known.file], known.start)
+    return place_of(read, change.element) or document.file
+
+
+def place_of(read: Expansion | None, element: int) -> str:
+    """Where an element of an expansion is written; empty where nobody knows."""
+    origin = read and read.origins.of(element)
+    return place(origin.file, read.sources[origin.file], origin.start) if read and origin else ""
+
+
+def place(file: str, source: bytes, offset: int) -> str:
+    """``file:line:column`` of an offset."""
+    return ":".join(map(str, (file, *locate(source, offset))))
 
 
 def _why(touched: list[Piece]) -> str:
@@ -106,12 +113,8 @@ def expected(document: Document, changes: Iterable[Change]) -> bytes | None:
     found = list(spans(document, changes))
     if None in found:
         return None
-    source, last = document.source, 0
-    parts: list[bytes] = []
-    for start, end, new in sorted(it for it in found if it):
-        parts += (source[last:start], new)
-        last = end
-    return b"".join(parts) + source[last:]
+    edits = [SourceEdit("", *it) for it in found if it]
+    return edited({"": document.source}, edits).get("", document.source)
 
 
 def spans(document: Document, changes: Iterable[Change]) -> Iterator[tuple[int, int, bytes] | None]:

@@ -145,7 +145,7 @@ def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Pa
     robot = ROBOT.format(JOINT).encode()
     files = {
         "a/c.yaml": YAML,
-        "b/d.yaml": YAML,
+        "b/d.yaml": f"\ufeff{YAML}",
         "b/c.yaml": YAML,
         "a/e.yaml": "a: [",
         "f.yaml": FILLED,
@@ -159,10 +159,10 @@ def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Pa
         found = fillable(paths, urdfs, names, "prefix", "try_")
         return {name: (it.path, it.after.decode(), it.tried.decode()) for name, it in found.items()}
 
-    after = YAML.replace("[j]", "[$(var prefix)j]")
-    tried = YAML.replace("[j]", "[try_j]")
+    after = f"\ufeff{YAML}".replace("[j]", "[$(var prefix)j]")
+    tried = f"\ufeff{YAML}".replace("[j]", "[try_j]")
     assert filled([robot], {"j"}) == {"d.yaml": (f"{tmp_path}/b/d.yaml", after, tried)}
-    assert filled([robot], {"j", "base"})["d.yaml"][1] == FILLED
+    assert filled([robot], {"j", "base"})["d.yaml"][1] == f"\ufeff{FILLED}"
     assert filled([robot], {"arm"}) == filled([], {"j"}) == {}
 
 

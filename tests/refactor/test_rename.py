@@ -42,16 +42,18 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(package: Path) -> None:
+@pytest.mark.parametrize("mark", ["", "\ufeff"], ids=["plain", "byte order mark"])
+def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(
+    package: Path, mark: str
+) -> None:
+    (package / "controllers.yaml").write_text(mark + CONTROLLERS)
     made = rename_symbol("base_link", "chassis", str(package))
     robot = ROBOT.replace('value="base_link"', 'value="chassis"').replace(
         'parent="base_link"', 'parent="chassis"'
     )
     assert {Path(path).name: data.decode() for path, data in made.after.items()} == {
         "r.urdf.xacro": robot,
-        "controllers.yaml": CONTROLLERS.replace(
-            "base_frame_id: base_link", "base_frame_id: chassis"
-        ),
+        "controllers.yaml": mark + CONTROLLERS.replace("base_link", "chassis"),
     }
     assert made.places == 3
     assert made.mentions == (f"{package}/node.py:1",)
@@ -182,3 +184,34 @@ def test_the_command_writes_all_or_shows_it(
     assert main(words) == 0
     assert "base_frame_id: chassis" in (package / "controllers.yaml").read_text()
     assert 'value="chassis"' in (package / "r.urdf.xacro").read_text()
+
+
+DRIVEN = """<robot name="r"><link name="base"/><gazebo>
+<plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>cmd_vel:=go</remapping>
+<remapping>odom:=wheels</remapping></ros><odometry_frame>odom</odometry_frame>
+<robot_base_frame>base</robot_base_frame></plugin></gazebo><gazebo reference="arm"/></robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kind", "taken"),
+    [
+        ("go", "wheels", "topic", "topic"),
+        ("odom", "base", "frame", "link"),
+        ("base", "odom", "link", "frame"),
+    ],
+)
+def test_a_name_that_is_only_used_is_taken_too(
+    tmp_path: Path, old: str, new: str, kind: str, taken: str
+) -> None:
+    (tmp_path / "r.urdf").write_text(DRIVEN)
+    with pytest.raises(UsageError, match=f"r.urdf has a {taken} '{new}' already"):
+        rename_symbol(old, new, str(tmp_path), kind=kind)
+
+
+def test_a_link_that_is_missed_and_a_name_of_another_robot_are_free(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(DRIVEN)
+    (tmp_path / "other.urdf").write_text('<robot name="other"><link name="palm"/></robot>')
+    for new in ("arm", "palm"):
+        made = rename_symbol("base", new, str(tmp_path))
+        assert [Path(it).name for it in made.after] == ["r.urdf"]

@@ -121,27 +121,19 @@ def _added(
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
     once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
-    system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
-        raise InputError(
-            f"{part.file}: joint {mount.joint!r} is there already; name the part otherwise"
-        )
-    edits = [
-        *mount.edits,
-        *materials.repeated(joined.document.root, spans),
-        *once.part,
-        *system.part,
-    ]
+        what = f"joint {mount.joint!r} is there already; name the part otherwise"
+        raise InputError(f"{part.file}: {what}")
+    system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
+    edits = [*mount.edits, *materials.repeated(joined.document.root, spans)]
+    edits += [*once.part, *system.part]
     edits += own_spaces(joined.document, spans, edits)
     made = _edited(text, edits)
     more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
-    return (
-        placed(base, first.name, first.prefix, more),
-        mounted,
-        (*mount.notes, *once.notes, *system.notes),
-    )
+    notes = (*mount.notes, *once.notes, *system.notes)
+    return placed(base, first.name, first.prefix, more), mounted, notes
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
