@@ -93,6 +93,12 @@ _OTHERS = (
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
 )
 _SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
+# Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
+_TEMPLATE = lazy_compile(
+    rb"<!--.*?-->|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
+    rb"|\{%[-+]?[ \t]*(?:if|for|set|macro|include|block|extends)\b[^{}\n]*%\})",
+    re.DOTALL | re.MULTILINE,
+)
 _BAGS = (b"\x89MCAP0\r\n", b"SQLite format 3\0")
 
 
@@ -121,3 +127,15 @@ def refuse_others(data: bytes, file: str, *wanted: str) -> None:
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")
+
+
+def refuse_templates(data: bytes, file: str) -> None:
+    """Raises InputError for a text that a template language fills in: it is none of the kinds yet."""
+    if b"{{" not in data and b"{%" not in data:
+        return
+    found = next((it for it in _TEMPLATE.finditer(data) if it[1]), None)
+    if found:
+        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode("utf-8", "replace")
+        raise InputError(
+            f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes"
+        )
