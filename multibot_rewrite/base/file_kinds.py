@@ -16,6 +16,7 @@ URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"
 FLEET, PLAN, SNAPSHOT, LAUNCH, BAG, MAP = "fleet", "plan", "snapshot", "launch", "bag", "map"
 STAGE, WEBOTS, MUJOCO, USD, MESH = "stage", "webots", "mujoco", "usd", "mesh"
 MANIFEST, CONFIG = "manifest", "config"
+BUILT, RULES = "built", "rules"
 DESCRIPTIONS = (URDF, XACRO, SDF)
 _LOOKED_AT = 200_000
 
@@ -55,6 +56,8 @@ KINDS: Mapping[str, FileKind] = {
     MESH: FileKind("a mesh", "give the description that names it"),
     MANIFEST: FileKind("the package.xml of a package", "use multibot init with its folder"),
     CONFIG: FileKind("the model.config of a model", "give the model.sdf that it names"),
+    BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
+    RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
 }
 _ROOT = rb"\A(?:<[?!].*?>\s*)*<"
 _XML = (
@@ -98,16 +101,19 @@ BESIDE = (
     (TREE, dict(_XML)[TREE]),
     (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
 )
-# What follows ``robots:`` in a fleet file is a list; a plan has the ways of its rules besides.
+# What follows ``robots:`` in a fleet file is a list; a plan has keys of its own besides, and rules
+# alone have no more than a layout and a release.
 _ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
 _OTHERS = (
     (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (PLAN, lazy_compile(rb"^robots:(?=.*^ways:)", re.MULTILINE | re.DOTALL)),
+    (PLAN, lazy_compile(rb"^(?:ignored_nodes|ways):", re.MULTILINE)),
+    (RULES, lazy_compile(rb"^layout:[^\n]*\n(?:distro:[^\n]*\n)?robots:", re.MULTILINE)),
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
     (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
 )
+_BUILT = b'"format": "multibot build'
 _SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
@@ -135,6 +141,8 @@ def recognised(data: bytes) -> str:
     if text.startswith(b"<"):
         return _first(_XML, text)
     if text.startswith(b"{"):
+        if _BUILT in text:
+            return BUILT
         ends = _SNAPSHOT.search(text)
         if b'"ways"' in text or (ends and b'"layout"' in text):
             return PLAN

@@ -28,7 +28,8 @@ _INSTALLED = "/opt/ros/"
 OF_OLD = "humble"
 # MoveIt's adapters of planning requests have had another package since Jazzy (moveit2 MIGRATION.md).
 _ADAPTERS = b"default_planner_request_adapters/"
-_OLD_WORDS = (b"libgazebo_", b"ignition-", b"ign_ros2_control", _ADAPTERS)
+CLASSIC = "libgazebo_"
+_OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", _ADAPTERS)
 _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
     rb"|(" + _ADAPTERS + rb"\w+)"
@@ -95,6 +96,11 @@ def evidence(text: bytes) -> str:
     text = _COMMENT.sub(b"", text)
     found = None if any(it in text for it in _NEW_WORDS) else _OLD.search(text)
     return (found[1] or found[2]).decode() if found else ""
+
+
+def lacks_classic(release: str, text: bytes) -> bool:
+    """Does a description load libraries of Gazebo Classic alone, which a release has not?"""
+    return release not in ("", OF_OLD) and evidence(text).startswith(CLASSIC)
 
 
 def release_here(given: str | None = None) -> str:

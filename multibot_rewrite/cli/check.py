@@ -33,6 +33,7 @@ from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
 from multibot_rewrite.system.domains import by_domain, side_by_side
@@ -200,19 +201,15 @@ def conclude(
 
 
 def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
-    """What is open in the plan. Notes, as of what a driver that nobody names may send, are only counted
-    where they are asked for, but for that of a drive that nobody has read."""
+    """What is open in the plan. What a driver that is not named may send is only counted where notes
+    are not asked for."""
     found = chosen(options, plan.gaps)
-    notes = [it for it in found if it.level == NOTE]
-    if not notes or options.fail_on == NOTE or options.verbose:
+    unsent = [it for it in found if it.code == nothing_known_sends.code and it.level == NOTE]
+    if not unsent or options.fail_on == NOTE or options.verbose:
         return found
-    from multibot_rewrite.fleet.robots.simulators import UNREAD_DRIVE  # few plans need it
-
-    left = [it for it in notes if it.code != UNREAD_DRIVE.code]
-    if left:
-        what = f"{plural(len(left), 'note')} about topics that no known node sends"
-        note(options, f"note: {what}; --verbose shows them")
-    return [it for it in found if it not in left]
+    what = f"{plural(len(unsent), 'note')} about topics that no known node sends"
+    note(options, f"note: {what}; --verbose shows them")
+    return [it for it in found if it not in unsent]
 
 
 def plan_name(options: argparse.Namespace) -> str:

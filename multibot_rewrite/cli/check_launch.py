@@ -59,7 +59,8 @@ def _certain(it: Finding, made: Launched) -> Finding:
     claims = it.code in (interface_not_exported.code, interface_claimed_twice.code)
     if claims and it.level == WARNING:
         return it._replace(level=ERROR)
-    apart = it.code == tf_tree_in_pieces.code and not any(one.spawned for one in made.models.found)
+    doubted = it.code == tf_tree_in_pieces.code and it.level == ERROR
+    apart = doubted and not any(one.spawned for one in made.models.found)
     if apart and it.names and not any(edge.parent == it.names[0] for edge in made.system.edges):
         return it._replace(level=WARNING)
     return it

@@ -13,9 +13,8 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import clip, plural
-from multibot_rewrite.cli.output import deliver, say, watched
-from multibot_rewrite.cli.parser import UNUSABLE
-from multibot_rewrite.cli.process import DONE, PROGRAM
+from multibot_rewrite.cli.output import deliver, watched
+from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target, find_files
@@ -94,10 +93,12 @@ def run(options: argparse.Namespace) -> int:
     if options.form == JSON:
         more = {"xacro": xacro_json(own)} if own else {}
         deliver(options, json_bytes({**as_json(report), **more}))
-    else:
+    if not total.files:
+        raise InputError(_first(unreadable))
+    if options.form != JSON:
         above = (*xacro_parts(own), "") if own else ()
         deliver_report(options, (*above, *_parts(report)))
-    return _verdict(report)
+    return DONE
 
 
 def _surveys(
@@ -118,12 +119,10 @@ def _surveys(
             unreadable.append(Unreadable(path, str(error)))
 
 
-def _verdict(report: CoverageReport) -> int:
-    """The exit code, and why on standard error."""
-    if not report.total.files:
-        say("none of the files can be read", PROGRAM)
-        return UNUSABLE
-    return DONE
+def _first(unreadable: Sequence[Unreadable]) -> str:
+    """Why none of the files can be read."""
+    others = f"; the other {len(unreadable) - 1} cannot be read, either" if unreadable[1:] else ""
+    return f"{unreadable[0].reason}{others}"
 
 
 def _percentage(count: int, known: int) -> float:

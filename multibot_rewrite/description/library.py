@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.arguments import checked
@@ -19,6 +20,8 @@ from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.readback.meeting import OPENED
+from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import Source, is_xacro
@@ -181,7 +184,31 @@ def rewrite_all(
     names = check_robot_names(robots)
     given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro), leaves(world_systems))
     jobs = read_jobs(names, source, naming, *given)
-    return rewrite_jobs(jobs, again)
+    return _with_own_ports(rewrite_jobs(jobs, again))
+
+
+def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
+    """Of several robots each has ports of its own, where it is known what they are for."""
+    first = next(made, None)
+    if first is None or not _has_ports(first.template):
+        return chain(() if first is None else (first,), made)
+    every = [first, *made]
+    if len(every) == 1:
+        return iter(every)
+    from multibot_rewrite.description.own_ports import judged_together  # few descriptions have any
+
+    texts, said = judged_together(first.template, {it.robot: it.data for it in every})
+    return (
+        it._replace(
+            data=text, findings=(*(old for old in it.findings if old.code != OPENED), *said)
+        )
+        for it, text in zip(every, texts, strict=True)
+    )
+
+
+def _has_ports(template: Template) -> bool:
+    sections = (section for _, section in template.inventory.served)
+    return any(split_opens(word)[1] for section in sections for word in section.opens)
 
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:

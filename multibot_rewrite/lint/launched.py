@@ -46,12 +46,12 @@ from multibot_rewrite.system.records import NOWHERE, Place
 
 # What a program refuses or leaves out: references, what is missing, names that ROS refuses.
 _REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
-# What Gazebo leaves out, or a plugin does not find there.
-_LEFT_OUT = ("MB211", "MB603", "MB610")
+# What Gazebo leaves out.
+_LEFT_OUT = ("MB603", "MB610")
 # What is wrong as soon as a second model has it, too.
 _AGAIN = "MB416"
-# What has no effect in this simulator and this ROS.
-_NO_EFFECT = "MB163"
+# What has no effect in this simulator and this ROS, and a joint that is not found there.
+_NO_EFFECT = ("MB163", "MB211")
 # Names that the node has not, and values of another type.
 _OF_VALUES = ("MB110", "MB111", "MB120")
 _FOR_ALL = "/**:"
@@ -72,11 +72,11 @@ def named_findings(launched: Launched) -> list[Finding]:
 def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file = file_of(launched.graph, it.text)
-        codes = (*_REFUSED, *_LEFT_OUT, _NO_EFFECT) if it.spawned else _REFUSED
+        codes = (*_REFUSED, *_LEFT_OUT, *_NO_EFFECT) if it.spawned else _REFUSED
         settings = Settings(select=codes, distro=launched.release, simulated=it.spawned)
         for one in lint_data(file or "robot.urdf", it.text.encode(), settings):
             sure = one.level == ERROR or (one.code in _LEFT_OUT and one.level == WARNING)
-            if sure or one.code == _NO_EFFECT:
+            if sure or one.code in _NO_EFFECT:
                 told = one if file else _at_launch(one, it.place)
                 yield told._replace(level=ERROR if sure else WARNING)
 

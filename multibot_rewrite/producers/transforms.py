@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
+from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
@@ -24,6 +25,7 @@ from multibot_rewrite.system.records import (
 )
 
 TOPIC = "/tf"
+_OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def edge(
@@ -48,12 +50,15 @@ def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str
 
 
 def lookups_of(name: str, node: NodeFacts, values: Mapping[str, Given]) -> Iterator[Lookup]:
-    """The frames that a node reads by its parameters, and does not send itself."""
+    """The frames that a node reads by its parameters, and does not send itself; by default the usual
+    ones of a robot."""
     own = {name for it in node.sends for name in it[:2]}
-    for it in node.frames:
+    for it in (frame for frame in node.frames if frame.parameter not in own):
         found = values.get(it.parameter)
-        if found and it.parameter not in own and isinstance(found.value, str) and found.value:
+        if found and isinstance(found.value, str) and found.value:
             yield Lookup(name, found.value.lstrip("/"), place=found.place)
+        elif not found and it.default in _OF_ROBOTS:
+            yield Lookup(name, it.default)
 
 
 def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:

@@ -34,6 +34,8 @@ TEXTS = {
     "lua": 'options = {\n  map_frame = "map",\n}\n',
     "fleet": "layout: postfix\nrobots:\n  # two\n  - {name: robot1, description: a.urdf}\n",
     "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\nways: {}\n",
+    "built": '{\n "format": "multibot build 1",\n "robots": {"robot1": "robot1"}}',
+    "rules": "layout: postfix\ndistro: jazzy\nrobots:\n  robot1:\n    amcl: []\n",
     "snapshot": '{"schema": 2, "nodes": []}',
     "bag": "rosbag2_bagfile_information:\n  version: 5\n",
     "stage": 'include "robots.inc"\n# the hall\nfloorplan\n(\n  name "hall"\n)\n',
@@ -100,6 +102,11 @@ def test_a_launch_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
 def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
     (it,) = lint_data(name, TEXTS[kind].encode(), Settings())
     assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
+
+
+def test_a_plan_is_known_without_the_ways_of_its_rules() -> None:
+    plan = "layout: postfix\nshared_nodes: {}\nignored_nodes: []\nrobots:\n  robot1: {}\n"
+    assert recognised(plan.encode()) == "plan"
 
 
 @pytest.mark.parametrize("kind", [it for it in KINDS if it not in ("urdf", "xacro", "sdf")])

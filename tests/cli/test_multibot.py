@@ -247,8 +247,10 @@ def test_nothing_readable_is_an_error(multibot: Multibot, folder: Path) -> None:
     write(folder / "b.urdf", "")
     result = multibot("inspect", "b.urdf")
     assert result.code == 2
-    assert result.err == "multibot: none of the files can be read\n"
-    assert "b.urdf: the file is empty" in result.out
+    assert result.err.startswith("multibot: b.urdf: the file is empty")
+    write(folder / "params.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1}\n")
+    assert "params.yaml: a parameter file; rewrite it" in multibot("inspect", "params.yaml").err
+    assert "the other 1 cannot be read, either" in multibot("inspect", "b.urdf", "params.yaml").err
 
 
 # ---------------------------------------------------------------- coverage: what is reported

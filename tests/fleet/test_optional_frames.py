@@ -64,3 +64,22 @@ def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> Non
     found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
     (said,) = [it.message for it in found if it.code == "MF701"]
     assert "because its description already says where it is" in said
+
+
+COSTMAP = """\
+amcl: {ros__parameters: {base_frame_id: base_link, odom_frame_id: odom}}
+local_costmap: {local_costmap: {ros__parameters: {robot_base_frame: base_link}}}
+"""
+
+
+@pytest.mark.slow
+def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> None:
+    """behavior_server has no parameters here: timed_behavior.hpp takes base_link."""
+    (tmp_path / "dog.urdf").write_text(DOG.replace("base_link", "d0/base_link"))
+    (tmp_path / "ekf.yaml").write_text(COSTMAP)
+    text = FLEET.replace("LAYOUT", "tf-per-robot").replace("companions", "stack: nav2\ncompanions")
+    (tmp_path / "fleet.yaml").write_text(text)
+    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))).findings
+    (said,) = [it for it in found if it.code == "MG413" and "frame base_link," in it.message]
+    for node in ("/local_costmap/local_costmap", "/behavior_server"):
+        assert node in said.message

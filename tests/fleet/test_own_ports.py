@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from multibot_rewrite import rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -79,3 +80,41 @@ def test_a_fleet_of_robots_with_ports_of_their_own_says_nothing(tmp_path: Path) 
     texts, said = _built(tmp_path, {"a": ARDUPILOT, "b": ARDUPILOT.replace("9002", "9300")})
     assert _ports(texts, "fdm_port_in") == ["9002", "9300"]
     assert "MF845" not in {it.code for it in said}
+
+
+HARDWARE = (
+    '<robot name="r"><link name="base"/><ros2_control name="c" type="system"><hardware>'
+    "<plugin>{}</plugin>{}</hardware></ros2_control></robot>"
+)
+UNITREE, KUKA = "hardware_unitree_sdk2/HardwareUnitree", "kuka_rsi_driver::KukaRSIHardwareInterface"
+OF_LO = '<param name="network_interface">lo</param><param name="domain">7</param>'
+OF_WIRE = '<param name="network_interface">eth0</param>'
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "numbers"),
+    [
+        (MODEL.format(ARDUPILOT), ".//fdm_port_in", ["9002", "9012", "9022"]),
+        (HARDWARE.format(UNITREE, ""), ".//param[@name='domain']", [None, "2", "3"]),
+        (HARDWARE.format(UNITREE, OF_LO), ".//param[@name='domain']", ["7", "8", "9"]),
+        (HARDWARE.format(UNITREE, OF_WIRE), ".//param[@name='domain']", None),
+        (
+            HARDWARE.format(KUKA, '<param name="client_port">59152</param>'),
+            ".//param[@name='client_port']",
+            ["59152", "59153", "59154"],
+        ),
+    ],
+)
+def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
+    text: str, path: str, numbers: list[str | None] | None
+) -> None:
+    """quadruped_ros2_control HardwareUnitree.h: lo and domain 1 where nothing is written.
+    An interface of a computer is no number: nobody can raise it."""
+    one = rewrite(text, "a", distro="jazzy")
+    three = [*rewrite_all(text, ["a", "b", "c"], distro="jazzy")]
+    assert len({it.findings for it in three}) == 1
+    found = [etree.fromstring(it.data).findtext(path) for it in three]
+    assert found == (numbers or [None] * 3)
+    assert [it.data for it in three[:1]] == [one.data] and one.not_proved
+    assert bool(three[2].not_proved) == (numbers is None)
+    assert ("MF845" in {it.code for it in three[0].findings}) == bool(numbers)

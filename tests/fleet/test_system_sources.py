@@ -129,5 +129,5 @@ def test_a_built_folder_runs_as_its_plan_says(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_a_launch_file_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="launch file does not exist"):
+    with pytest.raises(InputError, match="py: cannot be read: No such file"):
         system_of_folder(tmp_path)

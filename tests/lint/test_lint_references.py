@@ -252,3 +252,22 @@ def test_xacro_in_a_comment_leaves_nothing_unexpanded(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(text)
     found = lint_file(str(tmp_path / "r.urdf"), Settings(select=("MB202",)))
     assert [it.code for it in found] == ["MB202"]
+
+
+@pytest.mark.parametrize(
+    ("body", "levels"),
+    [
+        (DRIVE.format("shouder"), ["warning", "error", "error"]),
+        (BLOCK.format("tipp", SENSOR.format("s", "")), ["warning", "warning", "warning"]),
+        (CONTROL.format('<joint name="tipp"/>'), ["error", "warning", "error"]),
+    ],
+)
+def test_what_a_simulator_does_without(body: str, levels: list[str], tmp_path: Path) -> None:
+    """gazebo_ros_diff_drive.cpp ends itself, gazebo_system.cpp of humble skips the joint."""
+    asked = [
+        Settings(select=("MB202", "MB211"), distro=distro, simulated=simulated)
+        for distro, simulated in (("lyrical", False), ("humble", True), ("lyrical", True))
+    ]
+    file = tmp_path / "in.urdf"
+    file.write_text(f'<robot name="r">{ROBOT}{body}</robot>')
+    assert [it.level for one in asked for it in lint_file(str(file), one)] == levels

@@ -356,21 +356,6 @@ def of_nodes(folder: Path, *nodes: str, head: str = "") -> None:
     (folder / LAUNCH).write_text(f"{text}{lines}    ])\n")
 
 
-@pytest.mark.parametrize(("topic", "deaf"), [("/world_poses", False), ("/r1/tf", True)])
-def test_what_is_not_called_tf_is_no_tree_for_rviz(
-    topic: str, deaf: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """totwjfakd/multi_robot_sim: poses of the world, from which a node of its own makes tf."""
-    row = f"{topic}@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
-    of_nodes(
-        tmp_path,
-        'Node(package="rviz2", executable="rviz2", name="rviz2")',
-        f'Node(package="ros_gz_bridge", executable="parameter_bridge", name="b", arguments=["{row}"])',
-    )
-    _, found = found_in(tmp_path, capsys)
-    assert any(it["code"] == "MG405" for it in found) is deaf
-
-
 COSTMAP = """\
 /r1/global_costmap/global_costmap:
   ros__parameters:
@@ -466,8 +451,17 @@ _MIXED = (
     'arguments=["/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"])',
 )
 _ROW = 'Node(package="ros_gz_bridge", executable="parameter_bridge", arguments=["{}"])'
+_RVIZ, _POSES = (
+    'Node(package="rviz2", executable="rviz2")',
+    "@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V",
+)
 _DRIVER = 'Node(package="acme", executable="driver", name="driver")'
 _GAZEBO = 'ExecuteProcess(cmd=["gzserver", {}"-s", "libgazebo_ros_factory.so"])'
+_AMCL = (
+    'Node(package="nav2_amcl", executable="amcl", name="amcl", namespace="r1", '
+    'remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])'
+)
+_BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     # launch jazzy include_launch_description.py, declare_launch_argument.py, launch_configuration.py
@@ -490,6 +484,9 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         *("MG405", False, ""),
         (_STATE.format("r1"), _STATIC.format('remappings=[("/tf_static", "/r1/tf_static")], ')),
     ),
+    # totwjfakd/multi_robot_sim: poses of the world, from which a node of its own makes tf.
+    "what is not called tf": ("MG405", False, "", (_RVIZ, _ROW.format("/world_poses" + _POSES))),
+    "tf of a robot": ("MG405", True, "", (_RVIZ, _ROW.format("/r1/tf" + _POSES))),
     "one tree": ("MG405", False, "", (_STATIC.format(""),)),
     # slam_toolbox jazzy src/*.cpp
     "a parameter that it has not": ("MB111", True, "", (_SLAM.format("position_threshold"),)),
@@ -507,6 +504,8 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
+    "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
+    "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.
     "a time of its own, beside what is not known": ("MG503", True, "", (*_MIXED, _DRIVER)),
     "the plugin with the clock": (

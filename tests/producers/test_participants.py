@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import sys
 from collections.abc import Iterator
+from math import inf
 from types import SimpleNamespace
 from typing import Any
 
@@ -82,18 +83,37 @@ def test_what_a_full_buffer_loses_is_counted() -> None:
     assert lost_here(DOMAIN + 1) == 0
 
 
-def test_a_loss_since_the_look_began_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("lost", "changed", "seconds"),
+    [
+        pytest.param(-inf, 2.0, KNOWN, id="never"),
+        pytest.param(2.0, 2.0, LONG, id="with the last change"),
+        pytest.param(3.0, 2.0, LONG, id="after it: no longer than where nothing is known"),
+        pytest.param(1.0, 2.0, LONG - 1, id="before it: sent again a second earlier"),
+        pytest.param(0.1, 3.0, KNOWN, id="sent again by now"),
+    ],
+)
+def test_what_was_lost_is_waited_for(
+    lost: float, changed: float, seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setattr(observe, "participants_here", lambda _: 1)
-    monkeypatch.setattr(observe, "lost_here", lambda domain: {DOMAIN: 5}[domain])
-    assert observe._enough(session(1, lost=5)) == KNOWN
-    assert observe._enough(session(1, lost=4)) == LONG
+    assert observe._enough(session(1), changed, lost) == seconds
+
+
+def test_each_loss_since_the_look_began_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    # At last the process that had lost six has ended.
+    told = iter([5, 5, 6, 6, 0])
+    monkeypatch.setattr(observe, "lost_here", lambda domain: {DOMAIN: next(told)}[domain])
+    losses = observe._Losses(session(1, lost=5))
+    told_at = [losses.last(at) for at in (0.1, 0.2, 0.3, 0.4, 0.5)]
+    assert told_at == [-inf, -inf, 0.3, 0.3, 0.5]
 
 
 def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     assert participants_here(DOMAIN) in (0, None)
-    assert observe._enough(session()) == assemble.QUIET_SECONDS
+    assert observe._enough(session(), 0.0, -inf) == assemble.QUIET_SECONDS
 
 
 def session(*participants: int, lost: int = 0) -> Any:
@@ -138,4 +158,4 @@ def test_less_is_enough_where_each_port_is_announced(
     monkeypatch.delenv("ROS_DISCOVERY_SERVER", raising=False)
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
-    assert observe._enough(session(*announced)) == seconds
+    assert observe._enough(session(*announced), 0.0, -inf) == seconds

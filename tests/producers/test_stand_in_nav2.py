@@ -26,6 +26,7 @@ global_costmap:
       plugins: [static, obstacle]
       obstacle:
         enabled: true
+plain: {key: 1}
 """
 AMCL = yaml.safe_load(PARAMS)["amcl"]["ros__parameters"]
 
@@ -70,6 +71,8 @@ def file(tmp_path: Path) -> str:
         ({"z_hit": "7"}, {"convert_types": True}, "amcl.ros__parameters.z_hit", 7),
         ({"amcl.ros__parameters.z_hit": "a"}, {}, "amcl.ros__parameters.z_hit", "a"),
         ({"amcl.ros__parameters.new": "a"}, {}, "amcl.ros__parameters.new", "a"),
+        ({"plain.key": "a"}, {}, "plain.key", "a"),
+        ({"plain.other": "a"}, {}, "plain", {"key": 1}),
         ({"z_hit": ""}, {}, "amcl.ros__parameters.z_hit", ""),
         ({"not_there": "a"}, {}, "amcl.ros__parameters", AMCL),
         ({}, {"root_key": "robot1"}, "robot1.amcl.ros__parameters", AMCL),

@@ -146,6 +146,24 @@ def test_one_controller_manager_has_the_controllers_of_both(tmp_path: Path) -> N
     assert b"goal_time: 1e-3" in made.controllers
 
 
+def test_a_broadcaster_of_all_joints_gets_no_frame_of_one_part(tmp_path: Path) -> None:
+    one, other = files(tmp_path)
+    own = "\njoint_state_broadcaster: {ros__parameters: {use_local_topics: false}}\n"
+    Path(other).write_text(Path(other).read_text() + own)
+    arm, gripper = parts()
+    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    found = yaml.safe_load(made.controllers)["/joint_state_broadcaster"]
+    assert found == {"ros__parameters": {"use_local_topics": False}}
+
+
+def test_a_link_of_an_srdf_that_no_description_has_is_told() -> None:
+    arm, gripper = parts()
+    said = GRIPPER_SRDF.replace('link2="finger"', 'link2="thumb"')
+    made = join([arm, gripper._replace(srdf=said)])
+    assert said != GRIPPER_SRDF
+    assert any("MB807" in it and "'thumb'" in it for it in made.notes)
+
+
 def test_controllers_that_meet_are_refused_and_other_values_told(tmp_path: Path) -> None:
     arm, gripper = parts("")
     one, other = files(tmp_path)

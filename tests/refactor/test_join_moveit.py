@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import pytest
@@ -55,17 +56,24 @@ def arm_files(folder: Path, scale: float = 0.1, names: tuple[str, ...] = tuple(F
     return [str(folder / name) for name in names]
 
 
-def two(folder: Path, srdf: str | None = SRDF, scale: float = 0.1) -> Joined:
+def two(folder: Path, srdf: str | None = SRDF, scale: float = 0.1, flat: str = "") -> Joined:
     each = [("left_", 0.1), ("right_", scale)]
     arms = [
         Part(ARM, "table", prefix=it, srdf=srdf, moveit=arm_files(folder / it, factor))
         for it, factor in each
     ]
+    if flat:
+        _, *below = FILES["moveit_controllers.yaml"].splitlines(keepends=True)
+        (folder / flat / "moveit_controllers.yaml").write_text(dedent("".join(below)))
     return join([Part(TABLE), *arms])
 
 
-def test_there_is_one_file_of_each_kind_with_the_names_of_all_parts(tmp_path: Path) -> None:
-    made = {name: yaml.safe_load(data) for name, data in two(tmp_path).moveit.items()}
+@pytest.mark.parametrize("flat", ["", "left_", "right_"])
+def test_there_is_one_file_of_each_kind_with_the_names_of_all_parts(
+    tmp_path: Path, flat: str
+) -> None:
+    """Also where a launch file puts one part's controllers below their manager."""
+    made = {name: yaml.safe_load(data) for name, data in two(tmp_path, flat=flat).moveit.items()}
     assert made == {
         "kinematics.yaml": {"left_arm": SOLVER, "right_arm": SOLVER},
         "joint_limits.yaml": {

@@ -131,6 +131,15 @@ def test_what_belongs_to_the_description_is_in_the_namespace(of_xacro: bool) -> 
     assert ('" namespace:=", LaunchConfiguration("namespace")' in text) == of_xacro
 
 
+def test_a_line_of_its_own_is_for_the_namespace_where_each_has_one() -> None:
+    node = 'Node(\n    package="robot_state_publisher",\n    executable="a",\n)'
+    source = f'{HEAD}t = Command(["xacro ", "r.urdf.xacro"])\nx = LaunchDescription([{node}])\n'
+    space = Space("namespace", True)
+    made = with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"], (), space)
+    wanted = node.replace(",\n", ',\n    namespace=LaunchConfiguration("namespace"),\n', 1)
+    assert wanted in (made.data or b"").decode()
+
+
 def test_an_xml_launch_file_puts_it_there_too() -> None:
     made = with_argument(
         "a.launch.xml", XML.encode(), "prefix", ["r.urdf.xacro"], (), Space("namespace", True)

@@ -15,6 +15,8 @@ from multibot_rewrite.companions.yaml_text import YamlText, line_of
 
 EMPTY = "empty"
 OF_SERVO, PLANNING, SIMPLE = "servo", "planning", "moveit_simple_controller_manager"
+# Its controllers.
+NAMES = "controller_names"
 # Below which parameter MoveItConfigsBuilder puts the content of a file; that of others is at the top.
 ABOVE = {
     "kinematics": "robot_description_kinematics",
@@ -69,7 +71,7 @@ def parameter_above(kind: FileKind, document: YamlText) -> str:
     if kind.name == PLANNING:
         above = pipeline_of(document.file)
         above = above if above or keys.isdisjoint(_OF_PIPELINE) else "pipeline"
-    if "controller_names" in keys:
+    if NAMES in keys:
         above = SIMPLE
     return f"{above}." if above and above not in keys else ""
 

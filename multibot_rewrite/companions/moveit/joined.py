@@ -8,7 +8,7 @@ left out, and told.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import yaml
 
@@ -18,7 +18,14 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.alone import rewrite_alone
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.file_kind import ABOVE, OF_SERVO, PLANNING, file_kind
+from multibot_rewrite.companions.moveit.file_kind import (
+    ABOVE,
+    NAMES,
+    OF_SERVO,
+    PLANNING,
+    SIMPLE,
+    file_kind,
+)
 from multibot_rewrite.companions.moveit.name_sites import entries
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
 from multibot_rewrite.companions.params.joined import added
@@ -65,26 +72,37 @@ def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix:
 
 def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
     """One file of each kind, and of each pipeline."""
-    roots: dict[str, yaml.MappingNode] = {}
-    sources: dict[str, list[str]] = {}
+    every: dict[str, list[tuple[str, yaml.MappingNode]]] = {}
     notes: list[tuple[str, str]] = []
     for it in files:
         if it.kind == OF_SERVO:
             notes.append((it.file, "it is for one group of one servo_node, and left out"))
-            continue
-        root = _body(it)
-        name = _name(it)
-        if not isinstance(root, yaml.MappingNode):
-            continue
-        sources.setdefault(name, []).append(os.path.basename(it.file))
-        first = roots.setdefault(name, root)
-        if first is not root:
-            notes += ((it.file, what) for what in added(first, root, ""))
+        elif isinstance(root := _body(it), yaml.MappingNode):
+            every.setdefault(_name(it), []).append((it.file, root))
     made = {}
-    for name, root in roots.items():
-        head = f"# joined by multibot from {', '.join(dict.fromkeys(sources[name]))}\n"
-        made[name] = f"{head}{yaml.serialize(root, width=200)}".encode()
+    for name, roots in every.items():
+        _spell_alike([root for _, root in roots])
+        (_, first), *others = roots
+        notes += ((file, what) for file, root in others for what in added(first, root, ""))
+        sources = ", ".join(dict.fromkeys(os.path.basename(file) for file, _ in roots))
+        text = f"# joined by multibot from {sources}\n{yaml.serialize(first, width=200)}"
+        made[name] = text.encode()
     return JoinedMoveit(made, tuple(notes))
+
+
+def _spell_alike(roots: Sequence[yaml.MappingNode]) -> None:
+    """Controllers at the top of a file, which its launch file puts below their manager, are written
+    there if those of another file are."""
+    if not any(key.value == SIMPLE for root in roots for key, _ in entries(root)):
+        return
+    for root in roots:
+        names = next((it.value for key, it in entries(root) if key.value == NAMES), ())
+        own = {NAMES, *(it.value for it in names)} if names else {}
+        below = [it for it in root.value if it[0].value in own]
+        if below:
+            manager = yaml.ScalarNode("tag:yaml.org,2002:str", SIMPLE)
+            root.value = [it for it in root.value if it not in below]
+            root.value.append((manager, yaml.MappingNode("tag:yaml.org,2002:map", below)))
 
 
 def _body(it: PartMoveit) -> yaml.Node | None:

@@ -11,7 +11,7 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
@@ -65,11 +65,21 @@ def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
     words = words_of(part.claims)
     context = make_context(names.declared, naming, (), part.release, names.own, words)
     text = rewrite_alone(PARAMS, data, file, context, prefix, 0).text
-    paths = {it.path for it in before}
     made = raw_sections(read_yaml(text.encode(), file))
-    # What a rewrite adds for a node of each robot has no place in one that serves all.
-    kept = (it for it in made if it.path in paths or _node(it) not in shared)
-    return PartFile(file, tuple(kept), shared)
+    return PartFile(file, tuple(_kept(made, before, shared)), shared)
+
+
+def _kept(
+    made: Iterable[RawSection], before: Iterable[RawSection], shared: frozenset[str]
+) -> Iterator[RawSection]:
+    """What a rewrite adds for a node of each robot has no place in one that serves all."""
+    there = {it.path: {key.value for key, _ in pairs(it.body)} for it in before}
+    for it in made:
+        known = there.get(it.path, ())
+        if _node(it) in shared - {MANAGER}:
+            it.body.value = [pair for pair in pairs(it.body) if pair[0].value in known]
+        if known or _node(it) not in shared:
+            yield it
 
 
 def _naming(shared: frozenset[str]) -> Naming:

@@ -162,7 +162,7 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             kind, _, name = entry.partition(":")
             if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
-                hint = "the name is fixed in its code: use --layout tf-per-robot"
+                hint = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
                 yield _host(host, "MB428", message, hint)
 
 

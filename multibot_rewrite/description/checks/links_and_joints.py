@@ -120,6 +120,12 @@ def _joint(element: _Element) -> Joint:
     )
 
 
+def end_of(joint: _Element, tag: str) -> str:
+    """The link at an end of a URDF's joint, its ``parent`` or ``child``; empty without one."""
+    found = joint.find(tag)
+    return "" if found is None else found.get("link", "")
+
+
 def _by_name(pairs: Iterable[tuple[str, Joint]]) -> dict[str, tuple[Joint, ...]]:
     found: dict[str, list[Joint]] = {}
     for name, joint in pairs:

@@ -32,6 +32,12 @@ LOST_RULE, SAME_TEXT, PARTED, NO_LINK = "MB436", "MB437", "MB438", "MB502"
 ELSEWHERE = "MB439"
 ALL = "all robots would"
 BESIDE = "use --topics namespace, which keeps both in one place"
+NAMED = "use a layout that gives each robot names of its own, as --layout both"
+# Names in code stay in every layout: another one that renames links and joints breaks the plugin.
+OWN = (
+    "names are fixed in a plugin's code: use --layout frame-prefix where sensors name their frames; "
+    "else run each robot in a Gazebo of its own, by GZ_PARTITION"
+)
 BY_HAND = "write it for each robot by hand, as by an argument of a xacro"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
@@ -116,11 +122,12 @@ def _would_share(
 def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
     """A description that all robots get as it is, though something runs in it that no namespace keeps
     apart."""
-    for part in active_parts(document.root, vocabulary):
+    parts = list(active_parts(document.root, vocabulary))
+    for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
             message = f"all robots get the same text, and {part.kind} {part.name!r} runs in it"
-            hint = "use a layout that gives each robot names of its own, as --layout both"
-            yield Problem(part.element, message, None, hint, (), SAME_TEXT)
+            is_fixed = any(it.section and it.section.hardwired for it in parts)
+            yield Problem(part.element, message, None, OWN if is_fixed else NAMED, (), SAME_TEXT)
             return
 
 

@@ -7,7 +7,7 @@ axis is in the child's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import sqrt
 
@@ -119,9 +119,12 @@ def sdf_pose(text: str) -> Pose | None:
     values = numbers(text)
     if values == ():
         return HERE
-    if values is None or len(values) != 6:
-        return None
-    x, y, z, roll, pitch, yaw = values
+    return None if values is None or len(values) != 6 else pose_of_six(values)
+
+
+def pose_of_six(values: Sequence[float]) -> Pose:
+    """The pose of x, y, z, roll, pitch and yaw."""
+    x, y, z, roll, pitch, yaw = map(float, values)
     return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
 
 

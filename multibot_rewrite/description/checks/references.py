@@ -21,7 +21,7 @@ SRDF_ROBOT = "element srdf.robot"
 # How the section and the path of a site of an SRDF begin -> its code, else by kind.
 _SRDF_THEMES = (("@name", "MB802"), ("disable_", "MB807"), ("enable_", "MB807"))
 _SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
-_LINK, _JOINT = "MB202", "MB211"
+_LINK, JOINT = "MB202", "MB211"
 # Only SDF has scopes.
 _SCOPE = "MB219"
 
@@ -72,7 +72,7 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         message += _fault(part, declared)
         code, hint = _code(claim.site, part), guesses.hint(part.text, known)
-        mild = code in (_LINK, _JOINT) and not _ends_the_loading(claim.site)
+        mild = code in (_LINK, JOINT) and not _ends_the_loading(claim.site)
         yield about(claim, code, message, hint)._replace(level=WARNING if mild else "")
 
 
@@ -91,7 +91,7 @@ def _ends_the_loading(site: Site) -> bool:
 def _code(site: Site, part: NamePart) -> str:
     if site.form in ("scoped", "member"):
         return _SCOPE
-    other = _JOINT if part.kinds[0] == "joint" else _LINK
+    other = JOINT if part.kinds[0] == "joint" else _LINK
     if site.section != SRDF_ROBOT:
         return other
     themes = (code for path, code in _SRDF_THEMES if site.path.startswith(path))

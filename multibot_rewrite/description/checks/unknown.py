@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.nearest import SLIP, Guesses
+from multibot_rewrite.base.releases import CLASSIC, lacks_classic
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import (
     HARDWARE,
@@ -27,8 +28,9 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Plugins, hardware classes, sensor types and included models of which it is not known what they
-    open, each at its element."""
-    guesses = Guesses()
+    open, and those of a Gazebo that the release has not, each at its element."""
+    guesses, release = Guesses(), tree.vocabulary.release
+    old = CLASSIC if lacks_classic(release, inventory.document.source) else None
     # An SRDF starts nothing.
     parts = (
         () if inventory.format == SRDF else active_parts(inventory.document.root, tree.vocabulary)
@@ -37,6 +39,13 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         if not part.is_known:
             message, hint = _said(part, tree.vocabulary, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
+        elif old and part.kind == PLUGIN and part.name.startswith(old):
+            # Once: so are the others.
+            old, message = (
+                None,
+                f"plugin {part.name!r} is of Gazebo Classic, which {release} has not",
+            )
+            yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
 
 
 def is_unknown(section: VocabularySection) -> bool:

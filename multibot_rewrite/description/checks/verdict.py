@@ -52,6 +52,7 @@ REASONS = {
 GIVEN = {
     NOT_TAKEN: "where each controller is spawned with its rules",
     ELSEWHERE: "where what shows an image has the rule for its camera_info",
+    "MF845": "where what each robot talks to has its number",
 }
 
 

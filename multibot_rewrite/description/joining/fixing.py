@@ -12,14 +12,8 @@ from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Joint, read_robot
-from multibot_rewrite.description.checks.poses import HERE, Pose, pose_of
-from multibot_rewrite.description.checks.rotation import (
-    matrix_of_quaternion,
-    product,
-    quaternion_of_rpy,
-    rpy_of,
-    turned,
-)
+from multibot_rewrite.description.checks.poses import HERE, Pose, placed, pose_of, pose_of_six
+from multibot_rewrite.description.checks.rotation import rpy_of
 from multibot_rewrite.description.joining.kept import was
 from multibot_rewrite.description.joining.part import ZERO, Part, ReadPart
 from multibot_rewrite.description.steps.apply import cut
@@ -48,7 +42,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
     robot = read_robot(spans.document.root)
     if part.root != WORLD:
         name = f"{part.name}_mount"
-        origin = _origin(_pose(spec.pose), spec.pose)
+        origin = _origin(pose_of_six(spec.pose), spec.pose)
         names = (it.translate(ESCAPES) for it in (spec.at, part.root))
         words = dict(zip(("parent", "child"), names, strict=True))
         at, _ = spans.inside(spans.document.root)
@@ -96,24 +90,14 @@ def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -
     inner = pose_of(old)
     if inner is None:
         raise InputError(f"{part.file}: the origin of {joint.name!r} is no six numbers")
-    outer = _pose(pose)
-    if inner == HERE:
-        text = _origin(outer, pose)
-    else:
-        at = (a + b for a, b in zip(outer.at, turned(outer.matrix, inner.at), strict=True))
-        x, y, z = at
-        text = _origin(Pose((x, y, z), product(outer.matrix, inner.matrix)))
+    outer = pose_of_six(pose)
+    text = _origin(outer, pose) if inner == HERE else _origin(placed(outer, inner))
     start = spans.start_of(joint.element if old is None else old)
     if old is None:
         start = end = tag_end(spans.document.source, start)
     else:
         end = spans.end_of(old)
     yield Edit(start, end, text.encode(), None)
-
-
-def _pose(given: Sequence[float]) -> Pose:
-    x, y, z, roll, pitch, yaw = map(float, given)
-    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
 
 
 def _origin(pose: Pose, given: Sequence[float] = ()) -> str:

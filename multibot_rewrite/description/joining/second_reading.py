@@ -14,14 +14,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import ProofError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.links_and_joints import WORLD
-from multibot_rewrite.description.checks.poses import Pose, pose_of
-from multibot_rewrite.description.checks.rotation import (
-    matrix_of_quaternion,
-    product,
-    quaternion_of_rpy,
-    turned,
-)
+from multibot_rewrite.description.checks.links_and_joints import WORLD, end_of
+from multibot_rewrite.description.checks.poses import Pose, placed, pose_of, pose_of_six
 from multibot_rewrite.description.joining.part import ReadPart
 from multibot_rewrite.description.joining.systems import has_all, like
 from multibot_rewrite.description.readback.xml import plain, read_xml
@@ -86,7 +80,7 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
         return has_all(it, like(it, root))
     if it.tag == "joint":
         return (
-            mounted.is_without_world and _end(it, "parent") == WORLD and _moved(it, mounted, root)
+            mounted.is_without_world and end_of(it, "parent") == WORLD and _moved(it, mounted, root)
         )
     if it.tag == "material":
         return any(other.get("name") == name for other in root.iterchildren("material"))
@@ -114,22 +108,20 @@ def _file(plugin: _Element) -> str:
 def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
     """Is a joint on the world, with all that it has, on the part's link now?"""
     new = next((it for it in root.iterchildren("joint") if it.get("name") == old.get("name")), None)
-    if new is None or _end(new, "parent") != mounted.at:
+    if new is None or end_of(new, "parent") != mounted.at:
         return False
     same = [[plain(it) for it in one if it.tag not in ("parent", "origin")] for one in (old, new)]
     inner = pose_of(old.find("origin"))
-    outer = _pose(mounted.pose)
     if inner is None or same[0] != same[1] or old.attrib != new.attrib:
         return False
-    x, y, z = (a + b for a, b in zip(outer.at, turned(outer.matrix, inner.at), strict=True))
-    return _is_at(new, Pose((x, y, z), product(outer.matrix, inner.matrix)))
+    return _is_at(new, placed(pose_of_six(mounted.pose), inner))
 
 
 def _check_joint(mounted: Mounted, root: _Element) -> None:
     joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
-    ends = [_end(joint, tag) for tag in ("parent", "child")]
+    ends = [end_of(joint, tag) for tag in ("parent", "child")]
     fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
-    if not fixed or not _is_at(joint, _pose(mounted.pose)):
+    if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
         raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
 
 
@@ -143,20 +135,10 @@ def _is_at(joint: _Element, wanted: Pose) -> bool:
     )
 
 
-def _pose(six: Sequence[float]) -> Pose:
-    x, y, z, roll, pitch, yaw = map(float, six)
-    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
-
-
-def _end(joint: _Element, tag: str) -> str:
-    found = joint.find(tag)
-    return "" if found is None else found.get("link", "")
-
-
 def _check_tree(root: _Element) -> None:
     """One root, and each other link below it, by one joint."""
     links = {it.get("name", "") for it in root.iterchildren("link")}
-    ends = [(_end(it, "child"), _end(it, "parent")) for it in root.iterchildren("joint")]
+    ends = [(end_of(it, "child"), end_of(it, "parent")) for it in root.iterchildren("joint")]
     below: dict[str, list[str]] = {}
     for child, parent in ends:
         below.setdefault(parent, []).append(child)

@@ -19,10 +19,12 @@ from itertools import combinations, product
 from lxml import etree
 from lxml.etree import _Element
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.links_and_joints import end_of
 from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing
 from multibot_rewrite.description.joining.touching import ALWAYS, NEVER, Touching, touching
 from multibot_rewrite.description.readback.xml import read_xml
@@ -36,11 +38,13 @@ _PREFIX = "give the part a prefix of its own"
 
 
 class PartSemantics(NamedTuple):
-    """A part with the bytes of its SRDF, as its prefix spells it, empty where it has none."""
+    """A part with the bytes of its SRDF, as its prefix spells it, empty where it has none; ``findings``
+    are of names in it that have no prefix."""
 
     part: ReadPart
     data: bytes
     file: str
+    findings: tuple[Finding, ...] = ()
 
 
 class JoinedSemantics(NamedTuple):
@@ -56,12 +60,13 @@ def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
     found = collect(read_document(data, file), tree, declared)
     if found.format != SRDF:
         raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF, not an SRDF")
-    if part.prefix:
-        kinds = (*PREFIXED, "group")
-        with in_one_line():
-            prepared = pipeline.prepare(data, file, prefixing(kinds), tree, declared)
-            data = next(pipeline.render(prepared, [part.prefix], again=True))
-    return PartSemantics(part, data, file)
+    if not part.prefix:
+        return PartSemantics(part, data, file)
+    kinds = (*PREFIXED, "group")
+    with in_one_line():
+        prepared = pipeline.prepare(data, file, prefixing(kinds), tree, declared)
+        data = next(pipeline.render(prepared, [part.prefix], again=True))
+    return PartSemantics(part, data, file, tuple(prepared.findings))
 
 
 def joined_srdf(
@@ -87,7 +92,8 @@ def joined_srdf(
         notes = list(_sampled(others, found, samples))
     for (one, other), why in reasons.items():
         etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason=why)
-    return JoinedSemantics(xml_text(root), tuple(notes))
+    told = dict.fromkeys(str(it) for part in parts for it in part.findings if it.level == WARNING)
+    return JoinedSemantics(xml_text(root), (*told, *notes))
 
 
 def without_virtual_joints(own: _Element) -> None:
@@ -122,7 +128,7 @@ def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[t
     """Pairs of links of two parts with nothing that has a shape between them."""
     beside: dict[str, set[str]] = defaultdict(set)
     for joint in described.iterchildren("joint"):
-        one, other = (_link_of(joint, tag) for tag in ("parent", "child"))
+        one, other = (end_of(joint, tag) for tag in ("parent", "child"))
         beside[one].add(other)
         beside[other].add(one)
     shaped = _shaped(described)
@@ -132,11 +138,6 @@ def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[t
             for other in _near(link, beside, shaped):
                 if other not in own:
                     yield min(link, other), max(link, other)
-
-
-def _link_of(joint: _Element, tag: str) -> str:
-    found = joint.find(tag)
-    return "" if found is None else found.get("link", "")
 
 
 def _shaped(described: _Element) -> set[str]:

@@ -30,8 +30,8 @@ ADDRESS, FILE = "address", "file"
 NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
 # The kind of what only a namespace keeps apart.
 RELATIVE = "relative names of"
-# A port that the system gives, and every address of a machine: no two robots meet there.
-ANY_ADDRESS = frozenset({"0", "0.0.0.0"})
+# A port that the system gives, every address of a machine, its loopback: no two robots meet there.
+ANY_ADDRESS = frozenset({"0", "0.0.0.0", "lo"})
 # Kinds of names that something runs by: a section with one of them says what it opens.
 _OPENED = frozenset({"topic", "subtopic", "service", "stem", "namespace"})
 # A <plugin> in these is a class that is loaded by what is around it, or MJCF, which runs nothing.

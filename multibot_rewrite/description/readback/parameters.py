@@ -56,7 +56,7 @@ def holds(host: _Element, conditions: str) -> bool:
 
 
 def _holds(host: _Element, condition: str) -> bool:
-    path, _, wanted = condition.partition("=")
+    path, _, wanted = condition.rpartition("=")
     text = next(iter(given_at(host, path)), "")
     if wanted not in ("true", "false"):
         return text in wanted.split("|")

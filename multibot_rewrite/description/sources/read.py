@@ -113,4 +113,5 @@ def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
         return read_bytes(path, limit)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+        more = "; name a file in it" if isinstance(error, IsADirectoryError) else ""
+        raise InputError(f"{path}: cannot be read: {reason}{more}") from None

@@ -9,6 +9,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS
+from multibot_rewrite.companions.moveit.file_kind import SIMPLE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
@@ -21,7 +22,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE
-from multibot_rewrite.producers.evidence.moveit import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
@@ -43,7 +43,7 @@ def written_findings(
     for text in bridges:
         yield from _asked(no_gz_topic, BRIDGE, text, context, memo)
     opened = {it.file for it in known if it.code == undeclared_controller.code}
-    moveit = [it for it in own if MANAGER in it.text and opened.isdisjoint(it.sources)]
+    moveit = [it for it in own if SIMPLE in it.text and opened.isdisjoint(it.sources)]
     memo = {Beside: _beside(plan, robot, own) if moveit else None}
     for text in moveit:
         kind = PARAMS if PARAMETERS in text.text else MOVEIT

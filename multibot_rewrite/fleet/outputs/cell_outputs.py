@@ -18,7 +18,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, SIMPLE, file_kind
+from multibot_rewrite.companions.moveit.file_kind import NAMES, OF_SERVO, SIMPLE, file_kind
 from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit
 from multibot_rewrite.companions.moveit.name_sites import entries
 from multibot_rewrite.companions.names.rename_map import spell
@@ -39,7 +39,7 @@ from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 
-_NAMES, _MANAGER = "controller_names", "moveit_controller_manager"
+_MANAGER = "moveit_controller_manager"
 _DESCRIPTION = "robot_description"
 _ONE_MANAGER = "Ros2ControlManager"
 _ARM = """\
@@ -156,7 +156,7 @@ def _check_manager(document: YamlText, robot: RewrittenRobot) -> None:
 def _into_namespace(node: yaml.Node | None, namespace: str) -> None:
     """Put the namespace before the names of controllers, where a file lists them."""
     found = {str(key.value): value for key, value in entries(node)}
-    listed = found[_NAMES].value if _NAMES in found else ()
+    listed = found[NAMES].value if NAMES in found else ()
     names = {it.value for it in listed}
     for it in (*listed, *(key for key, _ in entries(node) if key.value in names)):
         it.value = f"{namespace}/{it.value}"

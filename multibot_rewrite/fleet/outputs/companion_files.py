@@ -20,6 +20,7 @@ from multibot_rewrite.companions.template import (
     TAG_SLOT,
     fill_template,
 )
+from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
@@ -28,7 +29,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     text_of,
 )
-from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS, said_of_numbers
+from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME

@@ -22,6 +22,7 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,
     EMPTY,
+    NAMES,
     OF_SERVO,
     PLANNING,
     SIMPLE,
@@ -132,7 +133,7 @@ def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mappin
         if kind == PLANNING and (name := pipeline_of(path)):
             pipelines.append(name)
             found.setdefault(name, {}).update(_with_plugins(name, data, release))
-        elif kind == "controllers" and "controller_names" in data:
+        elif kind == "controllers" and NAMES in data:
             found |= {"moveit_controller_manager": _MANAGER, SIMPLE: data}
         elif above := ABOVE.get(kind, ""):
             found.setdefault(above, {}).update(data.get(above, data))

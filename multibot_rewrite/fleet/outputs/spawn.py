@@ -89,8 +89,7 @@ def is_classic(robot: RewrittenRobot) -> bool:
 
 def simulators(plan: FleetPlan) -> list[str]:
     """The simulators of the robots: ``classic``, ``gz``, none."""
-    simulated = [it for it in plan.robots if is_simulated(it) and it.spec.simulator != REAL]
-    return sorted({"classic" if is_classic(it) else "gz" for it in simulated})
+    return sorted({"classic" if is_classic(it) else "gz" for it in plan.robots if is_simulated(it)})
 
 
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:

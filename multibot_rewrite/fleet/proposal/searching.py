@@ -16,7 +16,6 @@ from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
 
@@ -97,7 +96,7 @@ def search(paths: Sequence[str]) -> Found:
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
     # What goes with a description is none: without one it is told by what it is.
     for path in files if files or folders else meant:
-        refuse_others(read_file(path), path, *DESCRIPTIONS)
+        refuse_others(data_of_file(path), path, *DESCRIPTIONS)
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))

@@ -18,7 +18,6 @@ from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.rules.launch.models import in_each_other
 
-_BRIDGE = "ros_gz_bridge"
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
 
@@ -27,12 +26,12 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
     """The robots in a simulator that start in another one.
 
     A robot turns in its place, so half of what the larger one reaches is let pass: what is found
-    overlaps however they are turned. A fleet without any pose is placed by somebody else, unless its
-    files say that it is simulated, and no launch file spawns it.
+    overlaps however they are turned. A fleet without any pose is a warning: somebody else may place it,
+    but the launch file of a build does not.
     """
     robots = [it for it in plan.robots if is_simulated(it)]
     if all(it.spec.pose is None for it in robots):
-        yield from _without_poses(plan, [it for it in robots if _is_spawned_here(plan, it)])
+        yield from _without_poses(robots)
         return
     reach = {it.spec.sources: _within(it) for it in {it.spec.sources: it for it in robots}.values()}
     for one, other in _pairs(robots):
@@ -42,18 +41,9 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
             yield _finding(other, one.spec.name, gap, needed)
 
 
-def _is_spawned_here(plan: FleetPlan, robot: RewrittenRobot) -> bool:
-    """Does its file say that it runs in a simulator, and start nothing that may spawn it?"""
-    spec = robot.spec
-    nodes = plan.evidence_of(robot).nodes
-    bridged = "bridge" in spec.companions or any(it.package == _BRIDGE for it in nodes)
-    return not spec.launch and bool(spec.simulator or spec.simulated or bridged)
-
-
-def _without_poses(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    reach = max(map(_within, robots), default=0)
-    if len(robots) > 1 and reach:
-        room = ceil(4 * reach)
+def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    if len(robots) > 1:
+        room = max(1, ceil(4 * max(map(_within, robots))))
         message = f"no robot has a start pose: all {len(robots)} are spawned in each other"
         hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
         yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)

@@ -8,6 +8,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.moveit.file_kind import SIMPLE
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText
@@ -24,7 +25,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
 from multibot_rewrite.producers.evidence.hardware import Exported, exported
-from multibot_rewrite.producers.evidence.moveit import MANAGER, planning_system
+from multibot_rewrite.producers.evidence.moveit import planning_system
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
@@ -84,7 +85,7 @@ def system_before(
             ends=tuple(_ends_of(robot, nodes, given, reading)),
             edges=tuple(_edges_of(robot, nodes, evidence, sent)),
             environment=DRIVERS,
-            lookups=tuple(_lookups(plain, evidence.known, said, sent)),
+            lookups=tuple(_lookups(plain, nodes, evidence.known, said, sent)),
         ),
     )
 
@@ -131,14 +132,20 @@ def _control(
 
 
 def _lookups(
-    given: Iterable[GivenNode],
+    given: Sequence[GivenNode],
+    nodes: Sequence[NodeFacts],
     known: Mapping[str, NodeFacts],
     said: Semantics,
     sent: Container[str],
 ) -> Iterator[Lookup]:
+    runs = {it.name: it for it in nodes}
     for it in given:
-        if it.known in known:
-            yield from lookups_of(f"/{it.name}", known[it.known], it.values)
+        # A costmap is known as a part of the server that has it.
+        if facts := known.get(it.known, runs.get(it.name)):
+            yield from lookups_of(f"/{it.name}", facts, it.values)
+    filed = {it.name for it in given}
+    for node in (it for it in nodes if it.name not in filed):
+        yield from lookups_of(f"/{node.name}", node, {})
     yield from (it for it in virtual_lookups(said) if it.frame not in sent)
 
 
@@ -177,7 +184,7 @@ def system_after(
     said = (
         semantics(read_document(robot.srdf, path).root, written.root, path) if robot.srdf else NONE
     )
-    moveit = [it.yaml for it in own if MANAGER in it.text]
+    moveit = [it.yaml for it in own if SIMPLE in it.text]
     exports = exported(written.root, robot.member.source.file)
     control = _control(given, evidence, exports, moveit, said)
     return RobotSystem(control, of_robot(whole, robot.spec.namespace))

@@ -12,18 +12,17 @@ from collections.abc import Iterable, Iterator
 
 import yaml
 
+from multibot_rewrite.companions.moveit.file_kind import NAMES, SIMPLE
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.knowledge.records import MOVE_GROUP
 from multibot_rewrite.producers.evidence.semantics import Semantics
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, JOINT, Interface, Place, System
 
-MANAGER, NAMES = "moveit_simple_controller_manager", "controller_names"
-
 
 def managers(node: yaml.Node | None) -> Iterator[yaml.Node]:
     """The manager's map, at the top of a file or below a node's parameters."""
     for key, value in pairs(node):
-        if key.value == MANAGER:
+        if key.value == SIMPLE:
             yield value
         elif isinstance(value, yaml.MappingNode):
             yield from managers(value)

@@ -6,10 +6,10 @@ from __future__ import annotations
 import os
 import subprocess
 
-from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.file_kinds import LAUNCH, refuse_others
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, to_json
 from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
 
@@ -24,9 +24,7 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
 
     Raises InputError for a file that cannot be read.
     """
-    if not os.path.isfile(order.file):
-        raise InputError(f"{order.file}: the launch file does not exist; correct the path")
-    refuse_others(read_bytes(order.file), order.file, LAUNCH)
+    refuse_others(read_file(order.file), order.file, LAUNCH)
     if is_system_model(order.file):
         return read_system_model(order.file)
     if not order.trusted:

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from math import inf
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.answers import Answers
@@ -155,6 +156,7 @@ def _wait_until_settled(
     """
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
+    losses = _Losses(session)
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
@@ -169,7 +171,7 @@ def _wait_until_settled(
             session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
-        quiet = _enough(session)
+        quiet = _enough(session, changed.all, losses.last(now))
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
@@ -190,20 +192,34 @@ def _wait_until_settled(
     return "", clock, ()
 
 
-def _enough(session: GraphSession) -> float:
-    """How many seconds without a change are enough: fewer where every participant of this machine has
-    announced itself, the range allows no other machine, and no datagram was lost since its node is
-    there: Fast DDS sends it again after its heartbeat of 3 s."""
+class _Losses:
+    """When a datagram of the domain was last lost on this machine, in seconds of the look."""
+
+    def __init__(self, session: GraphSession) -> None:
+        self._domain, self._lost, self._at = session.domain(), session.lost, -inf
+
+    def last(self, now: float) -> float:
+        """The same, with what was lost until ``now``; fewer are told where a process has ended."""
+        lost = lost_here(self._domain)
+        if lost != self._lost:
+            self._lost, self._at = lost, now
+        return self._at
+
+
+def _enough(session: GraphSession, changed: float, lost: float) -> float:
+    """How many seconds without a change after ``changed`` are enough: fewer where every participant of
+    this machine has announced itself, the range allows no other machine, and what was ``lost`` has been
+    sent again, as Fast DDS does after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
     here = participants_here(session.domain())
-    known = (
-        bool(announced) and len(announced) == here and lost_here(session.domain()) == session.lost
-    )
-    return assemble.ALL_KNOWN_SECONDS if known else assemble.QUIET_SECONDS
+    if not announced or len(announced) != here:
+        return assemble.QUIET_SECONDS
+    again = lost + assemble.QUIET_SECONDS - changed
+    return min(max(assemble.ALL_KNOWN_SECONDS, again), assemble.QUIET_SECONDS)
 
 
 class _ChangeTimes:

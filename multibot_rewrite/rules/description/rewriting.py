@@ -77,7 +77,7 @@ unknown_plugin = rule(
     "unknown-plugin",
     NOTE,
     what="A plugin or a type of sensor is not in the vocabulary. Or its section does not say what "
-    "it opens: topics, services, files, network addresses.",
+    "it opens: topics, services, files, network addresses. Or no Gazebo of the release loads it.",
     why="Its parameters for links, joints, frames or topics stay the same for every robot, "
     "unless other plugins have parameters of these names. Its own topics may collide, too.",
     fix="Add a section for it to a vocabulary file, with a line for each topic and service; where it "

@@ -18,12 +18,12 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.moveit.file_kind import NAMES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.producers.evidence.moveit import (
-    NAMES,
     controllers_of,
     joints_of,
     managers,

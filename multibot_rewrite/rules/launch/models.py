@@ -66,8 +66,8 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
     "MG702",
     "robots-in-each-other",
     what="Two robots start in each other. A launch file spawns one where another stands, or the "
-    "start poses of a fleet file have less room between them than the shapes need. A warning where "
-    "robots run in a simulator, no launch file of theirs spawns them, and none has a start pose.",
+    "start poses of a fleet file have less room between them than the shapes need. It is a warning "
+    "where no robot of a fleet file has a start pose, since something else may place them.",
     why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
     "entangled.",
     fix="Give each a place of its own: `-x` and `-y` of its spawner. In a fleet file it is `pose` "

@@ -45,8 +45,9 @@ running: /robot1/planner looks up base_link
     line=2,
 )
 def frame_not_sent(seen: Index) -> Iterator[Finding]:
-    """Each frame once a robot; other names than the usual ones may be those of a driver."""
-    told = set()
+    """Each frame once a robot, with all that read it; other names than the usual ones may be those of a
+    driver."""
+    readers: dict[tuple[str, str, str], dict[str, Lookup]] = {}
     robots = dict.fromkeys(seen.robot(it.node) for it in seen.system.lookups)
     sent = {name: [it for tree in trees_of(seen, name) for it in tree.edges] for name in robots}
     frames = {name: frozenset(frames_in(edges)) for name, edges in sent.items()}
@@ -54,10 +55,13 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.node)
         if it.frame in frames[robot] and not it.parent:
             continue
+        readers.setdefault((robot, it.parent, it.frame), {}).setdefault(it.node, it)
+    for (robot, *_), nodes in readers.items():
+        it, *others = nodes.values()
         found = _state(seen, it, sent[robot]) if it.parent else _read(seen, it, sent[robot])
-        if found and (robot, it.parent, it.frame) not in told:
-            told.add((robot, it.parent, it.frame))
-            yield found
+        if found:
+            also = f"; the same for {', '.join(other.node for other in others)}" if others else ""
+            yield found._replace(message=f"{found.message}{also}")
 
 
 def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:

@@ -57,6 +57,12 @@ OPENARM = (
     "<plugin>openarm_hardware/OpenArm_v10HW</plugin></hardware>"
     '<joint name="openarm_joint1"><command_interface name="position"/></joint></ros2_control>'
 )
+MOTOR = (
+    '<link name="prop"/><joint name="rotor_0_joint" type="continuous"><parent link="base"/>'
+    '<child link="prop"/></joint><gazebo><plugin name="custom::MotorFailureSystem" '
+    'filename="MotorFailurePlugin"/></gazebo><gazebo reference="base">'
+    '<sensor name="s" type="imu"><gz_frame_id>base</gz_frame_id></sensor></gazebo>'
+)
 WINCH = '<gazebo><plugin name="w" filename="libacme_winch.so"/></gazebo>'
 ARM = (
     '<ros2_control name="s" type="system"><hardware><plugin>acme/Arm</plugin></hardware>'
@@ -103,6 +109,10 @@ ROWS = (
         "--layout tf-per-robot",
         OPENARM,
         {"layout": "tf-per-robot"},
+    ),
+    *(
+        Followed(MOTOR, it, "jazzy", code, "--layout", MOTOR, {"layout": "frame-prefix"})
+        for it, code in (("postfix", "MB428"), ("both", "MB428"), ("tf-per-robot", "MB437"))
     ),
     Followed(
         WINCH,

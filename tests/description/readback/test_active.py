@@ -55,7 +55,7 @@ def why(text: str, layout: str = "postfix", distro: str = "jazzy") -> tuple[str,
         (plugin("gazebo_yarp_camera"), "1 plugin not known"),
         # A plugin in a plugin (gz-sim SystemManager.cc: it is read by the system around it).
         (
-            plugin("gazebo_grasp_fix", '<plugin name="q" filename="libunheard.so"/>'),
+            plugin("ArduPilotPlugin", '<plugin name="q" filename="libunheard.so"/>'),
             "1 plugin not known",
         ),
     ],
@@ -68,7 +68,27 @@ def test_nothing_active_is_proved_by_silence(inside: str, reason: str, layout: s
 def test_what_is_known_to_open_nothing_is_proved() -> None:
     text = robot(hardware("mock_components/GenericSystem") + plugin("gazebo_grasp_fix"))
     for layout in ("postfix", "tf-per-robot", "frames-per-robot", "both"):
-        assert why(text, layout) == ()
+        assert why(text, layout, "humble") == ()
+
+
+@pytest.mark.parametrize(
+    ("inside", "loaded"),
+    [
+        (plugin("gazebo_grasp_fix"), ["humble"]),
+        # One file for both: the Gazebo that is started passes over what it has not.
+        (
+            plugin("gazebo_grasp_fix") + plugin("gz-sim-pose-publisher-system"),
+            ["humble", "jazzy", "lyrical"],
+        ),
+        ("<!-- libgazebo_grasp_fix.so -->", ["humble", "jazzy", "lyrical"]),
+    ],
+)
+def test_a_plugin_of_classic_is_not_proved_where_no_gazebo_loads_it(
+    inside: str, loaded: list[str]
+) -> None:
+    """REP 2000: Humble is the last release with Gazebo Classic."""
+    given = {it: why(robot(inside), distro=it) for it in ("humble", "jazzy", "lyrical")}
+    assert [it for it, reason in given.items() if not reason] == loaded
 
 
 def test_a_description_without_a_link_is_not_proved() -> None:

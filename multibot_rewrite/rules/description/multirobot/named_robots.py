@@ -270,7 +270,8 @@ hard_wired_name = rule(
     what="A plugin's code looks for a fixed name, which is renamed for each robot.",
     why="It does not find the new name and stops, or moves nothing: it has no parameter for "
     "another name.",
-    fix="Keep the names as they are and separate the robots by tf topics: layout tf-per-robot.",
+    fix="Keep the names as they are and separate the robots by tf topics: layout tf-per-robot. Or take "
+    "frame-prefix, where all robots would have the same text.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<joint name="right_front" type="continuous">\n'

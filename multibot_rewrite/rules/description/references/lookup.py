@@ -8,11 +8,13 @@ from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.audit import uses_xacro
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import (
+    JOINT,
     Loose,
     doubtful,
     loose_ends,
@@ -20,7 +22,7 @@ from multibot_rewrite.description.checks.references import (
 )
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.rules.facts.certain import lacking, since_jazzy
+from multibot_rewrite.rules.facts.certain import lacking, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -85,6 +87,13 @@ def _is_of_included(element: _Element) -> bool:
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
+    plugins = ERROR if code == JOINT and _in_simulator(subject) else ""
     for it in lacking(subject, references(subject).loose.get(code, ())):
         of_system = next(it.element.iterancestors("ros2_control"), None) is not None
-        yield it._replace(level=it.level or since_jazzy(subject)) if of_system else it
+        level = it.level or since_jazzy(subject) if of_system else plugins or it.level
+        yield it._replace(level=level)
+
+
+def _in_simulator(subject: Subject) -> bool:
+    """Do its plugins run for certain, and find no joint that is not there?"""
+    return subject.settings.simulated and level_of_absence(subject) == ERROR

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ports such as the one at which an autopilot is met: each further robot that has the number of an
+earlier one gets the next that is free.
+
+Sources of the steps (``address+STEP`` in the vocabulary): ArduPilot
+libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -I``); PX4-Autopilot
+launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem, to_findings
+from multibot_rewrite.description.readback.meeting import OPENED, advice, code_of, meetings, said
+from multibot_rewrite.description.readback.parameters import holds
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.readback.xml import elements_at
+from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    split_opens,
+    split_path,
+    split_step,
+)
+from multibot_rewrite.description.steps.apply import Template, cut
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import read_document, tag_end, text_slot
+
+NUMBERED = "MF845"
+# So many robots are named in the note.
+_NAMED = 4
+
+
+class Port(NamedTuple):
+    """A number of a robot, the parameter that holds it, the step to that of the next robot, and what
+    is replaced to change it: ``text`` with the number in it."""
+
+    name: str
+    number: int
+    step: int
+    start: int
+    end: int
+    text: str
+
+
+class Numbered(NamedTuple):
+    """The texts of robots with numbers of their own, and what is said of them: the message and what
+    to do for each parameter."""
+
+    texts: tuple[bytes, ...]
+    notes: tuple[tuple[str, str], ...]
+
+
+def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
+    """Give each robot, a text with its ports, the numbers that no earlier one has; raises nothing."""
+    taken = {port.number for _, own in robots.values() for port in own}
+    held: set[int] = set()
+    given: dict[str, list[tuple[str, int]]] = {}
+    changed: set[str] = set()
+    texts: list[bytes] = []
+    for robot, (text, own) in robots.items():
+        new: dict[int, int] = {}
+        for it in own:
+            new[it.number] = new.get(it.number) or _free(it, held, taken)
+            taken.add(new[it.number])
+            given.setdefault(it.name, []).append((robot, new[it.number]))
+        held |= {*new.values()}
+        edits = _edits(own, new)
+        changed |= {it.name for it in own if new[it.number] != it.number}
+        texts.append(b"".join(cut(text, edits)) if edits else text)
+    notes = tuple(said_of_numbers(it, given[it]) for it in sorted(changed))
+    return Numbered(tuple(texts), notes)
+
+
+def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
+    """Which number each robot got for a port, and what to do; raises nothing."""
+    words = [f"{robot} {number}" for robot, number in given]
+    more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
+    message = f"{name} is numbered: {', '.join(words[:_NAMED])}{more}"
+    return message, "start what each robot talks to with its number"
+
+
+def _free(port: Port, held: set[int], taken: set[int]) -> int:
+    number = port.number
+    while number in held or (number in taken and number != port.number):
+        number += port.step
+    return number
+
+
+def ports_of(inventory: Inventory) -> Iterator[Port]:
+    """What can be numbered in a description, each at its place; raises nothing."""
+    document = inventory.document
+    starts = dict(zip(document.elements, document.starts, strict=True))
+    for host, section in inventory.served:
+        for word in section.opens:
+            _, step, when, path, usual = split_opens(word)
+            if step and (not when or holds(host, when)):
+                there = list(elements_at(host, split_path(path)[0]))
+                for it in there:
+                    yield from _written(document.source, starts[it], it, path, int(step))
+                if usual and not there:
+                    yield from _default(document.source, starts, host, path, usual, int(step))
+
+
+def _written(source: bytes, start: int, element: _Element, path: str, step: int) -> Iterator[Port]:
+    text = text_of(element)
+    slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
+    if slot:
+        name = split_step(split_path(path)[0][-1])[2] or path
+        yield Port(name, int(text), step, *slot, "{}")
+
+
+def _default(
+    source: bytes, starts: Mapping[_Element, int], host: _Element, path: str, usual: str, step: int
+) -> Iterator[Port]:
+    """One that is not written is put first into its plugin, or into what is there of the path."""
+    *above, last = split_path(path)[0]
+    inside = next(elements_at(host, tuple(above)), None)
+    start = 0 if inside is None else starts[inside]
+    at = tag_end(source, start) if start else 0
+    if at and not source.endswith(b"/>", start, at):
+        tag, attribute, value = split_step(last)
+        named = f' {attribute}="{value}"' if attribute else ""
+        yield Port(value or path, int(usual), step, at, at, f"<{tag}{named}>{{}}</{tag}>")
+
+
+def _edits(own: Sequence[Port], new: Mapping[int, int]) -> list[Edit]:
+    changed = (it for it in own if new[it.number] != it.number)
+    return sorted(
+        Edit(it.start, it.end, it.text.format(new[it.number]).encode(), None) for it in changed
+    )
+
+
+def judged_together(
+    template: Template, texts: Mapping[str, bytes]
+) -> tuple[list[bytes], list[Finding]]:
+    """The texts of one description for these robots with numbers of their own, and what is said of
+    them: each number, and by the second reading what two robots would open all the same."""
+    document, vocabulary = template.inventory.document, template.tree.vocabulary
+    file = document.file
+    again = {it: collect(read_document(texts[it], file), template.tree) for it in texts}
+    made = numbered({it: (texts[it], [*ports_of(again[it])]) for it in texts})
+    names = {
+        robot: [it for it in read(text, file, vocabulary).names if code_of(it) == OPENED]
+        for robot, text in zip(texts, made.texts, strict=True)
+    }
+    root = document.root
+    met = [
+        Problem(
+            next(islice(root.iter(it.name.tag), it.name.number, None), root),
+            said(f"{it.robot} and {it.other} would both", it.name, it.twin),
+            hint=advice(it.name),
+            code=OPENED,
+        )
+        for it in meetings(names, template.naming)
+    ]
+    notes = [Problem(root, message, hint=hint, code=NUMBERED) for message, hint in made.notes]
+    told = to_findings(document, notes, NOTE, of_file=True)
+    return [*made.texts], [*to_findings(document, met, WARNING), *told]
