@@ -197,6 +197,8 @@ def _is_told(why: str, told: str) -> bool:
     node is named that reads or sends it says nothing of it."""
     if " has no type for " in why and "it makes no controller_manager" in told:
         return True
+    if re.search(" moves |two nodes are called", why) and "has parameters of ROS 1" in told:
+        return True
     if " looks for " in why:
         node = why.partition(" ")[0].rpartition("/")[2]
         return any(node in line and "frame" in line for line in told.splitlines())

@@ -18,7 +18,6 @@ from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
 from multibot_rewrite.cli.report import (
-    TEXT,
     About,
     check_report,
     chosen,
@@ -53,12 +52,13 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = plan_of(options)
     parts = _looked_at(options, plan, several)
-    if parts and not options.bag:
-        if not options.watch:
-            return _apart(options, plan, parts)
-        options, plan = _only(options, parts)
     if options.watch:
-        return _watch(options, _with_files(options, plan) if options.state else plan)
+        if len(parts) == 1:
+            ((domain, plan),) = parts.items()
+            options, parts = live.at(options, domain), {}
+        return _watch(options, _with_files(options, plan) if options.state else plan, [*parts])
+    if parts and not options.bag:
+        return _apart(options, plan, parts)
     if options.bag:
         return _recorded(options, plan)
     graph = live.graph(options, judge=lambda it: check(plan, it))
@@ -81,17 +81,6 @@ def _looked_at(
             known = ", ".join(map(str, parts))
             raise UsageError(f"--domain {it}: the plan has no node there; it has {known}")
     return {it: parts[it] for it in asked} or parts
-
-
-def _only(
-    options: argparse.Namespace, parts: Mapping[int, System]
-) -> tuple[argparse.Namespace, System]:
-    """The options and the plan for the one domain that is watched."""
-    if len(parts) > 1:
-        known = ", ".join(map(str, parts))
-        raise UsageError(f"--watch looks at one domain: give one with --domain ({known})")
-    ((domain, plan),) = parts.items()
-    return live.at(options, domain), plan
 
 
 def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
@@ -126,8 +115,6 @@ def _recorded(options: argparse.Namespace, plan: System) -> int:
 
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
-    if options.watch and (options.select or options.ignore or options.format != TEXT):
-        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if options.suggest:
         raise UsageError("--suggest begins a plan: leave out PLAN")
     check_report(options, printed=False)
@@ -237,11 +224,15 @@ def _sum_up(
     note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")
 
 
-def _watch(options: argparse.Namespace, plan: System) -> int:
+def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
-    snapshots = live.watched(options, _parameters(plan))
-    last = follow(lambda graph: (plan, check(plan, graph)), snapshots)
+
+    def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
+        graph = side_by_side(views)
+        return plan, graph, check_domains(plan, views) if domains else check(plan, graph)
+
+    last = follow(look, live.watched(options, _parameters(plan), domains))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

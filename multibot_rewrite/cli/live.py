@@ -12,6 +12,7 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping
+from contextlib import closing
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import is_screen, note, shown
 from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.report import TEXT
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import ABSENCE
@@ -47,6 +49,8 @@ def check_source(options: argparse.Namespace) -> None:
                 raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if watching and (options.select or options.ignore or options.format != TEXT):
+        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if getattr(options, "state", False) and (saved or options.zenoh):
         raise UsageError("--state asks nodes of the live graph: leave out --snapshot and --zenoh")
     if saved and options.zenoh:
@@ -158,20 +162,33 @@ def note_answers(options: argparse.Namespace, seen: System) -> None:
 
 
 def watched(
-    options: argparse.Namespace, parameters: Mapping[str, Collection[str]] = NO_MORE
-) -> Generator[System, None, None]:
-    """Snapshots of the live graph that the options name, one after each change; with ``--state`` also
-    with what its nodes answer, who are asked for ``parameters`` besides."""
+    options: argparse.Namespace,
+    parameters: Mapping[str, Collection[str]] = NO_MORE,
+    domains: Collection[int] = (),
+) -> Generator[Mapping[int, System], None, None]:
+    """What is seen of the live graph that the options name, or in each of these domains once all were
+    seen, after each change; with ``--state`` also with what nodes answer, who are asked for
+    ``parameters`` besides."""
+    if options.zenoh and len(domains) > 1:
+        raise UsageError("--watch through a router looks at one domain: give one with --domain")
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)
     if options.zenoh:
         from multibot_rewrite.producers.zenoh import observe
 
-        return observe.watch(asked, _router(options))
+        with closing(observe.watch(asked, _router(options))) as seen:
+            yield from ({0: it} for it in seen)
+        return
     from multibot_rewrite.producers.ros import child
 
-    return child.watch(asked, environ(options.domain))
+    environs = {it: environ(it) for it in domains} or {0: environ(options.domain)}
+    views: dict[int, System] = {}
+    with closing(child.watch(asked, environs)) as changes:
+        for number, view in changes:
+            views[number] = view
+            if len(views) == len(environs):
+                yield {it: views[it] for it in environs}
 
 
 def _router(options: argparse.Namespace) -> Router:

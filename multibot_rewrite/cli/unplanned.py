@@ -15,7 +15,6 @@ from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
-    TEXT,
     About,
     by_themselves,
     check_report,
@@ -32,6 +31,7 @@ from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.rules.pair.nodes import missing_robot
+from multibot_rewrite.system.domains import unnamed
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tool_nodes import is_tool
 
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
     _check_use(options, domains)
     if options.watch:
-        return _watch(options)
+        return _watch(options, domains)
     if options.bag:
         recording = read_bag(options.bag)
         return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
@@ -81,11 +81,8 @@ def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
 
 def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
     live.check_source(options)
-    for name in ("watch", "suggest") if domains else ():
-        if vars(options)[name]:
-            raise UsageError(f"--{name} is for one domain: give one with --domain")
-    if options.watch and (options.select or options.ignore or options.format != TEXT):
-        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    if domains and options.suggest:
+        raise UsageError("--suggest is for one domain: give one with --domain")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
@@ -168,8 +165,8 @@ def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
     return {**WORDS, Verdict.PLANNED: "no error, see the warnings"} if warned else WORDS
 
 
-def _watch(options: argparse.Namespace) -> int:
-    last = follow(_looking(), live.watched(options), WORDS)
+def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
+    last = follow(_looking(), live.watched(options, domains=domains), WORDS)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
@@ -185,14 +182,16 @@ def _looking() -> Look:
     """What is found in one graph after another; a robot that ran is missed when it is gone."""
     known: dict[str, set[str]] = {}
 
-    def look(graph: System) -> tuple[System, Sequence[Finding]]:
-        seen = diagnose(graph)
-        there = {it.name for it in graph.nodes if not is_tool(it.name)}
+    def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
+        each = {at: diagnose(it) for at, it in views.items()}
+        seen = diagnose_domains(each) if len(each) > 1 else next(iter(each.values()))
+        there = {it.name for it in seen.graph.nodes if not is_tool(it.name)}
         for node in there:
             if robot := seen.whose.robot(node):
                 known.setdefault(robot, set()).add(node)
-        gone = (_gone(*it) for it in known.items() if there.isdisjoint(it[1]))
-        return seen_plan(seen), (*seen.findings, *gone)
+        gone = [_gone(*it) for it in known.items() if there.isdisjoint(it[1])]
+        lost = map(unnamed, gone) if len(each) > 1 else gone
+        return seen_plan(seen), seen.graph, (*seen.findings, *lost)
 
     return look
 

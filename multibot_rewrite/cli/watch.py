@@ -19,12 +19,13 @@ from multibot_rewrite.system.records import CHANGING, System
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
 Show = Callable[[WatchState], None]
-# The plan of a graph, and what is found in it.
-Look = Callable[[System], tuple[System, Sequence[Finding]]]
+# What is seen, by domain, -> the plan of it, all of it as one graph, and what is found in it.
+Views = Mapping[int, System]
+Look = Callable[[Views], tuple[System, System, Sequence[Finding]]]
 
 
 def follow(
-    look: Look, snapshots: Generator[System, None, None], words: Mapping[Verdict, str] = WORDS
+    look: Look, snapshots: Generator[Views, None, None], words: Mapping[Verdict, str] = WORDS
 ) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
     state: WatchState | None = None
@@ -33,18 +34,13 @@ def follow(
         screen = sys.stdout.isatty()
         show = stack.enter_context(_screen(words)) if screen else partial(_print_lines, words)
         try:
-            for graph in snapshots:
-                state = with_found(*_looked(look, graph), state)
+            for views in snapshots:
+                state = with_found(*look(views), state)
                 show(state)
         except KeyboardInterrupt:
             # The usual way to end it.
             return state
     return state
-
-
-def _looked(look: Look, graph: System) -> tuple[System, System, Sequence[Finding]]:
-    plan, found = look(graph)
-    return plan, graph, found
 
 
 def _print_lines(words: Mapping[Verdict, str], state: WatchState) -> None:

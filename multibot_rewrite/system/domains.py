@@ -60,9 +60,11 @@ def _named(plan: System, numbers: Mapping[str, int], at: int) -> Set[str]:
 
 def side_by_side(seen: Mapping[int, System]) -> System:
     """What was seen of all domains as one view, to be shown, and to hold robots against each other;
-    what is said of a view names its domain."""
+    what is said of a view names its domain, where there are several."""
     views = tuple(seen.values())
     first = views[0]
+    if len(views) == 1:
+        return first
     return first._replace(
         nodes=tuple(it for one in views for it in one.nodes),
         ends=tuple(it for one in views for it in one.ends),

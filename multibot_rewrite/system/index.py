@@ -335,6 +335,12 @@ def at_work(ends: Iterable[End]) -> list[End]:
     return [end for end in ends if not is_viewer(end.node)]
 
 
+def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
+    """The type of a topic, and the nodes that publish it and do more than look; empty without."""
+    ends = it.by_name.get((TOPIC, topic))
+    return (ends.type, nodes_of(at_work(ends.publishers))) if ends else ("", ())
+
+
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
     """The robots that some nodes belong to, each once.
 

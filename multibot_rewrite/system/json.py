@@ -83,7 +83,7 @@ FULL_NAMES = {
     (Parameter, "node"),
     (Controller, "manager"),
 }
-_TRANSFORM = (Edge, "transform")
+_NUMBERS = {(Edge, "transform"), (Heard, "pose")}
 # The transforms of a plan say who sends them and not on which topic.
 MAYBE_FULL_NAMES: Mapping[type, str] = {Edge: "topic"}
 # What fixes a file is for the program that found it.
@@ -242,7 +242,7 @@ def _field_reader(kind: Any, name: str, hint: Any) -> Reader:
     words = ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(read_word, words)
-    if (kind, name) == _TRANSFORM:
+    if (kind, name) in _NUMBERS:
         return read_transform
     if MAYBE_FULL_NAMES.get(kind) == name:
         return lambda value: value if value == "" else read_full_name(value)

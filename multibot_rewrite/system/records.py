@@ -187,7 +187,8 @@ class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
     for a stamp of 0, and for a clock that stands, 0 for less than a second or not known. ``rate`` are
     messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
-    names in a message about joints, which has no frame, ``back`` by how much a clock went back."""
+    names in a message about joints, which has no frame, ``back`` by how much a clock went back,
+    ``pose`` that of odometry or a pose, as the numbers of an edge."""
 
     topic: str
     frame: str
@@ -196,6 +197,7 @@ class Heard(NamedTuple):
     child: str = ""
     joints: tuple[str, ...] = ()
     back: float = 0.0
+    pose: tuple[float, ...] = ()
 
 
 class Lookup(NamedTuple):

@@ -6,7 +6,7 @@ import argparse
 import io
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -97,6 +97,7 @@ def test_a_file_with_a_colon_may_be_explained() -> None:
 # ---------------------------------------------------------------- the source of a graph
 
 
+EVERY = {"select": [], "ignore": [], "format": "text"}
 USUAL = {"snapshot": [], "zenoh": None, "watch": False, "state": False, "bag": None}
 
 
@@ -127,8 +128,8 @@ def test_a_graph_has_one_source(given: dict[str, object], message: str) -> None:
 
 @pytest.mark.parametrize(
     "given",
-    [{}, {"snapshot": ["g"]}, {"zenoh": "z"}, {"watch": True, "state": True}, {"bag": "b"},
-     {"zenoh": "z", "watch": True}],
+    [{}, {"snapshot": ["g"]}, {"zenoh": "z"}, {"watch": True, "state": True, **EVERY}, {"bag": "b"},
+     {"zenoh": "z", "watch": True, **EVERY}],
 )  # fmt: skip
 def test_one_source_is_enough(given: dict[str, object]) -> None:
     live.check_source(options(**{**USUAL, **given}))
@@ -145,17 +146,23 @@ def test_a_live_graph_is_asked_for_with_what_the_options_say(
     monkeypatch.setattr(
         child, "observe", lambda it, around, _: asked.append((it, around["ROS_DOMAIN_ID"]))
     )
-    monkeypatch.setattr(
-        child, "watch", lambda it, around: asked.append((it, around["ROS_DOMAIN_ID"]))
-    )
+
+    def watch(it: Any, around: Mapping[int, Mapping[str, str]]) -> Generator[Any, None, None]:
+        asked.append((it, ",".join(one["ROS_DOMAIN_ID"] for one in around.values())))
+        first, last = min(around), max(around)
+        yield from ((first, "a"), (first, "b"), (last, "c"), (first, "d"))
+
+    monkeypatch.setattr(child, "watch", watch)
     plain = {**USUAL, "timeout": None, "domain": None}
     live.graph(options(**plain))
     live.graph(options(**{**plain, "timeout": 2.0, "domain": 7}, no_frame_ids=False))
     live.graph(options(**plain, no_frame_ids=True))
-    live.watched(options(**plain), {"a": ["b"]})
-    live.watched(options(**{**plain, "timeout": 4.0, "state": True}), {"a": ["b"]})
+    next(live.watched(options(**plain), {"a": ["b"]}))
+    asks = options(**{**plain, "timeout": 4.0, "state": True})
+    # Nothing is said before each has been seen.
+    assert [*live.watched(asks, {"a": ["b"]}, (11, 12))] == [{11: "b", 12: "c"}, {11: "d", 12: "c"}]
     first, second, third, watched, asking = (it for it, _ in asked)
-    assert [it for _, it in asked] == ["3", "7", "3", "3", "3"]
+    assert [it for _, it in asked] == ["3", "7", "3", "3", "11,12"]
     assert (first.timeout, first.headers, first.watch) == (15.0, False, False)
     assert (second.timeout, second.headers, third.headers) == (2.0, True, False)
     assert (watched.timeout, watched.watch, watched.asks) == (float("inf"), True, None)

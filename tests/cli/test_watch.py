@@ -12,7 +12,7 @@ from small_fleet import clash, half, healthy, moving, plan
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main as multibot
-from multibot_rewrite.cli.watch import follow
+from multibot_rewrite.cli.watch import Views, follow
 from multibot_rewrite.live.watching import Verdict, WatchState, final
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import System
@@ -20,13 +20,13 @@ from multibot_rewrite.system.records import System
 MANY = 17
 
 
-def look(graph: System) -> tuple[System, Sequence[Finding]]:
-    return plan(), check(plan(), graph)
+def look(views: Views) -> tuple[System, System, Sequence[Finding]]:
+    return plan(), views[0], check(plan(), views[0])
 
 
-def views(*graphs: System, ended: bool = False) -> Generator[System, None, None]:
+def views(*graphs: System, ended: bool = False) -> Generator[Views, None, None]:
     """The views, and Ctrl-C after the last."""
-    yield from graphs
+    yield from ({0: it} for it in graphs)
     if ended:
         raise KeyboardInterrupt
 
@@ -61,7 +61,7 @@ def shown(monkeypatch: pytest.MonkeyPatch, found: Sequence[Finding]) -> list[str
     monkeypatch.setenv("LINES", "60")
     monkeypatch.setenv("TERM", "dumb")
     monkeypatch.setattr(sys, "stdout", screen := Terminal())
-    state = follow(lambda _: (plan(), found), views(healthy()))
+    state = follow(lambda it: (plan(), it[0], found), views(healthy()))
     assert isinstance(state, WatchState)
     return [it.rstrip() for it in screen.getvalue().splitlines()]
 
@@ -101,7 +101,7 @@ def test_a_robot_that_vanishes_is_named_and_the_last_line_agrees(
         nodes=kept, ends=tuple(it for it in one.ends if it.node.startswith("/robot1/"))
     )
     for graphs, told in (((one, less), "error"), ((one, less, one), "now, but before")):
-        monkeypatch.setattr(live, "watched", lambda _, seen=graphs: views(*seen))
+        monkeypatch.setattr(live, "watched", lambda _, domains, seen=graphs: views(*seen))
         assert multibot(["check", "--watch"]) == 1
         out, err = capsys.readouterr()
         assert "robot2 is gone: none of its" in out and ", without robot2, " in out

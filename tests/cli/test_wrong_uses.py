@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -202,8 +202,8 @@ def test_a_launch_file_says_what_runs() -> None:
         )
 
 
-def views(*graphs: System) -> Generator[System, None, None]:
-    yield from graphs
+def views(*graphs: System) -> Generator[Mapping[int, System], None, None]:
+    yield from ({0: it} for it in graphs)
 
 
 WATCH = {
@@ -216,7 +216,7 @@ WATCH = {
 def watched(
     monkeypatch: pytest.MonkeyPatch, run: Callable[..., int], *graphs: System, **more: object
 ) -> int:
-    monkeypatch.setattr(live, "watched", lambda *_: views(*graphs))
+    monkeypatch.setattr(live, "watched", lambda *_, **__: views(*graphs))
     given = {**WATCH, **more}
     planned = (given.pop("of"),) if "of" in given else ()
     return run(options(**given), *planned)

@@ -28,6 +28,8 @@ from nodes import SPAWNERS, Node, Reader, nodes_of, plugin_nodes, sections_of
 from trees import Edge, edges_of
 
 HERE = Path(__file__).parent
+# TinyXML-2 asks for no declaration of prefixes.
+LOOSE = etree.XMLParser(recover=True)
 
 
 class End(NamedTuple):
@@ -189,7 +191,7 @@ def descriptions(given: Reader) -> Iterator[tuple[str, etree._Element]]:
             "robot_description"
         )
         if text:
-            yield who, etree.fromstring(text.encode())
+            yield who, etree.fromstring(text.encode(), LOOSE)
 
 
 def spawned_files(given: Reader) -> Iterator[tuple[str, etree._Element]]:
@@ -198,7 +200,7 @@ def spawned_files(given: Reader) -> Iterator[tuple[str, etree._Element]]:
         words = it["arguments"]
         path = words[words.index("-file") + 1] if "-file" in words else ""
         if Path(path).is_file():
-            yield who, etree.parse(path).getroot()
+            yield who, etree.parse(path, LOOSE).getroot()
 
 
 def models_of(given: Reader) -> Iterator[tuple[str, str]]:

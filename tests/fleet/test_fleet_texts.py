@@ -234,8 +234,9 @@ OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
     [
         ("gazebo_ros_control", "", True),
         ("gazebo_ros2_control", "", False),
-        # gazebo_ros_pkgs has it for both: its parameters of ROS 1 are another finding.
-        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", False),
+        # gazebo_ros_pkgs has it for both, with other parameters.
+        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", True),
+        ("gazebo_ros_diff_drive", "<ros><remapping>cmd_vel:=go</remapping></ros>", False),
     ],
 )
 def test_a_plugin_of_ros_1_is_told(fleet: Any, name: str, inside: str, told: bool) -> None:
@@ -451,6 +452,11 @@ def test_a_namespace_of_the_description_is_not_overwritten(
     made, findings = spawn.spawns(fleet(layout, body=classic(*namespaces)))
     assert spawn.classic_arguments(made[0])[16:] == given
     assert [it.code for it in findings] == codes
+
+
+def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
+    bodies = classic(SPACE), f"<!-- {classic(SPACE)} -->"
+    assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
 
 
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:

@@ -260,10 +260,12 @@ def test_xacro_in_a_comment_leaves_nothing_unexpanded(tmp_path: Path) -> None:
         (DRIVE.format("shouder"), ["warning", "error", "error"]),
         (BLOCK.format("tipp", SENSOR.format("s", "")), ["warning", "warning", "warning"]),
         (CONTROL.format('<joint name="tipp"/>'), ["error", "warning", "error"]),
+        ('<transmission name="t"><joint name="tipp"/></transmission>', ["warning"] * 3),
     ],
 )
 def test_what_a_simulator_does_without(body: str, levels: list[str], tmp_path: Path) -> None:
-    """gazebo_ros_diff_drive.cpp ends itself, gazebo_system.cpp of humble skips the joint."""
+    """gazebo_ros_diff_drive.cpp ends itself, gazebo_system.cpp of humble skips the joint; no
+    simulator of ROS 2 reads a transmission."""
     asked = [
         Settings(select=("MB202", "MB211"), distro=distro, simulated=simulated)
         for distro, simulated in (("lyrical", False), ("humble", True), ("lyrical", True))

@@ -8,6 +8,7 @@ import pytest
 from plans import PlannedRobot, planned
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
 from multibot_rewrite.rules.domains import check_domains
@@ -167,8 +168,8 @@ def test_saved_snapshots_are_told_apart_by_their_domains(
     assert "give one of each of 10, 11, 12" in capsys.readouterr().err
     assert main([*words, "--domain", "13"]) == 2
     assert "the plan has no node there; it has 10, 11, 12" in capsys.readouterr().err
-    assert main([*words, "--watch"]) == 2
-    assert "give one with --domain (10, 11, 12)" in capsys.readouterr().err
+    assert main([*words, "--watch", "--zenoh", "tcp/localhost:1"]) == 2
+    assert "--watch through a router looks at one domain" in capsys.readouterr().err
 
 
 SCAN, TWIST = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist"
@@ -212,6 +213,16 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     lidar = f"{spaces[0]}/lidar" if spaces[0] else "/lidar of domain 11"
     assert f"{like} has no lidar, as {who} has ({lidar})" in line
     assert page.read_text()
+
+
+def test_a_robot_without_a_name_that_vanishes_is_called_by_its_domain(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    both = {at: running(at) for at in (11, 12)}
+    gone = {**both, 12: both[12]._replace(nodes=(), ends=())}
+    monkeypatch.setattr(live, "watched", lambda _, domains: (it for it in (both, gone)))
+    assert main(["check", "--domain", "11,12", "--watch"]) == 1
+    assert "domain 12: error: MG109 domain 12 is gone: none" in capsys.readouterr().out
 
 
 def test_names_are_those_of_their_domain() -> None:

@@ -182,6 +182,21 @@ def _read(leader: int) -> Iterator[bytes]:
         yield data
 
 
+def test_robots_of_two_domains_are_watched_until_one_leaves(plan: Path) -> None:
+    own, other = domain(90), domain(91)
+    plan.write_text(f"{plan.read_text()}domains: {{robot1: {own}, robot2: {other}}}\n")
+    with (
+        watching(plan, own) as watch,
+        live_fleet.running(own, [node("robot1")]),
+        live_fleet.running(other, [{"name": "rviz2"}]),
+    ):
+        with live_fleet.running(other, [node("robot2")]):
+            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned", 60)
+        assert f"in domain {other}" in watch.until("  + robot2: error: MG109", 60)
+        code, said = watch.end()
+    assert code == 1 and said.endswith(": not as planned\n")
+
+
 def test_a_snapshot_is_not_watched(plan: Path) -> None:
     command = [*CHECK, str(plan), "--watch", "--snapshot", "graph.json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=20)

@@ -25,10 +25,12 @@ from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Heard, Qos
 
-CLOCK, JOINTS, TF = (
+CLOCK, JOINTS, TF, ODOM, POSE = (
     "rosgraph_msgs/msg/Clock",
     "sensor_msgs/msg/JointState",
     "tf2_msgs/msg/TFMessage",
+    "nav_msgs/msg/Odometry",
+    "geometry_msgs/msg/PoseStamped",
 )
 SECOND = 1_000_000_000
 
@@ -61,6 +63,15 @@ def transform(parent: str, child: str, seconds: float) -> bytes:
     body += text(parent, len(body))
     body += text(child, len(body))
     body += b"\0" * (-len(body) % 8) + struct.pack("<7d", 1, 0, 0, 0, 0, 0, 1)
+    return b"\0\1\0\0" + body
+
+
+def posed(*texts: str, x: float = 1.0, w: float = 1.0) -> bytes:
+    """A pose behind these texts; more follows in odometry."""
+    body = stamp(1.0)
+    for it in texts:
+        body += text(it, len(body))
+    body += b"\0" * (-len(body) % 8) + struct.pack("<7d", x, 2, 0, 0, 0, 0, w)
     return b"\0\1\0\0" + body
 
 
@@ -159,6 +170,28 @@ def test_joints_are_heard_and_no_frame_of_them() -> None:
     assert (it.topic, it.frame, it.joints) == ("/joint_states", "", ("a", "b"))
 
 
+@pytest.mark.parametrize(
+    ("type_", "messages", "told"),
+    [
+        (ODOM, [posed("odom", "base_link")], ""),
+        # A driver whose first reading is right.
+        (ODOM, [posed("odom", "base_link"), posed("odom", "base_link", x=math.nan)], "(NaN)"),
+        (ODOM, [posed("odom", "base_link", w=0.0)], "all zeros"),
+        (ODOM, [posed("odom", "base_footprint", w=0.5)], "not of length 1"),
+        (POSE, [posed("map", x=math.inf)], "(NaN)"),
+        (POSE, [posed("map")], ""),
+        pytest.param(ODOM, [posed("odom", "base_link")[:-1]], "", id="cut short"),
+        pytest.param(JOINTS, [posed("odom", "base_link", w=0.0)], "", id="of no pose"),
+    ],
+)
+def test_a_pose_of_no_place_is_told(type_: str, messages: list[bytes], told: str) -> None:
+    heard = samples_of("/robot1/odom", type_, *messages)
+    seen = read_system(f"running: /robot1/drive publishes /robot1/odom {type_}")
+    found = [it for it in judge(fresh(seen, heard=heard)) if it.code == "MG416"]
+    assert [it.message.endswith(told) for it in found] == ([True] if told else [])
+    assert all((it.robot, it.node) == ("robot1", "/robot1/drive") for it in found)
+
+
 ARMS = """\
 running: /robot1/jsb publishes /robot1/joint_states sensor_msgs/msg/JointState
 running: /robot2/jsb publishes /robot2/joint_states sensor_msgs/msg/JointState
@@ -253,6 +286,8 @@ def test_a_bag_is_asked_the_same(tmp_path: Path) -> None:
         tmp_path / "bag",
         {
             ("/clock", CLOCK): [clock(it) for it in (30.0, 30.1, 5.0, 5.1)],
+            ("/robot1/odom", ODOM): [posed("odom", "b"), posed("odom", "b", x=math.nan)],
+            ("/robot2/odom", ODOM): [posed("odom", "b"), posed("odom", "b", x=2.0)],
             ("/robot1/joint_states", JOINTS): [joint_state("robot1_wheel")],
             ("/robot2/joint_states", JOINTS): [joint_state("robot1_wheel")],
             ("/robot1/tf", TF): moves("robot1", 50),
@@ -261,6 +296,7 @@ def test_a_bag_is_asked_the_same(tmp_path: Path) -> None:
     )
     found = diagnose(as_snapshot(read_bag(str(path)))).findings
     told = {it.code: it.message for it in found}
+    assert "/robot1/odom cannot be used" in told["MG416"]
     assert "went back by 25.1 s" in told["MG504"]
     assert "/robot2/joint_states" in told["MG419"]
     assert "robot2/base_link on /robot2/tf comes at 5.0 Hz" in told["MG326"]

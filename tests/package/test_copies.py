@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from paths import FIXTURES
+from public_calls import DOUBTFUL, FLEET, PARAMS, ROVER, SMALL, TWICE
 
 from multibot_rewrite import (
     InputError,
@@ -25,21 +25,6 @@ from multibot_rewrite import (
     rewrite_all,
 )
 from multibot_rewrite.fleet.robots.node_names import NodeNames
-
-ROVER = FIXTURES / "robots" / "rover.urdf"
-SMALL = '<robot name="rover"><link name="base"/></robot>'
-TWICE = '<robot name="rover"><link name="base"/><link name="base"/></robot>'
-DOUBTFUL = SMALL.replace("</robot>", '<x y="base"/></robot>')
-FLEET = """\
-layout: frames-per-robot
-affix: prefix
-stack: [nav2, robot_state]
-robots:
-  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: rover.urdf, pose: {x: 2.0}}
-companions: {params: [params.yaml]}
-"""
-PARAMS = "amcl:\n  ros__parameters: {base_frame_id: base_footprint}\n"
 
 
 @pytest.fixture

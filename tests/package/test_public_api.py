@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import ROOT
+from public_calls import FLEET, PARAMS, ROVER, SMALL
 
 import multibot_rewrite
 from multibot_rewrite import (
@@ -29,20 +30,6 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.fleet.robots.node_names import NodeNames
 
-ROVER = FIXTURES / "robots" / "rover.urdf"
-SMALL = '<robot name="rover"><link name="base"/></robot>'
-TWICE = '<robot name="rover"><link name="base"/><link name="base"/></robot>'
-DOUBTFUL = SMALL.replace("</robot>", '<x y="base"/></robot>')
-FLEET = """\
-layout: frames-per-robot
-affix: prefix
-stack: [nav2, robot_state]
-robots:
-  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: rover.urdf, pose: {x: 2.0}}
-companions: {params: [params.yaml]}
-"""
-PARAMS = "amcl:\n  ros__parameters: {base_frame_id: base_footprint}\n"
 CALLS = (rewrite, rewrite_all, explain, strip)
 
 

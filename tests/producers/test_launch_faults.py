@@ -304,6 +304,9 @@ def generate_launch_description():
         ("{'robot_description': Command(['made_by_a_program ', 'x'])}", False),
         ("{'robot_description': Command(['xacro ', '/nowhere.xacro'])}", False),
         ("{'robot_description': {}['x'] if False else object()}", False),
+        # ECUST-Origin-Sentry-Team/gazebo_simulator_origin: a Python package that is not here makes it.
+        ("{'robot_description': __import__('made_elsewhere').Macro().to_string()}", False),
+        ("{'rate': __import__('made_elsewhere').rate()}", True),
         ("{'robot_description': '<robot name=\"r\"><link name=\"a\"/></robot>'}", False),
         ("{'robot_description': '/opt/r.urdf'}", True),
         ("'/opt/not/here.yaml'", False),

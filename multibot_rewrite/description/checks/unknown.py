@@ -15,6 +15,7 @@ from multibot_rewrite.description.readback.active import (
     ActivePart,
     active_parts,
 )
+from multibot_rewrite.description.readback.sections import ROS_1
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Inventory
@@ -31,6 +32,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     open, and those of a Gazebo that the release has not, each at its element."""
     guesses, release = Guesses(), tree.vocabulary.release
     old = CLASSIC if lacks_classic(release, inventory.document.source) else None
+    has_ros_2 = next(inventory.document.root.iterfind(".//plugin/ros"), None) is not None
     # An SRDF starts nothing.
     parts = (
         () if inventory.format == SRDF else active_parts(inventory.document.root, tree.vocabulary)
@@ -46,6 +48,20 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
                 f"plugin {part.name!r} is of Gazebo Classic, which {release} has not",
             )
             yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
+        elif has_ros_2 and _is_of_both(part, tree.vocabulary):
+            message = (
+                f"plugin {part.name!r} is written for ROS 1, others here for ROS 2: "
+                "what it opens there is not known"
+            )
+            hint = "write it for ROS 2, with <ros>, or take it out"
+            yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
+
+
+def _is_of_both(part: ActivePart, vocabulary: Vocabulary) -> bool:
+    """Is it read by the rules of ROS 1, though ROS 2 has a plugin of this name?"""
+    if part.section is None or part.section.ros != ROS_1:
+        return False
+    return len(vocabulary.find("plugin", library_key(part.name))) > 1
 
 
 def is_unknown(section: VocabularySection) -> bool:

@@ -10,7 +10,8 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import chosen_release
+from multibot_rewrite.base.releases import chosen_release, told_release
+from multibot_rewrite.description.sources.release_said import release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
@@ -78,12 +79,13 @@ def read_fleet(
     """Read a fleet file and those it includes, or the same as a dict; raises InputError with file and
     line.
 
-    The release is ``distro``, else that of the file, else as ``chosen_release`` says. ``choice`` says
-    which robots there are, where that is decided later than the file.
+    The release is ``distro``, else that of the file, else that of the environment, else the one that
+    the robots' descriptions are for. ``choice`` says which robots there are, where that is decided
+    later than the file.
     """
     read = with_cell(with_robots(read_data(source), choice))
     data = read.data
-    release = chosen_release(distro or data.get("distro", ""), environment)
+    release = _release(data, distro or data.get("distro", ""), environment)
     policy = _policy(data)
     naming = _naming(read, policy)
     files = tuple(_files(read))
@@ -112,6 +114,14 @@ def read_fleet(
         read.places.get(("simulator_world",), (read.file, 1)),
         apart_of(read, {it.name: it.namespace for it in robots}),
     )
+
+
+def _release(data: Mapping[str, Any], asked: str, environment: Mapping[str, str]) -> str:
+    chosen = chosen_release(asked, environment)
+    if told_release(asked, environment):
+        return chosen
+    named = (it.get("description") or data.get("description") for it in data["robots"])
+    return release_of_all("", dict.fromkeys(it for it in named if isinstance(it, str))).release
 
 
 def _policy(data: Mapping[str, Any]) -> Policy:

@@ -18,10 +18,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, make_naming
 from multibot_rewrite.companions.params.bringup_style import for_bringup
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleet.file.fleet_file import (
-    BRINGUP,
-    FleetFile,
-)
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for

@@ -17,10 +17,8 @@ from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
-    Pose,
-)
+from multibot_rewrite.description.steps.document import without_comments
+from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
@@ -84,7 +82,7 @@ def is_simulated(robot: RewrittenRobot) -> bool:
 
 def is_classic(robot: RewrittenRobot) -> bool:
     """Is its simulator Gazebo Classic?"""
-    return CLASSIC_PLUGIN.encode() in (robot.simulated or robot.description)
+    return CLASSIC_PLUGIN.encode() in without_comments(robot.simulated or robot.description)
 
 
 def simulators(plan: FleetPlan) -> list[str]:
@@ -250,6 +248,14 @@ robots:
 )
 
 
+_NOT_LOADED = (
+    "is of ROS 1: it is not loaded",
+    "put the plugin of ROS 2 in its place, or delete it",
+)
+_READ_BY_ROS_1 = (
+    "has parameters of ROS 1, which ROS 2 does not read: its topics are the same for all robots",
+    "write those of ROS 2, with <ros><namespace>",
+)
 _CONTROLLED = """\
 <robot name="arm">
   <link name="base_link"/>
@@ -260,11 +266,12 @@ PLUGIN_OF_ROS_1 = declare(
     "MF713",
     "plugin-of-ros-1",
     WARNING,
-    what="A plugin of a simulated robot is known of ROS 1 alone.",
+    what="A plugin of a simulated robot is known of ROS 1 alone, or has the parameters of ROS 1.",
     why="No package of ROS 2 has its library. The simulator says that it cannot load it and goes "
-    "on without it. So nothing moves the joints, or a sensor sends nothing.",
+    "on without it. So nothing moves the joints, or a sensor sends nothing. Where ROS 2 has the "
+    "library, it does not read these parameters: all robots have its usual topics.",
     fix="Put the plugin of ROS 2 in its place, as gazebo_ros2_control for gazebo_ros_control, or "
-    "delete it.",
+    "delete it. Write the parameters of ROS 2, as <ros><remapping>cmd_vel:=drive</remapping></ros>.",
     bad="robots:\n  - {name: robot1, description: old.urdf}\n",
     good="robots:\n  - {name: robot1, description: new.urdf}\n",
     line=2,
@@ -277,21 +284,18 @@ PLUGIN_OF_ROS_1 = declare(
 
 
 def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
-    """The plugins that no section of ROS 2 has."""
-    hint = "put the plugin of ROS 2 in its place, or delete it"
-    for name in dict.fromkeys(_old_plugins(robot)):
-        message = f"robot {robot.spec.name!r}: plugin {name} is of ROS 1: it is not loaded"
-        yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
-
-
-def _old_plugins(robot: RewrittenRobot) -> Iterator[str]:
+    """The plugins that no section of ROS 2 has, and those whose parameters are of ROS 1."""
     known = robot.member.vocabulary
+    told: dict[str, bool] = {}
     for host in robot.member.inventory.hosts:
         section = host.node.section
-        if section is None or section.type != "plugin" or section.ros != "1":
-            continue
-        if all(it.ros == "1" for it in known.find("plugin", section.names[0])):
-            yield host.element.get("filename") or section.names[0]
+        if section is not None and section.type == "plugin" and section.ros == "1":
+            both = any(it.ros != "1" for it in known.find("plugin", section.names[0]))
+            told[host.element.get("filename") or section.names[0]] = both
+    for name, both in told.items():
+        said, hint = _READ_BY_ROS_1 if both else _NOT_LOADED
+        message = f"robot {robot.spec.name!r}: plugin {name} {said}"
+        yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 
 def written_out(robot: RewrittenRobot) -> frozenset[str]:

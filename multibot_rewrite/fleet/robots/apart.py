@@ -9,10 +9,7 @@ from math import ceil, dist
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.description.checks.footprint import filled_by
-from multibot_rewrite.fleet.file.robot_spec import (
-    Pose,
-    RobotSpec,
-)
+from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot

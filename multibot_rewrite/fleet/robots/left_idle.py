@@ -11,12 +11,7 @@ from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.launch.declaration import at
-from multibot_rewrite.rules.launch.started import (
-    is_managed,
-    moves_nothing,
-    no_joints,
-    not_listed,
-)
+from multibot_rewrite.rules.launch.started import is_managed, moves_nothing, no_joints, not_listed
 
 
 def left_idle(

@@ -13,11 +13,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.names.rename_map import (
-    CompanionNames,
-    companion_names,
-    with_srdf,
-)
+from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import UNREAD
 from multibot_rewrite.description.checks.twice import CARRYING
@@ -37,11 +33,7 @@ from multibot_rewrite.description.sources.own_names import ROBOT, Arguments, com
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
-from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
-    RobotSpec,
-    Sources,
-)
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.robots.member import Member, member
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings

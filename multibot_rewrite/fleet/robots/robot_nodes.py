@@ -15,10 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
-from multibot_rewrite.fleet.file.robot_spec import (
-    RobotSpec,
-    Sources,
-)
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
 from multibot_rewrite.fleet.launch.launched_files import set_by_launch
 from multibot_rewrite.fleet.launch.launched_robot import (

@@ -18,10 +18,7 @@ from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
-from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
-    Pose,
-)
+from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start

@@ -23,7 +23,7 @@ from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
-from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED
+from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED, pose_in
 from multibot_rewrite.producers.ros.pace import Pace
 from multibot_rewrite.producers.zenoh.cdr import (
     read_header_frame,
@@ -137,16 +137,19 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
     first = connections[0]
     count = sum(it.msgcount for it in connections)
     type_, frames, joints, back = str(first.msgtype), {}, {}, 0.0
+    pose: tuple[float, ...] = ()
     if type_ in JOINTED:
         names = map(read_joint_names, _first(reader, connections, HEADERS))
         joints = dict.fromkeys(it for it in names if it)
     elif count and _has_header(first):
-        found = map(read_header_frame, _first(reader, connections, HEADERS))
+        read = list(_first(reader, connections, HEADERS))
+        found = map(read_header_frame, read)
         frames = dict.fromkeys(it for it in found if it is not None)
+        pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it, default=())
     elif type_ == CLOCK_TYPE:
         back = _back(_first(reader, connections, TRANSFORMS))
     qos = tuple(_qos(it) for own in connections for it in _profiles(own))
-    return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back)
+    return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back, pose)
 
 
 def _back(messages: Iterable[bytes]) -> float:

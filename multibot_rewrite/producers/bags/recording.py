@@ -31,7 +31,7 @@ class RecordedTopic(NamedTuple):
 
     ``qos`` has one profile for each publisher that was recorded; ``frames`` are the ``header.frame_id``
     of its first messages, ``joints`` the names in those of joints, ``back`` by how many seconds a clock
-    went back.
+    went back, ``pose`` that of the first of them, or of one with a number that is none.
     """
 
     name: str
@@ -41,6 +41,7 @@ class RecordedTopic(NamedTuple):
     frames: tuple[str, ...] = ()
     joints: tuple[tuple[str, ...], ...] = ()
     back: float = 0.0
+    pose: tuple[float, ...] = ()
 
 
 class Recording(NamedTuple):
@@ -75,7 +76,7 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
 
 
 def _heard(it: RecordedTopic) -> Iterable[Heard]:
-    yield from (Heard(it.name, frame) for frame in it.frames)
+    yield from (Heard(it.name, frame, pose=it.pose) for frame in it.frames)
     yield from (Heard(it.name, "", joints=names) for names in it.joints)
     if it.back:
         yield Heard(it.name, "", back=it.back)

@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml import etree
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
+from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import DESCRIPTION
@@ -82,6 +84,6 @@ def root_of(text: object) -> etree._Element | None:
     if not isinstance(text, str) or not text.strip():
         return None
     try:
-        return etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
-    except etree.XMLSyntaxError:
+        return read_xml(text.encode(), "")
+    except InputError:
         return None

@@ -13,11 +13,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import (
-    BoundNode,
-    expand,
-    resolve_bound,
-)
+from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.declared import is_known

@@ -12,7 +12,8 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from queue import SimpleQueue
 from typing import IO, cast
 
 from multibot_rewrite.base.child import python, variables
@@ -116,20 +117,48 @@ def _observe_once(
         return from_json(data, "the view of the graph")
 
 
-def watch(request: Request, environ: Mapping[str, str]) -> Generator[System, None, None]:
-    """Snapshots of the graph for ``request.timeout`` seconds, one after each change.
+def watch(
+    request: Request, environs: Mapping[int, Mapping[str, str]]
+) -> Generator[tuple[int, System], None, None]:
+    """Snapshots of the graph in each of these environments for ``request.timeout`` seconds, one after
+    each change, with the number of its environment.
 
     Raises Unusable. No process is left running once the iterator is closed.
     """
     order = to_text(request._replace(watch=True))
-    with running(OBSERVE, order, environ) as child:
-        seconds = min(request.timeout, threading.TIMEOUT_MAX)
-        end = threading.Timer(seconds, child.process.terminate)
-        end.daemon = True
-        end.start()
+    came: SimpleQueue[tuple[int, bytes | Unusable | None]] = SimpleQueue()
+    with ExitStack() as stack:
+        for at, environ in environs.items():
+            child = stack.enter_context(running(OBSERVE, order, environ))
+            end = threading.Timer(
+                min(request.timeout, threading.TIMEOUT_MAX), child.process.terminate
+            )
+            reader = threading.Thread(target=_pass_on, args=(child, at, came.put), daemon=True)
+            end.daemon = True
+            stack.callback(end.cancel)
+            end.start()
+            reader.start()
+        left = len(environs)
+        while left:
+            at, said = came.get()
+            if isinstance(said, Unusable):
+                raise said
+            if said is None:
+                left -= 1
+            else:
+                yield at, from_json(said, "the view of the graph")
+
+
+def _pass_on(
+    child: RosProcess, at: int, put: Callable[[tuple[int, bytes | Unusable | None]], None]
+) -> None:
+    """What a process says, with its number; None at its end."""
+    try:
         while (data := child.next_message()) is not None:
-            yield from_json(data, "the view of the graph")
-        end.cancel()
+            put((at, data))
+        put((at, None))
+    except Unusable as error:
+        put((at, error))
 
 
 def ask(

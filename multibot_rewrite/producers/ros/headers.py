@@ -14,12 +14,14 @@ from collections.abc import Callable, Iterable, Iterator, Set
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.ros.assemble import numbers_of
 from multibot_rewrite.producers.ros.pace import Pace
 from multibot_rewrite.producers.ros.voices import Mark
 from multibot_rewrite.producers.zenoh.cdr import (
     read_child_frame,
     read_header_frame,
     read_joint_names,
+    read_pose,
     read_stamp,
 )
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
@@ -53,6 +55,12 @@ LARGE = frozenset({
 # A rate is that of so many seconds at least, so that 2 Hz are known, and of no more messages.
 RATE_SECONDS, MOST_MESSAGES = 0.4, 100
 ODOMETRY = "nav_msgs/msg/Odometry"
+# The texts before their pose: frames.
+POSED = {
+    ODOMETRY: 2,
+    "geometry_msgs/msg/PoseStamped": 1,
+    "geometry_msgs/msg/PoseWithCovarianceStamped": 1,
+}
 # topic, type, latched, callback -> what ends the subscription; None for a type without a header first.
 Receive = Callable[[bytes, Mark], None]
 Subscribe = Callable[[str, str, bool, Receive], "Callable[[], None] | None"]
@@ -121,6 +129,12 @@ def _names_a_frame(end: End) -> bool:
     return known and "/_" not in end.name and LISTENER not in end.node
 
 
+def pose_in(type_: str, data: bytes) -> tuple[float, ...]:
+    """The pose in a message of this type, as a snapshot keeps a transform; empty where it has none."""
+    found = read_pose(data, POSED[type_]) if type_ in POSED else None
+    return numbers_of(found) if found else ()
+
+
 class HeaderSamples:
     """Subscriptions to sensor topics, each until its frame and its rate are known."""
 
@@ -160,10 +174,11 @@ class HeaderSamples:
         frame = "" if topic.type in JOINTED else read_header_frame(data)
         own = self._heard[topic.name]
         said = (frame or "", *joints)
-        if frame is not None and said not in own:
+        pose = pose_in(topic.type, data)
+        if frame is not None and (said not in own or math.inf in pose):
             age = 0.0 if topic.latched else _age(read_stamp(data))
             child = read_child_frame(data) if topic.type == ODOMETRY else ""
-            told = Heard(topic.name, frame, age, child=child or "", joints=joints)
+            told = Heard(topic.name, frame, age, child=child or "", joints=joints, pose=pose)
             own[said] = told
         more = topic.has_rate and self._spanned(topic, data, mark)
         if not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES):

@@ -9,10 +9,12 @@ stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from typing import TypeVar
 
 from multibot_rewrite.base.record import NamedTuple
 
+_T = TypeVar("_T")
 _HEADER = 4
 # CDR_BE and CDR_LE; other encapsulations have other alignment.
 _ENDS = {b"\x00\x00": ">", b"\x00\x01": "<"}
@@ -39,7 +41,9 @@ class _Quaternion(NamedTuple):
     w: float
 
 
-class _Transform(NamedTuple):
+class Transform(NamedTuple):
+    """As in geometry_msgs; a pose has the same numbers."""
+
     translation: _Vector
     rotation: _Quaternion
 
@@ -47,7 +51,7 @@ class _Transform(NamedTuple):
 class _Stamped(NamedTuple):
     header: _Header
     child_frame_id: str
-    transform: _Transform
+    transform: Transform
 
 
 class TfMessage(NamedTuple):
@@ -58,61 +62,53 @@ class TfMessage(NamedTuple):
 
 def read_tf(data: bytes) -> TfMessage | None:
     """The message in these bytes, or None if it is cut short or no plain CDR."""
-    return _read(data, lambda reader: (_stamped(reader) for _ in range(reader.number())))
+    return _read(data, lambda it: TfMessage(tuple(_stamped(it) for _ in range(it.number()))), None)
 
 
 def read_transform(data: bytes) -> TfMessage | None:
     """The same for a single TransformStamped."""
-    return _read(data, lambda reader: [_stamped(reader)])
-
-
-def _read(data: bytes, parts: Callable[[_Reader], Iterable[_Stamped]]) -> TfMessage | None:
-    mark = _ENDS.get(data[:2])
-    if mark is None:
-        return None
-    try:
-        return TfMessage(tuple(parts(_Reader(data[_HEADER:], mark))))
-    except (struct.error, UnicodeDecodeError, IndexError):
-        return None
+    return _read(data, lambda it: TfMessage((_stamped(it),)), None)
 
 
 def read_header_frame(data: bytes) -> str | None:
     """The ``header.frame_id`` of a message that begins with a header, or None as above."""
-    found = _header_texts(data, 1)
-    return found[0] if found else None
+    return _read(data, lambda it: _texts(it, 1)[0], None)
 
 
 def read_child_frame(data: bytes) -> str | None:
     """The ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
-    found = _header_texts(data, 2)
-    return found[1] if found else None
+    return _read(data, lambda it: _texts(it, 2)[1], None)
+
+
+def read_pose(data: bytes, texts: int) -> Transform | None:
+    """The pose behind a stamp and so many texts, where a transform has the same; None as above."""
+    return _read(data, lambda it: _transform(it) if _texts(it, texts) else None, None)
 
 
 def read_joint_names(data: bytes) -> tuple[str, ...]:
     """The names in a JointState or JointTrajectory, which come after its header; none as above."""
-    mark = _ENDS.get(data[:2])
-    if mark is None:
-        return ()
-    try:
-        reader = _Reader(data[_HEADER:], mark)
-        reader.skip(_STAMP)
-        reader.text()
+
+    def names(reader: _Reader) -> tuple[str, ...]:
+        _texts(reader, 1)
         return tuple(reader.text() for _ in range(min(reader.number(), MOST_JOINTS)))
-    except (struct.error, UnicodeDecodeError, IndexError):
-        return ()
+
+    return _read(data, names, ())
 
 
-def _header_texts(data: bytes, many: int) -> list[str]:
-    """The first texts after the stamp; none as above."""
+def _read(data: bytes, read: Callable[[_Reader], _T], without: _T) -> _T:
     mark = _ENDS.get(data[:2])
     if mark is None:
-        return []
+        return without
     try:
-        reader = _Reader(data[_HEADER:], mark)
-        reader.skip(_STAMP)
-        return [reader.text() for _ in range(many)]
+        return read(_Reader(data[_HEADER:], mark))
     except (struct.error, UnicodeDecodeError, IndexError):
-        return []
+        return without
+
+
+def _texts(reader: _Reader, many: int) -> list[str]:
+    """The first texts after the stamp."""
+    reader.skip(_STAMP)
+    return [reader.text() for _ in range(many)]
 
 
 def read_stamp(data: bytes) -> float | None:
@@ -127,9 +123,12 @@ def read_stamp(data: bytes) -> float | None:
 def _stamped(reader: _Reader) -> _Stamped:
     stamp = reader.number() + reader.number() / 1e9
     parent, child = reader.text(), reader.text()
+    return _Stamped(_Header(parent, stamp), child, _transform(reader))
+
+
+def _transform(reader: _Reader) -> Transform:
     reader.align(8)
-    transform = _Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
-    return _Stamped(_Header(parent, stamp), child, transform)
+    return Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
 
 
 class _Reader:

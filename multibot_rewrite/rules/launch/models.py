@@ -15,11 +15,7 @@ from math import dist
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.footprint import filled_by
-from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
-    Launched,
-    models_in_simulator,
-)
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, models_in_simulator
 from multibot_rewrite.rules.launch.declaration import (
     ROVERS,
     at,

@@ -21,13 +21,7 @@ from multibot_rewrite.producers.launch.launched import (
     worlds,
 )
 from multibot_rewrite.rules.facts.simulators import DRIVES
-from multibot_rewrite.rules.launch.declaration import (
-    ROVERS,
-    at,
-    create_of,
-    launch_of,
-    launch_rule,
-)
+from multibot_rewrite.rules.launch.declaration import ROVERS, at, create_of, launch_of, launch_rule
 
 _PHYSICS, _SPAWNS = "physics", "user-commands"
 _PLUGIN = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"/>'

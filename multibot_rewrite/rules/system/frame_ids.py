@@ -12,9 +12,9 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, robots_of
+from multibot_rewrite.system.index import Index, Tree, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import TOPIC, Edge
+from multibot_rewrite.system.records import Edge
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
@@ -162,8 +162,7 @@ def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the robots' names in those of joints; what is of all robots may have those of any."""
     whose = cache(partial(_robot_of_joint, seen))
     for it in (one for one in seen.system.heard if one.joints):
-        ends = seen.by_name.get((TOPIC, it.topic))
-        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         others = {name: whose(name) for name in it.joints}
         foreign = [name for name, other in others.items() if other not in ("", robot)]
@@ -193,9 +192,8 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
 def _nameless(seen: Index) -> Iterator[Finding]:
     """What a sensor or odometry sends without any frame: tf2 refuses it (an empty frame_id)."""
     for topic, written, *_ in seen.system.heard:
-        ends = seen.by_name.get((TOPIC, topic))
-        senders = nodes_of(at_work(ends.publishers)) if ends else ()
-        if ends and senders and not written and ends.type in _PLACED:
+        type_, senders = sent_on(seen, topic)
+        if senders and not written and type_ in _PLACED:
             yield frame_id_unknown.finding(
                 f"frame_id of {topic} is empty: tf cannot say where it was measured; sent by"
                 f" {_who(senders)}",
@@ -265,13 +263,12 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 def _messages(seen: Index) -> Iterator[_Message]:
     """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
     for it in seen.system.heard:
-        ends = seen.by_name.get((TOPIC, it.topic))
-        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        type_, senders = sent_on(seen, it.topic)
         for field, written in (("frame_id", it.frame), ("child_frame_id", it.child)):
             frame = written.removeprefix("/")
-            if ends and senders and frame:
+            if senders and frame:
                 robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-                yield _Message(it.topic, ends.type, frame, robot, senders, field)
+                yield _Message(it.topic, type_, frame, robot, senders, field)
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:

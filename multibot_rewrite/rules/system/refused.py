@@ -11,7 +11,7 @@ from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, robots_of
+from multibot_rewrite.system.index import Index, robots_of, sent_on
 from multibot_rewrite.system.records import Edge
 
 # QUATERNION_NORMALIZATION_TOLERANCE of tf2/src/buffer_core.cpp.
@@ -23,8 +23,9 @@ _TOLERANCE = 10e-3
     "transform-refused",
     ERROR,
     what="A transform is sent that tf2 drops. Its quaternion is zero or not of length 1, a number "
-    "is NaN, a frame has no name, or a frame is its own parent.",
-    why="No listener has it: everything below that frame is lost (`Ignoring transform` in each log).",
+    "is NaN, a frame has no name, or a frame is its own parent. Or a pose has such numbers.",
+    why="No listener has it: everything below that frame is lost (`Ignoring transform` in each log). "
+    "Filters and Nav2 refuse such a pose.",
     fix="Send `w: 1` where there is no rotation; see the sensor or the covariance that brings NaN; set"
     " both frames of the sender.",
     bad="running: transform base_link -> base_link on /robot1/tf by /robot1/driver\n",
@@ -49,6 +50,18 @@ def transform_refused(seen: Index) -> Iterator[Finding]:
             robot=only(robots) or only(robots_of(seen, senders)),
             names=(topic, *unique(it.child for it in edges if it.child)),
         )
+    yield from _poses(seen)
+
+
+def _poses(seen: Index) -> Iterator[Finding]:
+    for it in seen.system.heard:
+        _, senders = sent_on(seen, it.topic)
+        if senders and (why := _odd(it.pose)):
+            yield transform_refused.finding(
+                f"the pose on {it.topic} cannot be used: {why}",
+                f"see what {shorten(senders)} makes it of",
+                robot=only(robots_of(seen, senders)), node=senders[0], names=(it.topic,),
+            )  # fmt: skip
 
 
 def _why(it: Edge) -> str:
@@ -56,10 +69,14 @@ def _why(it: Edge) -> str:
         return "a frame has no name"
     if it.child == it.parent:
         return "a frame is its own parent"
-    if not all(map(isfinite, it.transform)):
+    return _odd(it.transform)
+
+
+def _odd(numbers: tuple[float, ...]) -> str:
+    if not all(map(isfinite, numbers)):
         return "a number in it is not finite (NaN)"
-    length = sum(number * number for number in it.transform[3:])
-    if it.transform and abs(length - 1) > _TOLERANCE:
+    length = sum(number * number for number in numbers[3:])
+    if numbers and abs(length - 1) > _TOLERANCE:
         return "its quaternion is all zeros" if not length else "its quaternion is not of length 1"
     return ""
 

@@ -12,8 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import TOPIC
+from multibot_rewrite.system.index import Index, robots_of, sent_on
 from multibot_rewrite.system.tool_nodes import last_word
 
 # A costmap waits a part of a second for a transform, tf2 keeps ten seconds (buffer_core.h).
@@ -48,10 +47,9 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
     clock = CLOCK in seen.published
     found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)
     for topic, _, age, *_ in seen.system.heard:
-        ends = seen.by_name.get((TOPIC, topic))
-        senders = nodes_of(at_work(ends.publishers)) if ends else ()
+        type_, senders = sent_on(seen, topic)
         played = any(last_word(it).startswith(words.PLAYER) for it in senders)
-        measured = ends and ends.type.startswith(_MEASURED)
+        measured = type_.startswith(_MEASURED)
         if senders and measured and not played and (what := _wrong(age, clock)):
             found[senders, what].append(topic)
     for (senders, what), topics in found.items():

@@ -71,6 +71,14 @@ def test_what_is_known_to_open_nothing_is_proved() -> None:
         assert why(text, layout, "humble") == ()
 
 
+def test_a_plugin_written_for_ros_1_beside_one_for_ros_2_is_not_proved() -> None:
+    """gazebo_ros_camera.cpp of ROS 2: its node is called as the plugin, whatever ROS 1's tags say."""
+    old = plugin("gazebo_ros_camera", "<cameraName>c</cameraName><frameName>a</frameName>")
+    new = plugin("gazebo_ros_imu_sensor", "<ros/>")
+    found = [why(robot(it), distro="humble") for it in (old, new, old + new)]
+    assert found == [(), (), ("1 plugin not known",)]
+
+
 @pytest.mark.parametrize(
     ("inside", "loaded"),
     [

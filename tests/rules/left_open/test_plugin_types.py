@@ -17,7 +17,7 @@ description: scout.urdf
 stack: slam_toolbox
 robots:
   - {name: robot1}
-  - {name: robot2}
+  - {name: robot2, pose: {x: 3}}
 """
 SCOUT = """\
 <robot name="scout">

@@ -14,12 +14,7 @@ from functools import cache
 from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in.frontend import description_in
-from multibot_rewrite.producers.launch.stand_in.values import (
-    Kept,
-    LaunchContext,
-    Text,
-    text_of,
-)
+from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, Text, text_of
 
 
 class Action(Kept):
@@ -136,39 +131,17 @@ class ResetLaunchConfigurations(Action):
         context.launch_configurations = kept
 
 
-class PushLaunchConfigurations(Action):
-    """Begins a scope."""
-
-    def execute(self, context: LaunchContext) -> None:
-        context._push_launch_configurations()
-
-
-class PopLaunchConfigurations(Action):
-    """Ends a scope."""
-
-    def execute(self, context: LaunchContext) -> None:
-        context._pop_launch_configurations()
+def _calling(method: str) -> type[Action]:
+    """An action that is one call of the context."""
+    name = "".join(word.title() for word in method.split("_"))
+    return type(name, (Action,), {"execute": lambda _, context: getattr(context, method)()})
 
 
-class PushEnvironment(Action):
-    """Begins a scope of variables."""
-
-    def execute(self, context: LaunchContext) -> None:
-        context._push_environment()
-
-
-class PopEnvironment(Action):
-    """Ends a scope of variables."""
-
-    def execute(self, context: LaunchContext) -> None:
-        context._pop_environment()
-
-
-class ResetEnvironment(Action):
-    """The variables that there were at first."""
-
-    def execute(self, context: LaunchContext) -> None:
-        context._reset_environment()
+PushLaunchConfigurations = _calling("_push_launch_configurations")
+PopLaunchConfigurations = _calling("_pop_launch_configurations")
+PushEnvironment = _calling("_push_environment")
+PopEnvironment = _calling("_pop_environment")
+ResetEnvironment = _calling("_reset_environment")
 
 
 class GroupAction(Action):

@@ -25,6 +25,7 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
     typed_truth,
 )
+from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 _ITEMS = (bool, int, float, str)
 
@@ -106,7 +107,7 @@ def _evaluated(context: LaunchContext, given: Any) -> Any:
 
 
 def flat(given: Any) -> Any:
-    """Parameters with dotted names; files stay as they are."""
+    """Parameters with dotted names; files stay as they are, and what nothing is known of."""
     return dict(_flat(given, ())) if isinstance(given, Mapping) else given
 
 
@@ -115,17 +116,17 @@ def _flat(
 ) -> Iterator[tuple[tuple[Any, ...], Any]]:
     for key, value in given.items():
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and not is_unknown(value):
             yield from _flat(value, (*name, "."))
         else:
             yield name, value
 
 
 def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
-    if hasattr(value, "evaluate"):
-        return value.evaluate(context)
     if _is_substituted(value):
         return _read(text_of(context, value), text_of(context, name))
+    if hasattr(value, "evaluate"):
+        return value.evaluate(context)
     if isinstance(value, list | tuple):
         return _listed(context, value, name)
     if not isinstance(value, _PLAIN):

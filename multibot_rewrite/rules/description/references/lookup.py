@@ -87,10 +87,13 @@ def _is_of_included(element: _Element) -> bool:
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
-    plugins = ERROR if code == JOINT and _in_simulator(subject) else ""
     for it in lacking(subject, references(subject).loose.get(code, ())):
-        of_system = next(it.element.iterancestors("ros2_control"), None) is not None
-        level = it.level or since_jazzy(subject) if of_system else plugins or it.level
+        inside = {one.tag for one in it.element.iterancestors("ros2_control", "plugin")}
+        level = it.level
+        if "ros2_control" in inside:
+            level = level or since_jazzy(subject)
+        elif inside and code == JOINT and _in_simulator(subject):
+            level = ERROR
         yield it._replace(level=level)
 
 
