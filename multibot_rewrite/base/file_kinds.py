@@ -14,6 +14,8 @@ from multibot_rewrite.base.record import NamedTuple
 PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
 URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"
 FLEET, PLAN, SNAPSHOT, LAUNCH, BAG, MAP = "fleet", "plan", "snapshot", "launch", "bag", "map"
+STAGE, WEBOTS, MUJOCO, USD, MESH = "stage", "webots", "mujoco", "usd", "mesh"
+MANIFEST, CONFIG = "manifest", "config"
 BUILT, RULES = "built", "rules"
 DESCRIPTIONS = (URDF, XACRO, SDF)
 _LOOKED_AT = 200_000
@@ -28,6 +30,7 @@ class FileKind(NamedTuple):
 
 _IN_FLEET = "rewrite it with urdf-postfix, or name it in a fleet file, {}"
 _MADE = "use multibot init, which makes a fleet file of it"
+_OTHER_SIMULATOR = "no command takes it, give the robot's URDF or SDF, or a world of Gazebo"
 KINDS: Mapping[str, FileKind] = {
     URDF: FileKind("a description", _MADE),
     XACRO: FileKind("a description", _MADE),
@@ -46,10 +49,19 @@ KINDS: Mapping[str, FileKind] = {
     LAUNCH: FileKind("a launch file", "use multibot check-launch, or multibot plan"),
     BAG: FileKind("a recording", "use multibot check --bag"),
     MAP: FileKind("a map for map_server", "it holds no robot's name, leave it out"),
+    STAGE: FileKind("a world of Stage", _OTHER_SIMULATOR),
+    WEBOTS: FileKind("a file of Webots", _OTHER_SIMULATOR),
+    MUJOCO: FileKind("a model of MuJoCo", _OTHER_SIMULATOR),
+    USD: FileKind("a file of USD", _OTHER_SIMULATOR),
+    MESH: FileKind("a mesh", "give the description that names it"),
+    MANIFEST: FileKind("the package.xml of a package", "use multibot init with its folder"),
+    CONFIG: FileKind("the model.config of a model", "give the model.sdf that it names"),
     BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
     RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
 }
+_ROOT = rb"\A(?:<[?!].*?>\s*)*<"
 _XML = (
+    (CONFIG, lazy_compile(_ROOT + rb"model>", re.DOTALL)),
     (LAUNCH, lazy_compile(rb"<launch[\s>]", 0)),
     (
         TREE,
@@ -60,6 +72,9 @@ _XML = (
     (XACRO, lazy_compile(rb"<robot\b[^>]*xmlns:xacro", 0)),
     (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s", 0)),
     (URDF, lazy_compile(rb"<robot\b", 0)),
+    (MUJOCO, lazy_compile(_ROOT + rb"mujoco\b", re.DOTALL)),
+    (MESH, lazy_compile(_ROOT + rb"COLLADA\b", re.DOTALL)),
+    (MANIFEST, lazy_compile(_ROOT + rb"package\b", re.DOTALL)),
 )
 # Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
 # one node's sections may be MoveIt's as well: that is a parameter file for its reader.
@@ -83,7 +98,7 @@ BESIDE = (
             re.MULTILINE,
         ),
     ),
-    (TREE, _XML[1][1]),
+    (TREE, dict(_XML)[TREE]),
     (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
 )
 # What follows ``robots:`` in a fleet file is a list; a plan has keys of its own besides, and rules
@@ -96,17 +111,33 @@ _OTHERS = (
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
+    (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
 )
 _BUILT = b'"format": "multibot build'
 _SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
-_BAGS = (b"\x89MCAP0\r\n", b"SQLite format 3\0")
+# Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
+_TEMPLATE = lazy_compile(
+    rb"<!--.*?-->|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
+    rb"|\{%[-+]?[ \t]*(?:if|for|set|macro|include|block|extends)\b[^{}\n]*%\})",
+    re.DOTALL | re.MULTILINE,
+)
+_STARTS = {
+    b"\x89MCAP0\r\n": BAG,
+    b"SQLite format 3\0": BAG,
+    b"#VRML_SIM": WEBOTS,
+    b"#usda": USD,
+    b"PXR-USDC": USD,
+    b"glTF": MESH,
+    b"solid ": MESH,
+}
 
 
 def recognised(data: bytes) -> str:
     """The kind of a file; empty for one of no known kind."""
-    if data.startswith(_BAGS):
-        return BAG
     text = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip()
+    started = next((kind for start, kind in _STARTS.items() if text.startswith(start)), "")
+    if started:
+        return started
     if text.startswith(b"<"):
         return _first(_XML, text)
     if text.startswith(b"{"):
@@ -129,3 +160,15 @@ def refuse_others(data: bytes, file: str, *wanted: str) -> None:
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")
+
+
+def refuse_templates(data: bytes, file: str) -> None:
+    """Raises InputError for a text that a template language fills in: it is none of the kinds yet."""
+    if b"{{" not in data and b"{%" not in data:
+        return
+    found = next((it for it in _TEMPLATE.finditer(data) if it[1]), None)
+    if found:
+        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode("utf-8", "replace")
+        raise InputError(
+            f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes"
+        )

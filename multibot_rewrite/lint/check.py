@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, NoReturn
 
+from multibot_rewrite.base.file_kinds import refuse_templates
 from multibot_rewrite.base.findings.finding import Finding, by_place
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
@@ -48,7 +49,10 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     try:
         with _limited(settings.seconds), gc_paused():
             sources[path] = data = read()
-            if is_named_beside(path) or (path.endswith(_BY_TEXT) and kind_of(data)):
+            beside = is_named_beside(path) or (path.endswith(_BY_TEXT) and kind_of(data))
+            if not beside or kind_of(data):
+                refuse_templates(data, path)
+            if beside:
                 return sorted(_beside(path, data, settings), key=by_place)
             _look(path, data, settings, found, sources)
     except InputError as error:

@@ -22,12 +22,14 @@ from multibot_rewrite.rules.subject import Subject
 _PLACE = lazy_compile(
     r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?: (?P<text>.*)", re.DOTALL
 )
+_TEMPLATE = lazy_compile("a template, in which another program")
 # What a reader's message says -> the rule that reports it.
 _CODES = (
     (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),
     (lazy_compile("xacro failed[^:]*: package '[^']*' is not found"), "MB119"),
     (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
     (lazy_compile("xacro failed"), "MB103"),
+    (_TEMPLATE, "MB105"),
 )
 # What another file may make: a macro or property of the file that includes this one, or what an
 # argument names.
@@ -56,7 +58,8 @@ def _level(code: str, path: str, message: str) -> str:
     """How bad a failure is that is no fault for certain; empty for that of its rule."""
     if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
         return NOTE if is_for_ros_1(path) else WARNING
-    if "root element is <gazebo>" in message:  # SDF of before 1.3, which libsdformat converts
+    # SDF of before 1.3 is converted by libsdformat; a template may be fine when it is filled in.
+    if "root element is <gazebo>" in message or _TEMPLATE.search(message):
         return NOTE
     if _REFUSED.search(message):  # here alone: xacro and urdfdom read some of these
         return WARNING

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.rules.settings import Settings
@@ -36,6 +38,13 @@ TEXTS = {
     "rules": "layout: postfix\ndistro: jazzy\nrobots:\n  robot1:\n    amcl: []\n",
     "snapshot": '{"schema": 2, "nodes": []}',
     "bag": "rosbag2_bagfile_information:\n  version: 5\n",
+    "stage": 'include "robots.inc"\n# the hall\nfloorplan\n(\n  name "hall"\n)\n',
+    "webots": "#VRML_SIM R2023b utf8\nWorldInfo {\n}\n",
+    "mujoco": '<?xml version="1.0"?><!-- <a> -->\n<mujoco model="r"><worldbody/></mujoco>',
+    "usd": "#usda 1.0\n(\n)\n",
+    "mesh": "solid hull\nendsolid hull\n",
+    "manifest": '<?xml version="1.0"?>\n<package format="3"><name>r</name></package>',
+    "config": "<model><name>r</name><sdf version='1.9'>model.sdf</sdf></model>",
     "map": "image: hall.pgm\nmode: trinary\nresolution: 0.05\n",
 }
 
@@ -82,8 +91,14 @@ def test_a_launch_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
         launch_graph(LaunchOrder(str(path), trusted=True))
 
 
-@pytest.mark.parametrize("kind", ["fleet", "plan", "launch", "map", "bag"])
-@pytest.mark.parametrize("name", ["x.yaml", "x.urdf"])
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        *product(["fleet", "plan", "launch", "map", "bag"], ["x.yaml", "x.urdf"]),
+        *product(["stage", "webots", "usd", "mesh", "mujoco", "manifest", "config"], ["x.urdf"]),
+        ("stage", "x.world"),
+    ],
+)
 def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
     (it,) = lint_data(name, TEXTS[kind].encode(), Settings())
     assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
@@ -94,12 +109,21 @@ def test_a_plan_is_known_without_the_ways_of_its_rules() -> None:
     assert recognised(plan.encode()) == "plan"
 
 
-@pytest.mark.parametrize("kind", ["params", "rviz"])
-def test_a_fleet_file_is_not_made_of_another_file_alone(kind: str, tmp_path: Path) -> None:
-    path = tmp_path / f"x.{'rviz' if kind == 'rviz' else 'yaml'}"
+@pytest.mark.parametrize("kind", [it for it in KINDS if it not in ("urdf", "xacro", "sdf")])
+@pytest.mark.parametrize("name", ["x.yaml", "x.xml"])
+def test_a_description_for_init_that_is_another_file(kind: str, name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
     path.write_text(TEXTS[kind])
     with pytest.raises(InputError, match=KINDS[kind].words):
         search([str(path)])
+
+
+@pytest.mark.parametrize("kind", ["params", "fleet", "urdf"])
+def test_a_bag_that_is_another_file(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_text(TEXTS[kind])
+    with pytest.raises(InputError, match=KINDS[kind].words):
+        read_bag(str(path))
 
 
 def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:

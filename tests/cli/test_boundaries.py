@@ -51,11 +51,14 @@ def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("before", [b"", b"\x50\x2a\x4d\x18\1\0\0\0x"], ids=["plain", "skipped"])
+@pytest.mark.parametrize("name", ["a.db3.zstd", "a.db3"])
 def test_a_bag_that_unpacks_to_more_than_a_bound(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, before: bytes
 ) -> None:
+    """Its metadata say what is packed, whatever the file is called."""
     zstd = pytest.importorskip("rosbags.rosbag2.reader").zstd
-    (tmp_path / "a.db3.zstd").write_bytes(zstd.compress(bytes(5_000_000)))
+    (tmp_path / name).write_bytes(before + zstd.compress(bytes(5_000_000)))
     monkeypatch.setattr(read, "LEAST_UNPACKED", 1_000_000)
     with pytest.raises(InputError, match="unpacks to more than"):
         read.read_bag(str(tmp_path))

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.lint.check import lint_data, lint_file
 from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -253,3 +254,51 @@ def test_what_is_no_utf_8_is_an_error_where_python_reads_it(tmp_path: Path) -> N
         (tmp_path / name).write_bytes(b"<!-- \xb0 -->" + text)
         (found,) = lint_file(str(tmp_path / name), Settings(select=("MB101",)))
         assert (found.code, found.level) == ("MB101", level), name
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "codes"),
+    [
+        ("b", "a", ["MB103", "MB103"]),
+        ("$(find r)/b", "$(find r)/a", ["MB103", "MB103"]),
+        ("b", "b", ["MB103", "MB103"]),
+        # A file of that name elsewhere, and a comment.
+        ("b", "x/a", []),
+        ("b", "<!-- a", []),
+    ],
+)
+def test_files_that_include_each_other_are_no_parts(
+    tmp_path: Path, a: str, b: str, codes: list[str]
+) -> None:
+    """Each was taken for a part of the other, and nothing was said."""
+    (tmp_path / "x").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>r</name></package>")
+    files = [tmp_path / f"{name}.xacro" for name in ("a", "b", "x/a")]
+    for path, other in zip(files, (a, b, ""), strict=True):
+        _, start, name = other.rpartition("<!-- ")
+        include = f"<xacro:include filename='{name}.xacro'/>{' -->' * bool(start)}" * bool(name)
+        path.write_text(f"<robot name='r' {XACRO}>{start}{include}<link name='l'/></robot>")
+    found = lint_files([*map(str, files)], Settings(select=("MB103",)), jobs=1)
+    assert [it.code for it in found] == codes
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "line"),
+    [
+        ("model.sdf", '<sdf version="1.9">\n<model name="{{ name }}"/></sdf>', 2),
+        ("robot.urdf", '<robot name="r">\n{% for it in legs %}<link/>{% endfor %}</robot>', 2),
+        ("nav.yaml", "amcl:\n  ros__parameters:\n    alpha1: {{ alpha }}\n", 3),
+        # Of xacro, in a comment, of one brace.
+        ("r.xacro", f'<robot name="r" {XACRO}><link name="${{{{1: 2}}[1]}}"/></robot>', 0),
+        ("robot.urdf", '<robot name="r"><!-- {{ a }} --><link name="a"/></robot>', 0),
+        ("nav.yaml", "# {{ a }}\namcl:\n  ros__parameters: {alpha1: 0.2}\n", 0),
+    ],
+)
+def test_a_template_is_judged_when_it_is_filled_in(
+    tmp_path: Path, file: str, text: str, line: int
+) -> None:
+    path = tmp_path / file
+    path.write_text(text)
+    found = [(it.code, it.level, it.line) for it in lint_file(str(path), Settings())]
+    assert [it for it in found if it[0] == "MB105"] == [("MB105", NOTE, line)][: bool(line)]
+    assert not line or len(found) == 1

@@ -22,7 +22,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.outside import is_file, outside, variable
+from multibot_rewrite.base.outside import is_file, outside, real_path, variable
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.document import Document, read_document
 
@@ -37,25 +37,25 @@ _SPACES = lazy_compile(rb"\s*\n\s*")
 _END = lazy_compile(rb"<!--.*?-->|</include\s*>|<include\b[^>]*/>", 16)
 
 
-def with_includes(data: bytes, file: str, depth: int = 0) -> bytes:
-    """The text of a model with every included model in it that is found; others stay as they are."""
-    if b"<include" not in data or depth > _DEEPEST:
+def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
+    """The text of a model with every included model in it that is found; others stay as they are.
+
+    ``above``: the files that include this one. Raises InputError where a model includes itself.
+    """
+    document = _document(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
+    if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
-    with suppress(InputError):
-        document = read_document(data, file)
-        if document.root.tag == "sdf" and document.root.find("world") is None:
-            return _filled(document, depth)
-    return data
+    return _filled(document, (*above, real_path(file)))
 
 
-def _filled(document: Document, depth: int) -> bytes:
+def _filled(document: Document, above: tuple[str, ...]) -> bytes:
     source, last = document.source, 0
     done: list[bytes] = []
     for element, start in zip(document.elements, document.starts, strict=True):
         parent = element.getparent()
         if element.tag != "include" or parent is None or parent.tag != "model":
             continue
-        made = _made(element, document.file, depth)
+        made = _made(element, document.file, above)
         end = next((it.end() for it in _END.finditer(source, start) if it[0][:4] != b"<!--"), 0)
         if made and end and len(made) + len(source) <= MAX_BYTES:
             done += (source[last:start], made, b"\n" * source.count(b"\n", start, end))
@@ -63,12 +63,18 @@ def _filled(document: Document, depth: int) -> bytes:
     return b"".join((*done, source[last:]))
 
 
-def _made(include: _Element, file: str, depth: int) -> bytes:
+def _made(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
     """What stands in place of an include; nothing where its model is not found or not as new."""
-    path = model_file(text_at(include, "uri"), os.path.dirname(os.path.abspath(file)))
+    uri = text_at(include, "uri")
+    path = model_file(uri, os.path.dirname(os.path.abspath(file)))
     if not path:
         return b""
-    data = with_includes(_text(path), path, depth + 1)
+    if real_path(path) in above:
+        raise InputError(
+            f"{file}:{include.sourceline}: {uri!r} leads back to the model that includes it, and "
+            "Gazebo reads until its memory is full; leave out one of the <include>"
+        )
+    data = with_includes(_text(path), path, above)
     root = _root(data, path)
     model = root.find("model") if root is not None else None
     if root is None or model is None or (_is_old(root) and _OLD.search(data)):
@@ -81,12 +87,18 @@ def _made(include: _Element, file: str, depth: int) -> bytes:
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
-def _root(data: bytes, path: str) -> _Element | None:
+def _document(data: bytes, path: str) -> Document | None:
     with suppress(InputError):
-        root = read_document(data, path).root
-        etree.strip_tags(root, etree.Comment)
-        return root
+        return read_document(data, path)
     return None
+
+
+def _root(data: bytes, path: str) -> _Element | None:
+    document = _document(data, path)
+    if document is None:
+        return None
+    etree.strip_tags(document.root, etree.Comment)
+    return document.root
 
 
 def _is_old(root: _Element) -> bool:

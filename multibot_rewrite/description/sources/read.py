@@ -22,7 +22,7 @@ XACRO = ".xacro"
 # A list of parts, as YAML.
 JOIN = ".join"
 _MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
-_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
+COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
@@ -61,7 +61,7 @@ def has_xacro(data: bytes) -> bool:
     """Does a text have elements of xacro, under whatever prefix?"""
     if b"xacro" not in data:
         return False
-    text = _COMMENT.sub(b"", data)
+    text = COMMENT.sub(b"", data)
     return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 

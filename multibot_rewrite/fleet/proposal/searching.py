@@ -12,7 +12,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_bytes
-from multibot_rewrite.base.file_kinds import refuse_others
+from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
@@ -82,7 +82,8 @@ class Found(NamedTuple):
 def search(paths: Sequence[str]) -> Found:
     """What there is for the descriptions and folders that are named.
 
-    With a description goes what is in its package; raises UsageError for a path that is not there.
+    With a description goes what is in its package; raises UsageError for a path that is not there,
+    InputError for a file of another kind.
     """
     for path in paths:
         if not os.path.exists(path):
@@ -93,10 +94,11 @@ def search(paths: Sequence[str]) -> Found:
     meant = [it for it in named if it.endswith(_BESIDE)]
     files = [it for it in named if it not in meant]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
+    # What goes with a description is none: without one it is told by what it is.
+    for path in files if files or folders else meant:
+        refuse_others(data_of_file(path), path, *DESCRIPTIONS)
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
-    if meant and not homes:
-        refuse_others(data_of_file(meant[0]), meant[0])
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
     for path, kind in _sorted(every):

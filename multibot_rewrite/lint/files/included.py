@@ -11,8 +11,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
-from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.packages import package_folder, package_of
+from multibot_rewrite.description.sources.read import COMMENT, read_file
 from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rules.settings import Settings
@@ -21,6 +21,7 @@ from multibot_rewrite.rules.settings import Settings
 _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)[\"']")
 # What xacro fills in, and a name that says something beside it.
 _FILLED = lazy_compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
+_PACKAGE = lazy_compile(r"\$\(find\s+([^\s()]+)\s*\)")
 _LITERAL = lazy_compile(r"^[^*.]{4,}.*\*|\*[^*.]{4,}|^[^*]*$")
 
 
@@ -36,9 +37,33 @@ def included(paths: Sequence[str]) -> frozenset[str]:
     return frozenset(
         path
         for real, path in files.items()
-        if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
-        or any(fnmatchcase(real, f"*/{asked}") for asked in loose)
+        if (
+            any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
+            or any(fnmatchcase(real, f"*/{asked}") for asked in loose)
+        )
+        and not _includes_itself(real)
     )
+
+
+def _includes_itself(real: str) -> bool:
+    """Does a file lead back to itself? Then it is a part of no file that xacro expands."""
+    found: set[str] = set()
+    todo = [real]
+    while todo and real not in found:
+        new = set(_included_by(todo.pop())) - found
+        found |= new
+        todo += new
+    return real in found
+
+
+def _included_by(path: str) -> Iterator[str]:
+    """The files that a file includes, where only packages are to be filled in."""
+    for name in _INCLUDE.findall(COMMENT.sub(b"", _text(path))):
+        text = _PACKAGE.sub(
+            lambda it: package_folder(it[1], path, ()), name.decode("utf-8", "replace")
+        )
+        if "$" not in text:
+            yield real_path(os.path.join(os.path.dirname(path), text))
 
 
 def _beside(paths: Sequence[str]) -> Iterator[str]:

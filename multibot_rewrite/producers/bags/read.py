@@ -10,12 +10,14 @@ import os
 import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from importlib import import_module
 from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
+from multibot_rewrite.base.file_kinds import BAG, refuse_others
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
@@ -52,7 +54,6 @@ _HEADED = frozenset(
 )
 # What a file of a bag is unpacked to, at most: messages pack to a twentieth, images to less.
 LEAST_UNPACKED, MOST_PACKED, _PART = 2**30, 40, 2**20
-_PACKED = (".zst", ".zstd")
 _NO_LIMIT_SECONDS = 9_223_372_036
 
 
@@ -69,6 +70,8 @@ def read_bag(path: str) -> Recording:
         _check_metadata(path)
         with Reader(path) as reader:
             return _recording(reader)
+    except InputError:
+        raise
     except Exception as error:  # a damaged bag fails in sqlite3, zstandard, PyYAML or struct
         reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
         hint = "is the recording complete? ros2 bag reindex may mend it"
@@ -78,24 +81,29 @@ def read_bag(path: str) -> Recording:
 def _check_metadata(path: str) -> None:
     """Raises yaml.YAMLError for a file that the reader's own parser might not survive."""
     if not os.path.isdir(path):
+        with open(path, "rb") as file:
+            refuse_others(file.read(_PART), path, BAG)
         return
     if os.path.exists(os.path.join(path, METADATA)):
         load_yaml(read_text(os.path.join(path, METADATA)))
     for name in sorted(os.listdir(path)):
-        if name.endswith(_PACKED):
+        if os.path.isfile(os.path.join(path, name)):
             _check_packed(os.path.join(path, name))
 
 
 def _check_packed(path: str) -> None:
-    """Raises InputError for a file that its reader would unpack to far more than messages pack to."""
+    """Raises InputError for a file that its reader would unpack to far more than messages pack to.
+
+    The metadata say which are packed, and not their names: one that is not ends at its first bytes.
+    """
     most = max(LEAST_UNPACKED, MOST_PACKED * os.path.getsize(path))
     zstd: Any = import_module("rosbags.rosbag2.reader").zstd
-    with zstd.open(path, "rb") as file:
+    with suppress(zstd.ZstdError), zstd.open(path, "rb") as file:
         size = 0
         while part := file.read(_PART):
             size += len(part)
             if size > most:
-                raise InputError(f"{os.path.basename(path)} unpacks to more than {most:,} bytes")
+                raise InputError(f"{path}: it unpacks to more than {most:,} bytes; leave it out")
 
 
 def _recording(reader: Reader) -> Recording:

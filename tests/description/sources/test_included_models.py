@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite import rewrite, strip
+from multibot_rewrite import InputError, rewrite, strip
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_models import VARIABLES, with_includes
 from multibot_rewrite.fleet.proposal.looking import NeededValues, look
@@ -139,17 +140,28 @@ def test_a_file_beside_the_included_model_is_found_from_the_new_one(rover: Path)
     ("file", "text"),
     [
         ("base", OLD),
-        ("mid", MID.replace(">base<", ">mid<")),
         ("base", "<sdf version='1.9'><model"),
         ("base", "<robot name='r'/>"),
     ],
-    ids=("old", "itself", "broken", "no-model"),
+    ids=("old", "broken", "no-model"),
 )
 def test_what_cannot_be_put_in_stays_and_is_said(rover: Path, file: str, text: str) -> None:
     (rover.parents[1] / file / "model.sdf").write_text(text)
     done = rewrite(rover, "r1")
     assert "MB906" in {it.code for it in done.findings}
     assert b"<include" in done.data
+
+
+@pytest.mark.parametrize("back", ["mid", "rover"])
+def test_a_model_that_includes_itself_is_an_error(rover: Path, back: str) -> None:
+    """libsdformat reads on until there is no memory: ign sdf ends with bad_alloc."""
+    mid = rover.parents[1] / "mid" / "model.sdf"
+    mid.write_text("\n" + MID.replace(">base<", f">{back}<"))
+    (rover.parent / "model.config").write_text(CONFIG)
+    with pytest.raises(InputError, match=f"{mid}:2: '{back}' leads back"):
+        rewrite(rover, "r1")
+    (found,) = lint_file(str(rover), Settings())
+    assert (found.code, found.level, found.file, found.line) == ("MB101", ERROR, str(mid), 2)
 
 
 @pytest.mark.parametrize(

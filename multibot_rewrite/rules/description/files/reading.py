@@ -20,7 +20,7 @@ not_xml = declare(
     "not-xml",
     ERROR,
     what="The file cannot be read as a robot description: broken XML, an encoding other than "
-    "UTF-8, a DOCTYPE, an empty file, or another root element.",
+    "UTF-8, a DOCTYPE, an empty file, or another root element. Or an SDF model includes itself.",
     why="xacro, launch files and every other program with a complete XML parser stop with an "
     "error. urdfdom's parser accepts some of it, so a part of the system may run without the rest.",
     fix="Correct the XML at the place of the finding; save the file as UTF-8.",
@@ -105,7 +105,7 @@ package_not_found = declare(
     what="A description that is not named .xacro holds xacro elements or ${...} and $(arg ...). Or"
     " a file beside it holds a placeholder, such as $(var area) or <area>, in a section or a "
     "name. It does not stand for the robot, and stays. It is a note where only the file is "
-    "looked at.",
+    "looked at, and of a template ({{ ... }}, {% ... %}), of which nothing else is checked.",
     why="A program that loads it as it is does not expand it. urdfdom rejects the joint, and with"
     " it the robot, where ${...} is in place of a number. In a file no node has the section, "
     "and what a launch file puts there does not get the robot's name from the build.",
