@@ -148,7 +148,8 @@ def _child(
         yield Fault("later", child, None, message, hint)
         return
     yield from _value(child, "", row, text_of(child), known, version)
-    if row.section:
+    # The converter of sdformat leaves out what an older SDF had here, such as the <frame> of a sensor.
+    if row.section and (row.last or version) >= version:
         yield from _element(child, row.section, version)
 
 
