@@ -231,7 +231,7 @@ def test_the_doctor_finds_what_needs_no_plan(
     ("words", "said"),
     [
         (("--bag", "{}/nowhere"), "there is no such bag"),
-        (("--bag", "{}/plan.yaml"), "not a readable bag"),
+        (("--bag", "{}/plan.yaml"), "a plan; use multibot check"),
         (("--bag", "{}"), "not a readable bag"),
         (("--bag", "{}/healthy", "--watch"), "leave out --watch"),
         (("--bag", "{}/healthy", "--report", "{}/page.html"), "leave out --report"),
