@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from math import ceil
 from typing import Any
 
@@ -223,17 +224,28 @@ def see(wanted: Wanted) -> Seen:
     every = found.descriptions
     if len(every) > MOST:
         every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
+    look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
     looked = []
     for at, it in enumerate(every, 1):
         wanted.tell(f"{at} of {len(every)} descriptions: {it}")
-        looked.append(look(it, wanted.arguments, reach, values))
+        looked.append(look_at(it))
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
-    if named:
-        _refuse([it for it in named if not it.links], "")
-        if len(named) > 1:
-            return Seen(found, named, True)
-        beside = [look(it, wanted.arguments, reach, values) for it in _partners(named[0], found)]
-        return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
+    return _named(wanted, found, named, look_at) if named else _likeliest(wanted, found, looked)
+
+
+def _named(
+    wanted: Wanted, found: Found, named: list[Looked], look_at: Callable[[str], Looked]
+) -> Seen:
+    """The descriptions that were named; beside one alone stand those that share its folder."""
+    _refuse([it for it in named if not it.links], "")
+    if len(named) > 1:
+        return Seen(found, named, True)
+    beside = [look_at(it) for it in _partners(named[0], found)]
+    return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
+
+
+def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
+    """The robots of a folder, the likeliest first."""
     usable = [it for it in looked if it.links and acts(it)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from types import MappingProxyType
 from typing import Any
@@ -141,24 +141,29 @@ def read_jobs(
     common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
-            words = it.words, common[it.description]
-            given = _taken(it, it.description, it.srdf), *words
-            description = job_for(read(it, it.description), *given)
-            srdf = job_for(read(it, it.srdf, it.description), *given) if it.srdf else None
-            # An argument may be for the SRDF alone, which is read beside the description.
-            description = description._replace(read=(srdf or description).read)
-            model = None
-            if it.simulated:
-                model = job_for(read(it, it.simulated), _taken(it, it.simulated), *words)
-                both = joined_reads(description.read, model.read)
-                description, model = description._replace(read=both), model._replace(read=both)
-            if it.parts:
-                description = description._replace(
-                    read=FilesRead((*description.read.files, *it.files))
-                )
-            found[it.sources] = Jobs(description, srdf, model)
+            found[it.sources] = _jobs(it, read, (it.words, common[it.description]))
     _check_arguments(robots, found)
     return found
+
+
+def _jobs(
+    it: RobotSpec, read: Callable[..., Reader], words: tuple[Sequence[str], Set[str]]
+) -> Jobs:
+    """The jobs of a robot's files; an argument may be for one of them alone."""
+    taken = _taken(it, it.description, it.srdf)
+    description = job_for(read(it, it.description), taken, *words)
+    srdf = job_for(read(it, it.srdf, it.description), taken, *words) if it.srdf else None
+    # The SRDF is read beside the description.
+    description = description._replace(read=(srdf or description).read)
+    model = None
+    if it.simulated:
+        model = job_for(read(it, it.simulated), _taken(it, it.simulated), *words)
+        both = joined_reads(description.read, model.read)
+        description, model = description._replace(read=both), model._replace(read=both)
+    if it.parts:
+        files = FilesRead((*description.read.files, *it.files))
+        description = description._replace(read=files)
+    return Jobs(description, srdf, model)
 
 
 def _taken(robot: RobotSpec, *files: str) -> Arguments:
