@@ -20,7 +20,12 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.producers.ros.headers import HeaderSamples, SensorTopic, sensor_topics
+from multibot_rewrite.producers.ros.headers import (
+    HeaderSamples,
+    SensorTopic,
+    pose_in,
+    sensor_topics,
+)
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.system.index import index
@@ -456,3 +461,19 @@ def sampled(stamp: float, latched: bool = False) -> tuple[Heard, ...]:
     samples.update([end("/scan")._replace(qos=qos(durability=durability))])
     calls[0](serialized("laser", stamp=stamp))
     return samples.heard()
+
+
+@pytest.mark.parametrize(
+    ("type_", "frames"),
+    [
+        ("geometry_msgs/msg/PoseStamped", 1),
+        ("geometry_msgs/msg/PoseWithCovarianceStamped", 1),
+        ("nav_msgs/msg/Odometry", 2),
+    ],
+)
+def test_a_pose_stands_behind_the_frames_of_its_message(type_: str, frames: int) -> None:
+    """The fields of the .msg files: a header, the child frame of odometry, the pose. A frame of three
+    letters ends at a multiple of four; numbers of eight bytes begin at one of eight (CDR)."""
+    data = struct.pack("<ii", 1, 2) + struct.pack("<I4s", 4, b"map\0") * frames
+    data += bytes(-len(data) % 8) + struct.pack("<7d", 1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+    assert pose_in(type_, b"\0\1\0\0" + data + bytes(36 * 8)) == (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
