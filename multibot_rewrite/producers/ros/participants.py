@@ -16,7 +16,7 @@ from typing import NamedTuple
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
 OPEN_HERE = "/proc/self/fd"
-# What all nodes of a large fleet say of themselves at once; the system may give less (net.core.rmem_max).
+# What all nodes of a large fleet say of themselves at once; net.core.rmem_max may be less.
 ROOM_BYTES = 1 << 22
 
 
@@ -65,8 +65,8 @@ def _sockets_here() -> list[Socket] | None:
 
 
 def make_room() -> None:
-    """Give the UDP sockets of this process room for what a fleet says at once: Linux has it for some 160
-    datagrams, and what is lost comes again only after a heartbeat of 3 s."""
+    """Give the UDP sockets of this process room for what a fleet says at once: Linux has it for some
+    160 datagrams, and what is lost comes again only after a heartbeat of 3 s."""
     for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
         with suppress(OSError):
             _widen(socket.socket(fileno=int(number)))
