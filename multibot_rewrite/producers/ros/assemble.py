@@ -38,7 +38,7 @@ BUSY_MACHINE = "busy-machine"
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
-# Their publishers' QoS is wanted where nobody reads them, too: what is latched comes to no other reader.
+# Their QoS is wanted where nobody reads them, too: what is latched comes to no other reader.
 _LISTENED_TO = frozenset((
     *TF_TYPES, "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseWithCovarianceStamped",
 ))  # fmt: skip
