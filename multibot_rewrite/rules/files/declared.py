@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
@@ -62,11 +63,13 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
         paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
-        there += {name for it in unknown for name in _beside(it, paths)}
+        above = {it.name.rpartition(".")[0] for it in unknown}
+        there += {name for group in above for name in _beside(group, paths)}
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
+        groups = _by_group(free)
         for it in unknown if there else ():
-            near = _meant(it.name, free, guesses)
+            near = _meant(it.name, free, groups, guesses)
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
@@ -77,9 +80,8 @@ def _is_any_name(fact: Declared) -> bool:
     return fact.how == READ and fact.path.endswith(">")
 
 
-def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
-    """What may be beside a parameter by a pattern: ``joint_limits.<joint>.max_velocity``."""
-    above = it.name.rpartition(".")[0]
+def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
+    """What may be in a group by a pattern: ``joint_limits.<joint>.max_velocity``."""
     for path in paths:
         pattern, _, last = path.rpartition(".")
         stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
@@ -100,10 +102,21 @@ def _is_known(section: Section, it: Given) -> bool:
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
 
-def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
+def _by_group(names: Iterable[str]) -> Mapping[str, Mapping[str, str]]:
+    """Group -> last word -> parameter."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in names:
+        above, _, last = name.rpartition(".")
+        found[above][last] = name
+    return found
+
+
+def _meant(
+    name: str, known: Sequence[str], groups: Mapping[str, Mapping[str, str]], guesses: Guesses
+) -> str:
     """The parameter in the same place, or the same one in another, that differs by little."""
     above, _, last = name.rpartition(".")
-    beside = {it.rpartition(".")[2]: it for it in known if it.rpartition(".")[0] == above}
+    beside = groups.get(above, {})
     if RENAMED.get(last) in beside:
         return beside[RENAMED[last]]
     near = meant_name(last, beside) or _cut(last, beside) or guesses.nearest(last, beside, MISTYPED)
@@ -167,7 +180,11 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
             continue
         paths = [fact.path for fact in facts]
         for it, found in section.known:
-            if found or _is_known(section, it) or _meant(it.name, paths, Guesses()):
+            if (
+                found
+                or _is_known(section, it)
+                or _meant(it.name, paths, _by_group(paths), Guesses())
+            ):
                 continue
             message = f"{section.title} declares no parameter {it.name!r}"
             yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
