@@ -63,8 +63,8 @@ def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
         paths = [it.path for it in of_release(facts, file.context.distro)]
         there = [it for it in paths if "<" not in it]
         there += _in_blocks(section, paths) if section.node is None else ()
-        above = {it.name.rpartition(".")[0] for it in unknown}
-        there += {name for group in above for name in _beside(group, paths)}
+        above = sorted({it.name.rpartition(".")[0] for it in unknown})
+        there += dict.fromkeys(name for group in above for name in _beside(group, paths))
         said = {it.name for it in section.given}
         free = [it for it in there if it not in said]
         groups = _by_group(free)
