@@ -48,31 +48,40 @@ _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
-    guesses = Guesses()
     for section in sections(file):
-        unknown = [
-            it
-            for it, found in section.known
-            if all(map(_is_any_name, found))
-            and not _is_known(section, it)
-            and PARAMETERS not in it.name.split(".")
-        ]
-        if not unknown:
-            continue
-        facts = [it for it in section.facts if it.how != READ]
-        paths = [it.path for it in of_release(facts, file.context.distro)]
-        there = [it for it in paths if "<" not in it]
-        there += _in_blocks(section, paths) if section.node is None else ()
-        above = sorted({it.name.rpartition(".")[0] for it in unknown})
-        there += dict.fromkeys(name for group in above for name in _beside(group, paths))
-        said = {it.name for it in section.given}
-        free = [it for it in there if it not in said]
-        groups = _by_group(free)
-        for it in unknown if there else ():
-            near = _meant(it.name, free, groups, guesses)
+        unknown = [it for it, found in section.known if all(map(_is_any_name, found))]
+        for it, near in _meant_by(section, unknown, file.context.distro):
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
+
+
+def _meant_by(
+    section: Section, given: Iterable[Given], release: str
+) -> Iterator[tuple[Given, str]]:
+    """Each parameter that its node is not known to have, and the one that is probably meant."""
+    unknown = [
+        it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
+    ]
+    if not unknown:
+        return
+    facts = [it for it in section.facts if it.how != READ]
+    paths = [it.path for it in of_release(facts, release)]
+    there = [it for it in paths if "<" not in it]
+    there += _in_blocks(section, paths) if section.node is None else ()
+    above = sorted({it.name.rpartition(".")[0] for it in unknown})
+    there += dict.fromkeys(name for group in above for name in _beside(group, paths))
+    said = {it.name for it in section.given}
+    free = [it for it in there if it not in said]
+    groups, guesses = _by_group(free), Guesses()
+    for it in unknown:
+        yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
+
+
+def _renamed(name: str) -> str:
+    """Today's name of a parameter that has another one elsewhere; empty for none."""
+    *above, last = name.split(".")
+    return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
 
 
 def _is_any_name(fact: Declared) -> bool:
@@ -178,16 +187,11 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
         if section.node is None or not _are_all(facts):
             continue
-        paths = [fact.path for fact in facts]
-        for it, found in section.known:
-            if (
-                found
-                or _is_known(section, it)
-                or _meant(it.name, paths, _by_group(paths), Guesses())
-            ):
-                continue
-            message = f"{section.title} declares no parameter {it.name!r}"
-            yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+        unread = [it for it, found in section.known if not found]
+        for it, near in _meant_by(section, unread, file.context.distro):
+            if not near:
+                message = f"{section.title} declares no parameter {it.name!r}"
+                yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
 
 
 def _are_all(facts: Sequence[Declared]) -> bool:
