@@ -251,6 +251,29 @@ def test_a_node_of_nav2_that_no_manager_knows(known: Knowledge) -> None:
     assert judged(known, "MG726", amcl, unread) == []
 
 
+@pytest.mark.parametrize(
+    ("node", "manager", "count"),
+    [
+        ({}, {}, 1),
+        ({"use_lifecycle_manager": True}, {}, 0),
+        ({"use_lifecycle_manager": False}, {}, 1),
+        ({}, {"bond_timeout": 0.0}, 0),
+        ({}, {"bond_timeout": 4.0}, 1),
+    ],
+)
+def test_a_manager_that_waits_for_a_bond_that_is_not_kept(
+    node: dict[str, object], manager: dict[str, object], count: int, known: Knowledge
+) -> None:
+    """slam_toolbox jazzy, slam_toolbox_common.cpp on_activate: createBond by a parameter alone."""
+    mapper = started(
+        *("slam_toolbox", "async_slam_toolbox_node", "slam_toolbox"), parameters=with_values(node)
+    )
+    amcl = started(*AMCL)
+    found = judged(known, "MG726", amcl, mapper, managed("amcl", "slam_toolbox", **manager))
+    waits = "/manager waits for a bond with /slam_toolbox, which keeps none"
+    assert [it.message for it in found] == [waits] * count
+
+
 def test_a_manager_that_waits_for_a_node_that_is_not_started(known: Knowledge) -> None:
     amcl = started(*AMCL)
     (slip,) = judged(known, "MG726", amcl, managed("amcl", "amc"))
