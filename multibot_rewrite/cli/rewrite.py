@@ -30,6 +30,7 @@ from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.verdict import given, not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
+from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
@@ -87,8 +88,9 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         tell(options, f"warning: {doubt}")
     rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
     first = next(rewrites)
-    # Robots with descriptions of their own are all made before the first is here.
-    others = list(rewrites) if first.prepared.job.naming.own else []
+    # Robots with descriptions or numbers of their own are all made before the first is here.
+    is_numbered = any(it.code == NUMBERED for it in first.findings)
+    others = list(rewrites) if first.prepared.job.naming.own or is_numbered else []
     jobs = dict.fromkeys(it.prepared for it in (first, *others))
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     found = (finding for it in (first, *others) for finding in it.findings)

@@ -36,6 +36,8 @@ from multibot_rewrite.description.readback.reading import (
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
 OPENED = "MB412"
+# What is said of a number that each further robot got in the place of such a one.
+NUMBERED = "MF845"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
