@@ -225,6 +225,21 @@ def test_a_topic_that_is_kept_is_an_end_like_others() -> None:
         assert parted == (topic == "/eye")
 
 
+@pytest.mark.parametrize(("namespace", "parted"), [("", False), ("r", True), ("other", False)])
+def test_a_topic_below_the_model_is_met_in_the_namespace_of_its_name(
+    namespace: str, parted: bool
+) -> None:
+    """rotors_gazebo_plugins gazebo_mavlink_interface.cpp:198 sends on ~/<model>/command, and
+    gazebo_motor_model.cpp:301 listens on ~/<robotNamespace>/command."""
+    above = f"<robotNamespace>{namespace}</robotNamespace>"
+    sent = "<motorSpeedCommandPubTopic>/command</motorSpeedCommandPubTopic>"
+    heard = "<commandSubTopic>command</commandSubTopic><jointName>j</jointName>"
+    both = plugin("rotors_gazebo_mavlink_interface", sent) + plugin(
+        "rotors_gazebo_motor_model", above + heard
+    )
+    assert ("whose ends no longer match" in str(why(robot(both)))) == parted
+
+
 def test_a_word_that_topics_are_made_of_is_no_topic() -> None:
     """gazebo_ros_camera.cpp publishes <camera_name>/image_raw, nothing on the word alone."""
     camera = plugin("gazebo_ros_camera", "<camera_name>eye</camera_name>")[8:-9]
