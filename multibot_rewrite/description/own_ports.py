@@ -242,7 +242,7 @@ def judged_together(
         Problem(
             next(islice(root.iter(it.name.tag), it.name.number, None), root),
             said(f"{it.robot} and {it.other} would both", it.name, it.twin),
-            hint=advice(it.name),
+            hint=advice(it.name, together=True),
             code=OPENED,
         )
         for it in meetings(names, template.naming)

@@ -120,6 +120,8 @@ def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     assert [it.data for it in three[:1]] == [one.data] and one.not_proved
     assert bool(three[2].not_proved) == (numbers is None)
     assert ("MF845" in {it.code for it in three[0].findings}) == bool(numbers)
+    met = [it.hint for it in one.findings if it.code == "MB412"]
+    assert all(("in one call" in it) == bool(numbers) for it in met) and met
     assert [strip(it.data, it.robot, distro="jazzy") for it in three] == [text.encode()] * 3
     listed = [[one.new for one in it.changes if one.kind == "port"] for it in three]
     assert listed == [[], *([it] for it in numbers[1:])] if numbers else not any(listed)
