@@ -13,6 +13,7 @@ from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
+    why_here,
 )
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
@@ -101,7 +102,8 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
     deliver(options, results, changes, len(names))
-    tell(options, summary(first, names, _own_arguments(options, names)))
+    why = first.prepared.job.why or why_here(options.distro)
+    tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
 
 
@@ -130,7 +132,9 @@ def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
     return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
 
 
-def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
+def summary(
+    first: Rewrite, robots: list[str], own_arguments: str = "", of_release: str = ""
+) -> str:
     """One line: how many names of each kind were renamed, how many the xacro's own arguments have
     named, and the release with what says so."""
     inventory, plan = first.template.inventory, first.template.plan
@@ -148,5 +152,5 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     why = not_proved(first.findings)
     proved = " ".join(filter(None, ["proved", given(first.findings, first.prepared.job.aside)]))
     end = f"rewritten, not proved: {', '.join(why)}" if why else proved
-    end += facts_of_release(first.distro, first.prepared.job.why)
+    end += facts_of_release(first.distro, of_release)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"
