@@ -302,10 +302,12 @@ def generate_launch_description():
         ("{'rate': 5}", True),
         ("{'robot_description': Command(['made_by_a_program ', 'x'])}", False),
         ("{'robot_description': Command(['xacro ', '/nowhere.xacro'])}", False),
-        ("{'robot_description': {}['x'] if False else object()}", False),
         # ECUST-Origin-Sentry-Team/gazebo_simulator_origin: a Python package that is not here makes it.
         ("{'robot_description': __import__('made_elsewhere').Macro().to_string()}", False),
+        ("{'robot_description': {'xml': __import__('made_elsewhere').MACRO}}", True),
         ("{'rate': __import__('made_elsewhere').rate()}", True),
+        ("__import__('made_elsewhere').builder().to_dict()", False),
+        ("dict(**__import__('made_elsewhere').VALUES)", False),
         ("{'robot_description': '<robot name=\"r\"><link name=\"a\"/></robot>'}", False),
         ("{'robot_description': '/opt/r.urdf'}", True),
         ("'/opt/not/here.yaml'", False),
@@ -340,7 +342,7 @@ def generate_launch_description():
 
 @pytest.mark.parametrize(
     ("given", "differs"),
-    [("True", False), ("False", True), ("object()", False), ("Command(['which_time'])", False)],
+    [("True", False), ("False", True), ("__import__('made_elsewhere').time", False), ("Command(['which_time'])", False)],
 )
 def test_a_time_that_only_a_run_tells_differs_from_none(
     given: str, differs: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -52,18 +52,18 @@ def failure(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
-    text = " ".join(f"{type(error).__name__}: {error}{_line(error)}".split())
+    text = " ".join(f"{type(error).__name__}: {error}".split())
     # launch tries its other forms, too, and says what each of them says.
-    text = found[1] if (found := _TRIED.search(text)) else text
+    text = f"{found[1] if (found := _TRIED.search(text)) else text}{_line(error)}"
     return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
 
 
 def _line(error: BaseException) -> str:
     """The line of a launch file in Python that raised it."""
     # launch has an error of its own around it.
-    frames = extract_tb((error.__cause__ or error).__traceback__)
-    name = os.path.basename(frames[-1].filename) if frames else ""
-    return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
+    frames = reversed(extract_tb((error.__cause__ or error).__traceback__))
+    last = next((it for it in frames if it.filename.endswith("launch.py")), None)
+    return f" ({os.path.basename(last.filename)}:{last.lineno})" if last else ""
 
 
 def lost_file(error: BaseException) -> str:

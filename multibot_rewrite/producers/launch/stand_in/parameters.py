@@ -25,8 +25,6 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
     typed_truth,
 )
-from multibot_rewrite.producers.launch.unknown_modules import is_unknown
-
 _ITEMS = (bool, int, float, str)
 
 
@@ -116,10 +114,20 @@ def _flat(
 ) -> Iterator[tuple[tuple[Any, ...], Any]]:
     for key, value in given.items():
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
-        if isinstance(value, Mapping) and not is_unknown(value):
+        if isinstance(value, Mapping):
             yield from _flat(value, (*name, "."))
-        else:
+        elif isinstance(value, _PLAIN + (list, tuple)) or _is_told_later(value):
             yield name, value
+        else:
+            raise _no_value(value)
+
+
+def _is_told_later(value: Any) -> bool:
+    return hasattr(value, "perform") or hasattr(value, "evaluate")
+
+
+def _no_value(value: Any) -> TypeError:
+    return TypeError(f"Unexpected type for parameter value {value!r}")
 
 
 def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
@@ -130,7 +138,7 @@ def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
     if isinstance(value, list | tuple):
         return _listed(context, value, name)
     if not isinstance(value, _PLAIN):
-        raise TypeError(f"Unexpected type for parameter value {value!r}")
+        raise _no_value(value)
     return value
 
 
