@@ -342,7 +342,12 @@ def generate_launch_description():
 
 @pytest.mark.parametrize(
     ("given", "differs"),
-    [("True", False), ("False", True), ("__import__('made_elsewhere').time", False), ("Command(['which_time'])", False)],
+    [
+        ("True", False),
+        ("False", True),
+        ("__import__('made_elsewhere').time", False),
+        ("Command(['which_time'])", False),
+    ],
 )
 def test_a_time_that_only_a_run_tells_differs_from_none(
     given: str, differs: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -465,6 +470,9 @@ _AMCL = (
     'Node(package="nav2_amcl", executable="amcl", name="amcl", namespace="r1", '
     'remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])'
 )
+_CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
+_GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
+_SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
 _BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
@@ -508,6 +516,28 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
+    # clearpath_simulator clearpath_gz/launch/robot_spawn.launch.py: one has ended before.
+    "one name after the other": (
+        *("MG301", False, ""),
+        (_DRIVER[:-1] + ', on_exit=[Node(package="acme", executable="two", name="driver")])',),
+    ),
+    "one name at once": ("MG301", True, "", (_DRIVER, _DRIVER.replace('"acme"', '"other"'))),
+    # Deamon-l/jaka_zu3_ros2_gazebo: the other one bridges no clock.
+    "a clock of one of two bridges": (
+        *("MG502", False, ""),
+        (_ROW.format(_CLOCK), _ROW.format("/i@sensor_msgs/msg/CameraInfo[gz.msgs.CameraInfo")),
+    ),
+    "a clock of both": ("MG502", True, "", (_ROW.format(_CLOCK), _ROW.format(_CLOCK))),
+    # launch jazzy action.py: Ast4r/Ros2_Navigation.
+    "a condition that is none": (
+        *("MG721", True, ""),
+        ('SetLaunchConfiguration("a", "1")', _GROUP.format('LaunchConfiguration("a")')),
+    ),
+    "a condition that is a text": ("MG721", True, "", (_GROUP.format('"true"'),)),
+    "no condition": ("MG721", False, "", (_GROUP.format("None"),)),
+    # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
+    "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
+    "what nobody installs": ("MG713", True, "", (_SPAWN.format('str(HERE / "lost.urdf")'),)),
     "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
     "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.

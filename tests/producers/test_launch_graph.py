@@ -236,7 +236,10 @@ def test_a_wrong_launch_file_in_xml(text: str, fault: str, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("value", "told"),
     [
-        ("LaunchDescription([])", "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)"),
+        (
+            "LaunchDescription([])",
+            "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)",
+        ),
         (
             '__import__("launch_ros").actions.Node(executable="b", parameters=[{"a": None}])',
             "TypeError: Unexpected type for parameter value None (a.launch.py:2)",

@@ -21,6 +21,8 @@ from multibot_rewrite.system.records import Place
 from multibot_rewrite.system.tool_nodes import is_viewer
 
 Rules = tuple[tuple[str, str], ...]
+# What starts a node that another program has ended before.
+AT_AN_END = ("at an event (OnProcessExit)", "at an event (on_exit)")
 
 
 class LaunchOrder(NamedTuple):

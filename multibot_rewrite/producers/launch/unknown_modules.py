@@ -13,7 +13,6 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.door import of_launch
 
-
 # For all names that something unknown may have.
 ANY_NAME = "*"
 
@@ -35,7 +34,7 @@ class Unknown:
     def __init__(self, module: str) -> None:
         self._multibot_module = module
 
-    @property
+    @property  # type: ignore[misc]
     def __class__(self) -> type:
         # launch asks for its own class where it takes texts.
         found: type = of_launch().Substitution

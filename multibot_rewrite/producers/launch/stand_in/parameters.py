@@ -25,6 +25,7 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
     typed_truth,
 )
+
 _ITEMS = (bool, int, float, str)
 
 
@@ -76,7 +77,7 @@ class ParameterFile:
     """A parameter file."""
 
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
-        is_path = isinstance(param_file, os.PathLike)
+        is_path = isinstance(param_file, os.PathLike) and not hasattr(param_file, "perform")
         text = [os.fspath(param_file)] if is_path else param_file
         self.__param_file = normalize_to_list_of_substitutions(text)
         self.allow_substs = allow_substs
@@ -116,7 +117,7 @@ def _flat(
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
         if isinstance(value, Mapping):
             yield from _flat(value, (*name, "."))
-        elif isinstance(value, _PLAIN + (list, tuple)) or _is_told_later(value):
+        elif isinstance(value, (*_PLAIN, list, tuple)) or _is_told_later(value):
             yield name, value
         else:
             raise _no_value(value)
