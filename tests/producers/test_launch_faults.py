@@ -473,6 +473,9 @@ _AMCL = (
 _CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
 _GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
 _SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
+_SPAWN_AS = _SPAWN.replace(
+    '"-file", {}', '"{}", "--string", "<robot name=\'r\'><link name=\'a\'/></robot>"'
+)
 _BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
@@ -513,6 +516,16 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     "types that no bridge converts": (
         *("MB874", True, ""),
         (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.IMU"),),
+    ),
+    "a type of Gazebo that is misspelt": (
+        *("MB874", True, ""),
+        (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.Odometri"),),
+    ),
+    # ros_gz_sim jazzy create.cpp reads its words by gflags.
+    "one name, by two dashes": ("MG701", True, "", (_SPAWN_AS.format("--name=a"),) * 2),
+    "two names, by two dashes": (
+        *("MG701", False, ""),
+        (_SPAWN_AS.format("--name=a"), _SPAWN_AS.format("--name=b")),
     ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
@@ -574,3 +587,21 @@ def test_a_file_says_what_it_has_to_be_given(
     assert "'robot' is not set; give it with robot:=VALUE" in capsys.readouterr().err
     main(["check-launch", str(tmp_path / LAUNCH), "robot:=r1"])
     assert "is not set" not in capsys.readouterr().err
+
+
+def test_files_that_a_package_of_sources_lacks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>acme</name></package>")
+    head = "from ament_index_python import get_package_share_directory\n" + _HEAD
+    bridge = _ROW.replace('arguments=["{}"]', 'parameters=[{"config_file": SHARE + "/a.yaml"}]')
+    of_nodes(
+        tmp_path,
+        'IncludeLaunchDescription(SHARE + "/a.launch.py")',
+        bridge,
+        head=head + 'SHARE = get_package_share_directory("acme")\n',
+    )
+    _, found = found_in(tmp_path, capsys)
+    told = {str(it["code"]): f"{it['level']} {it['message']}" for it in found}
+    for code, name in (("MG721", "a.launch.py"), ("MG713", "a.yaml")):
+        assert told[code].startswith("error ") and str(tmp_path / name) in told[code]

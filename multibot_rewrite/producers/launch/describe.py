@@ -293,7 +293,7 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
-        return kept_file(value) or value
+        return kept_file(value) or lasting((value,))[0]
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]

@@ -45,6 +45,9 @@ def failure(error: BaseException) -> str:
     if known := _known(error):
         return known
     text = " ".join(f"{type(error).__name__}: {error}".split())
+    if isinstance(error, FileNotFoundError) and error.filename:
+        # The folder with links to sources is gone when this is read.
+        text = text.replace(str(error.filename), os.path.realpath(error.filename))
     # launch tries its other forms, too, and says what each of them says.
     text = f"{found[1] if (found := _TRIED.search(text)) else text}{_line(error)}"
     return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
@@ -154,7 +157,7 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
     or the launch file itself raises what names no file or device of a machine."""
     if isinstance(error, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))
-        return str(error.filename or "").startswith(f"{folder}/")
+        return os.path.realpath(str(error.filename or "")).startswith(f"{folder}/")
     frame = _frame(error)
     if is_no_condition(error):
         return True
