@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from subprocess import run
 
 import pytest
 
+from multibot_rewrite.base import workers
 from multibot_rewrite.base.child import python
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli.walk import check_link
@@ -51,14 +53,21 @@ def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("before", [b"", b"\x50\x2a\x4d\x18\1\0\0\0x"], ids=["plain", "skipped"])
-@pytest.mark.parametrize("name", ["a.db3.zstd", "a.db3"])
+@pytest.mark.parametrize("mode", ["FILE", "MESSAGE", "STORAGE"])
 def test_a_bag_that_unpacks_to_more_than_a_bound(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, before: bytes
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: str
 ) -> None:
-    """Its metadata say what is packed, whatever the file is called."""
-    zstd = pytest.importorskip("rosbags.rosbag2.reader").zstd
-    (tmp_path / name).write_bytes(before + zstd.compress(bytes(5_000_000)))
+    """A file, a message, a chunk of an MCAP: each is some kB of zeros packed."""
+    made_bags, rosbag2 = pytest.importorskip("made_bags"), pytest.importorskip("rosbags.rosbag2")
+    storage = rosbag2.StoragePlugin[("SQLITE3", "MCAP")[mode == "STORAGE"]]
+    writer = rosbag2.Writer(tmp_path / "bag", version=9, storage_plugin=storage)
+    writer.set_compression(rosbag2.CompressionMode[mode], rosbag2.CompressionFormat.ZSTD)
+    with writer:
+        tf = writer.add_connection("/tf", made_bags.TF, typestore=made_bags.STORE)
+        writer.write(tf, 0, bytes(100_000_000))
+    monkeypatch.setattr(workers, "MOST_MEMORY", 50_000_000)
     monkeypatch.setattr(read, "LEAST_UNPACKED", 1_000_000)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with pytest.raises(InputError, match="unpacks to more than"):
-        read.read_bag(str(tmp_path))
+        read.read_bag(str(tmp_path / "bag"))
+    assert [it.name for it in tmp_path.iterdir()] == ["bag"]
