@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from pathlib import Path
 from subprocess import run
@@ -13,6 +14,11 @@ from multibot_rewrite.base.child import python
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli.walk import check_link
 from multibot_rewrite.producers.bags import read
+
+PIPES = (
+    "package.xml", "manifest.json", "pyproject.toml", "urdf-lint.toml", "model.config", "r.srdf",
+    "nav.yaml", "a.rviz", "a.lua", "tree.xml", "a.mcap", "a.launch.py", "mesh.stl",
+)  # fmt: skip
 
 
 def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
@@ -71,3 +77,31 @@ def test_a_bag_that_unpacks_to_more_than_a_bound(
     with pytest.raises(InputError, match="unpacks to more than"):
         read.read_bag(str(tmp_path / "bag"))
     assert [it.name for it in tmp_path.iterdir()] == ["bag"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        "urdf_lint .",
+        "urdf_postfix r.urdf robot1",
+        "multibot init r.urdf",
+        "multibot build fleet.yaml -o ../out",
+        "multibot check --bag a.mcap",
+        "multibot check-launch a.launch.py",
+    ],
+)
+def test_a_pipe_in_a_folder_is_not_waited_for(tmp_path: Path, words: str) -> None:
+    """An archive may hold pipes under the names that are looked for beside a description."""
+    (tmp_path / "r").mkdir()
+    for name in PIPES:
+        os.mkfifo(tmp_path / "r" / name)
+    (tmp_path / "r" / "r.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    (tmp_path / "r" / "fleet.yaml").write_text("robots: [{name: robot1, description: r.urdf}]\n")
+    command, *rest = words.split()
+    said = run(
+        [*python(f"multibot_rewrite.cli.{command}"), *rest],
+        cwd=tmp_path / "r", capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert said.returncode in (0, 1, 2)
+    assert "Traceback" not in said.stderr

@@ -12,6 +12,7 @@ import re
 import tempfile
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import partial
 from itertools import islice
 from math import inf
 from tempfile import TemporaryDirectory
@@ -22,7 +23,7 @@ from multibot_rewrite.base.file_kinds import BAG, refuse_others
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.base.workers import worker_pool
+from multibot_rewrite.base.workers import limit_files, worker_pool
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED, pose_in
@@ -66,28 +67,33 @@ def read_bag(path: str) -> Recording:
     except ImportError as error:
         hint = "pip install 'multibot_rewrite[bags]'"
         raise Unusable(f"a bag cannot be read: {error}; {hint}") from None
-    if not os.path.exists(path):
+    files = [os.path.join(path, it) for it in os.listdir(path)] if os.path.isdir(path) else [path]
+    if not all(os.path.isfile(it) or os.path.isdir(it) for it in files):  # a pipe has no end
         raise InputError(f"{path}: there is no such bag; name a folder, or a file .mcap or .db3")
 
     def lost(_: object, died_of: int) -> InputError:
         return InputError(f"{path}: the process that read it was ended by signal {died_of}")
 
-    # What it unpacks is here, and so goes also where that process is killed.
-    with TemporaryDirectory() as folder, worker_pool(_read, [(path, folder)], lost, 1) as workers:
+    most = max(LEAST_UNPACKED, MOST_PACKED * max(map(os.path.getsize, files), default=0))
+    # What it unpacks is in the folder, and so goes also where that process is killed.
+    with (
+        TemporaryDirectory() as folder,
+        worker_pool(partial(_read, folder, most), [path], lost, 1) as workers,
+    ):
         found = next(workers.results())
     if isinstance(found, InputError):
         raise found
     return found
 
 
-def _read(where: tuple[str, str]) -> Recording | InputError:
+def _read(folder: str, most: int, path: str) -> Recording | InputError:
     """What a bag holds, or why not, in a process that has bounds: little may unpack to much."""
     from rosbags.rosbag2 import Reader
 
-    path, tempfile.tempdir = where
+    tempfile.tempdir = folder
     try:
         _check_metadata(path)
-        _limit_files(path)
+        limit_files(most)
         with Reader(path) as reader:
             return _recording(reader)
     except InputError as error:
@@ -108,17 +114,6 @@ def _check_metadata(path: str) -> None:
         return
     if os.path.exists(os.path.join(path, METADATA)):
         load_yaml(read_text(os.path.join(path, METADATA)))
-
-
-def _limit_files(path: str) -> None:
-    """No file of this process, as one that a reader unpacks, becomes far larger than messages are."""
-    import resource
-
-    inside = [os.path.join(path, it) for it in os.listdir(path)] if os.path.isdir(path) else [path]
-    most = max(LEAST_UNPACKED, MOST_PACKED * max(map(os.path.getsize, inside), default=0))
-    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    if hard == resource.RLIM_INFINITY or most < hard:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
 
 
 def _recording(reader: Reader) -> Recording:
