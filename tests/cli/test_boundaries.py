@@ -12,6 +12,7 @@ import pytest
 from multibot_rewrite.base import workers
 from multibot_rewrite.base.child import python
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.walk import check_link
 from multibot_rewrite.producers.bags import read
 
@@ -21,15 +22,21 @@ PIPES = (
 )  # fmt: skip
 
 
-def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
+def test_an_output_that_is_a_link_out_of_its_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path / "file")
     (folder / "near").symlink_to(folder / "deep" / "file")
-    with pytest.raises(UsageError, match=r"is a link to .*/file; name that file"):
+    with pytest.raises(UsageError, match=r"is a link to .*/file; name that"):
         check_link(str(folder / "link"))
     for name in ("near", "none", "/dev/stdout"):
         check_link(str(folder / name))
+    (folder / "fleet.yaml").write_text("robots: [{name: a, description: a.urdf}]\n")
+    (folder / "out").symlink_to(tmp_path)
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 2
+    assert "out is a link to " in capsys.readouterr().err
 
 
 @pytest.mark.more
