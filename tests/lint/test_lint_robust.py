@@ -196,16 +196,6 @@ def test_a_pipe_that_nobody_writes_to(bad: Path, name: str) -> None:
     assert reported.code == "MB102"
 
 
-def test_a_pipe_of_a_shell() -> None:
-    """`urdf-lint <(xacro robot.xacro)`"""
-    reading, writing = os.pipe()
-    os.write(writing, TWO_ROOTS)
-    os.close(writing)
-    (reported,) = lint_files([f"/dev/fd/{reading}"], Settings(select=("MB501",)))
-    os.close(reading)
-    assert (reported.code, reported.line) == ("MB501", 3)
-
-
 def test_a_device_without_end() -> None:
     (reported,) = lint_files(["/dev/zero"], Settings())
     assert reported.code == "MB102"
