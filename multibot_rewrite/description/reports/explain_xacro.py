@@ -28,9 +28,9 @@ def explain_source(
     trust: bool,
     explaining: Callable[[str], tuple[Document, OnLine]],
 ) -> list[Explanation]:
-    """The values that ``line`` of the file ``path`` makes: of elements that are written on it, and those
-    with a piece of it, as of a macro's call; else in a description that includes the file. Raises
-    InputError where none of them can be read."""
+    """The values that ``line`` of the file ``path`` makes: of elements that are written on it, and
+    those with a piece of it, as of a macro's call; else in a description that includes the file.
+    Raises InputError where none of them can be read."""
     reach = TRUSTED if trust else BOUNDED
     failed: list[InputError] = []
     wholes = (path, *whole_robots(path))
