@@ -209,9 +209,43 @@ def test_a_name_that_is_only_used_is_taken_too(
         rename_symbol(old, new, str(tmp_path), kind=kind)
 
 
-def test_a_link_that_is_missed_and_a_name_of_another_robot_are_free(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(DRIVEN)
-    (tmp_path / "other.urdf").write_text('<robot name="other"><link name="palm"/></robot>')
-    for new in ("arm", "palm"):
-        made = rename_symbol("base", new, str(tmp_path))
+BESIDE = {
+    "r.srdf": '<robot name="r"><group name="g"><link name="palm"/></group></robot>',
+    "other.urdf": '<robot name="other"><link name="palm"/></robot>',
+    "own.yaml": "drive:\n  ros__parameters:\n    base_frame_id: palm\n",
+    "own.rviz": "Visualization Manager:\n  Global Options:\n    Fixed Frame: palm\n",
+    "joint_limits.yaml": "joint_limits:\n  wrist: {has_velocity_limits: true}\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "new", "kind", "said"),
+    [
+        ("r.urdf", "arm", "link", "uses the link 'arm'"),
+        ("r.srdf", "palm", "link", "uses the link 'palm'"),
+        ("other.urdf", "palm", "frame", "has a link 'palm'"),
+        ("own.yaml", "palm", "link", ":3 uses the link 'palm'"),
+        ("own.rviz", "palm", "frame", ":3 uses the frame 'palm'"),
+        ("joint_limits.yaml", "wrist", "joint", ":2 uses the joint 'wrist'"),
+        ("own.yaml", "palm", "joint", ""),
+        ("joint_limits.yaml", "wrist", "link", ""),
+        ("own.yaml", "pal", "link", ""),
+    ],
+)
+def test_a_name_that_a_file_of_the_folder_uses_is_taken(
+    tmp_path: Path, name: str, new: str, kind: str, said: str
+) -> None:
+    joint = (
+        '<link name="hub"/><joint name="j" type="fixed"><parent link="base"/><child link="hub"/>'
+    )
+    (tmp_path / "r.urdf").write_text(DRIVEN.replace("</robot>", f"{joint}</joint></robot>"))
+    if name in BESIDE:
+        (tmp_path / name).write_text(BESIDE[name])
+    old = {"link": "base", "joint": "j", "frame": "odom"}[kind]
+    if said:
+        with pytest.raises(UsageError) as found:
+            rename_symbol(old, new, str(tmp_path), kind=kind)
+        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said} already" in str(found.value)
+    else:
+        made = rename_symbol(old, new, str(tmp_path), kind=kind)
         assert [Path(it).name for it in made.after] == ["r.urdf"]
