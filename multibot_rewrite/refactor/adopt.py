@@ -32,6 +32,7 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
@@ -271,6 +272,9 @@ def _as_xacros(
 ) -> Iterator[Description]:
     """Each description as a xacro; those that cannot be one are noted in ``unread``."""
     for it in filter(_is_meant, descriptions):
+        if not _is_srdf(it) and not it.inventory.declared.get("link"):
+            unread[it.path] = f"{it.path}: it has no link; {robot_instead(it.path)}"
+            continue
         if it.read is None and os.path.exists(f"{it.path}.xacro"):
             unread[it.path] = f"{it.path}: its xacro is beside it; make it anew from that"
             continue

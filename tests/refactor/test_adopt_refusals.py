@@ -73,6 +73,10 @@ REFUSED = {
         {"r.urdf.xacro": robot(TAKEN)},
         ("are all names of its arguments or properties",),
     ),
+    "a file of macros": (
+        {"r.xacro": robot("").replace('<link name="base"/>', '<xacro:macro name="m"/>')},
+        ("r.xacro: it has no link; it defines macros; give the file that has the robot",),
+    ),
     "an empty file": ({"r.urdf.xacro": ""}, ("there is no description of a robot",)),
     "an SDF alone": (
         {"m.sdf": '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>'},
