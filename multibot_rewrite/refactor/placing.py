@@ -62,7 +62,8 @@ def placed(
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
     deep = _made_elsewhere(names)
-    others = _not_alone(names)
+    stay = {it.made for it in names if it.made and it.change is None}
+    others = stay.union(*(it.other for it in names))
     made = Placed([], [[] for _ in found], [])
     for name in names:
         if name.change is None:
@@ -71,7 +72,8 @@ def placed(
         if spot is None or (spot == name.made and spot in others):
             it = found[name.of]
             where = place_of(it.read, name.change.element) or it.path
-            made.left.append(Left(where, f"{name.change.value!r} is put together"))
+            why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
+            made.left.append(Left(where, f"{name.change.value!r} {why}"))
             continue
         made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
@@ -173,13 +175,3 @@ def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
         if not more:
             return deep
         deep |= more
-
-
-def _not_alone(names: Iterable[_Name]) -> set[Spot | None]:
-    """The pieces that make something besides names that get the prefix, each at its beginning."""
-    found: set[Spot | None] = set()
-    for it in names:
-        found |= it.other
-        if it.change is None:
-            found.add(it.made)
-    return found
