@@ -70,14 +70,16 @@ def placed(
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
         if spot is None or (spot == name.made and spot in others):
-            it = found[name.of]
-            where = place_of(it.read, name.change.element) or it.path
-            why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
-            made.left.append(Left(where, f"{name.change.value!r} {why}"))
+            made.left.append(_left(found[name.of], name.change, spot in stay))
             continue
         made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
     return made
+
+
+def _left(it: Description, change: Change, stays: bool) -> Left:
+    why = "stays with other arguments or elsewhere" if stays else "is put together"
+    return Left(place_of(it.read, change.element) or it.path, f"{change.value!r} {why}")
 
 
 def _names(of: int, it: Description, changes: Iterable[Change]) -> Iterator[_Name]:

@@ -115,19 +115,17 @@ def rename_symbol(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
-    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not package.descriptions:
         raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
+    return _renamed(symbol, package, folder, how)
+
+
+def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> Renaming:
+    """The package with the name changed in its descriptions and the files beside."""
+    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
     _check_free(symbol, package, changes)
-    return _renamed(symbol, package, changes, how)
-
-
-def _renamed(
-    symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]], how: Expanding
-) -> Renaming:
-    """The package with the changes of its descriptions made, by their paths, and the files beside."""
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
     _prove(package, changes, after, how)
