@@ -199,7 +199,7 @@ PLAN = Command(
     "Write the ROS graph that a fleet should have, or its rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
-        Example("multibot plan rover.urdf robot1 robot2 --stack nav2 --form table", "the rules"),
+        Example("multibot plan fleet.yaml --form table | grep amcl", "the rules of a node"),
         Example("multibot plan rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
         Example("multibot plan fleet.yaml --form sros2 -o policy.xml", "docs/security.md"),
         Example("multibot plan my_bringup two.launch.py -o plan.yaml", "what a launch file starts"),

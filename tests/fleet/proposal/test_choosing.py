@@ -61,6 +61,16 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
 
 
 @pytest.mark.more
+def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
+    (two / "a.launch.py").write_text("robot = 'tractor.urdf'")
+    assert taken(two)["description"] == "tractor.urdf"
+    other = f"one of 2 descriptions; for another: multibot init {two}/digger.urdf"
+    assert other in capsys.readouterr().err
+    assert init(two, str(two / "tractor.urdf"), "--force") == 0
+    assert "descriptions" not in capsys.readouterr().err
+
+
+@pytest.mark.more
 def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) -> None:
     """The command that is named is about the same folder, and answers the question."""
     (two / "tractor.urdf").rename(two / "tractor")
