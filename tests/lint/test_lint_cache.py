@@ -518,9 +518,8 @@ def test_the_command_keeps_and_forgets(here: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("option", ["--no-cache", "--trust"])
-def test_without_a_cache_nothing_is_written(here: Path, option: str) -> None:
-    main([SOURCES[2], option])
+def test_without_a_cache_nothing_is_written(here: Path) -> None:
+    main([SOURCES[2], "--trust"])
     assert not os.path.exists(cache_folder())
 
 
@@ -548,9 +547,9 @@ def test_fixes_are_kept_and_made(here: Path, capsys: pytest.CaptureFixture[str])
     main(["two.urdf", "--fix"])
     text = broken.read_text()
     write(broken, MARKED)
-    main(["two.urdf", "--fix", "--no-cache"])
+    main(["two.urdf", "--fix", "--trust"])
     assert broken.read_text() == text != MARKED
-    assert main(["two.urdf"]) == main(["two.urdf", "--no-cache"])
+    assert main(["two.urdf"]) == main(["two.urdf", "--trust"])
 
 
 def test_statistics(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

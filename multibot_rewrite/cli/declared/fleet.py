@@ -43,8 +43,6 @@ from multibot_rewrite.cli.options import (
 
 # The plan, and besides those of ``spelling.table_formats``, which a help text does not import.
 PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
-# Those of ``fleet/shapes.yaml``.
-SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``spelling.ways``.
 EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
@@ -174,15 +172,6 @@ BUILD = Command(
             ),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
-            rare(
-                choice(
-                    "--shape",
-                    "VENDOR",
-                    SHAPES,
-                    "write files as the launch files of a vendor take them, and the commands that"
-                    " start these (docs/fleet-file.md); default: that of the fleet file",
-                )
-            ),
         ),
         FINDINGS,
         GENERAL,

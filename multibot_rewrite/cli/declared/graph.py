@@ -219,8 +219,14 @@ SNAPSHOT = Command(
                 several(
                     "--expect", "NODE", "stop when these nodes are there", [], values.full_names
                 ),
-                several(
-                    "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
+                rare(
+                    several(
+                        "--topic",
+                        "TOPIC",
+                        "look up QoS of these topics, too",
+                        [],
+                        values.full_names,
+                    )
                 ),
                 SAVED,
                 ZENOH,
