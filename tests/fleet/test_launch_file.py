@@ -186,6 +186,22 @@ def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None:
+    """Brought up twice, the second fails, and the manager gives all of its nodes up."""
+    listed = "lifecycle_manager_navigation:\n  ros__parameters: {node_names: [slam_toolbox]}\n"
+    (tmp_path / "slam.yaml").write_text(listed)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\ndistro: jazzy\ndescription: hexbase.urdf.xacro\n"
+        f"stack: nav2_slam\ncompanions: {{params: slam.yaml}}\n{TWO}"
+    )
+    shutil.copy(ROOT / "examples" / "namespace_and_prefix" / "hexbase.urdf.xacro", tmp_path)
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
+    python = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert "executable='sync_slam_toolbox_node'" in python
+    assert "brought_up" not in python
+
+
+@pytest.mark.slow
 def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
     python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
     assert "executable='sync_slam_toolbox_node'" in python

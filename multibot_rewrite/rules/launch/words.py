@@ -106,9 +106,12 @@ def _number(word: str) -> float | None:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Only for a name that is mistyped: the code of a node may have more than is known."""
+    """Only for a name that is mistyped: the code of a node may have more than is known. A rule for a
+    name that a parameter has in the node's namespace already does no harm."""
     for it in launched.nodes:
-        names = [end.name.lstrip("/~") for end in it.facts.endpoints] if it.facts else []
+        above = f"{it.full_name.rpartition('/')[0]}/"
+        known = it.facts.endpoints if it.facts else ()
+        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
         for old, _ in it.rules:
             bare = old.lstrip("/~")
             near = nearest(bare, names, SLIP) if bare not in names and ":" not in old else ""
