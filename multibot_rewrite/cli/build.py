@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
         why = not_proved({*made.findings, *plan.fleet.table.problems})
         end = f"; not proved: {', '.join(why)}" if why else ""
         robots = plural(len(plan.robots), "robot")
-        end = f"{end}{facts_of_release(plan.file.distro)}"
+        end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
         return _written(options, files, found, robots, end)
 
 

@@ -99,10 +99,13 @@ class Rewrite(NamedTuple):
 
     @property
     def changes(self) -> list[Change]:
-        """Every renamed or inserted value, in source order; raises as ``template`` does."""
-        from multibot_rewrite.description.reports.changes import list_changes  # few ask for it
+        """Every renamed, inserted or numbered value, in source order; raises as ``template`` does."""
+        # Few ask for it.
+        from multibot_rewrite.description.own_ports import number_changes
+        from multibot_rewrite.description.reports.changes import list_changes
 
-        return list_changes(self.template, self.robot)
+        every = list_changes(self.template, self.robot)
+        return sorted([*every, *number_changes(self.template, self.data)])
 
 
 @checked

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, below
+from multibot_rewrite.companions.bridge_entry import BOTH, FRAME, GZ, ROS, below
 from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.readback.reading import Reading
@@ -64,9 +65,23 @@ def plugin_ends(reading: Reading) -> Iterator[End]:
             yield from either_way(End(*own, sure=MAY if it.off else RUNS))
 
 
+class BridgeRow(NamedTuple):
+    """A row of a ros_gz_bridge file: its end in ROS, its name in the simulator, and the frame that it
+    puts in place of the message's, empty for none."""
+
+    end: End
+    inside: str
+    frame: str
+
+
 def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
-    """The ROS ends of the rows of a ros_gz_bridge file that runs in the namespace ``above``; a row for
-    both ways has no role, one of a service serves it."""
+    """The ROS ends of the rows of a ros_gz_bridge file."""
+    yield from (it.end for it in bridge_rows(document, above))
+
+
+def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
+    """The rows of a ros_gz_bridge file that runs in the namespace ``above``; the end of a row for both
+    ways has no role, that of a service serves it."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
@@ -78,6 +93,6 @@ def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
         full = f"/{below(str(name.value), above).lstrip('/')}"
         role = SERVES if service else _ROLES.get(words.get("direction", ""), "")
         own = (role, full, words.get("ros_type_name", ""), "", f"/{BRIDGE_NODE}", None, "")
-        yield End(
-            SERVICE if service else TOPIC, *own, full, place=Place(document.file, line_of(name))
-        )
+        kind, place = SERVICE if service else TOPIC, Place(document.file, line_of(name))
+        inside = words.get(GZ) or words.get(BOTH) or str(name.value)
+        yield BridgeRow(End(kind, *own, full, place=place), inside, words.get(FRAME, ""))

@@ -188,7 +188,8 @@ class Heard(NamedTuple):
     for a stamp of 0, and for a clock that stands, 0 for less than a second or not known. ``rate`` are
     messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
     names in a message about joints, which has no frame, ``back`` by how much a clock went back,
-    ``pose`` that of odometry or a pose, as the numbers of an edge."""
+    ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a
+    simulator which sends it, and ``place`` where that is written."""
 
     topic: str
     frame: str
@@ -198,6 +199,8 @@ class Heard(NamedTuple):
     joints: tuple[str, ...] = ()
     back: float = 0.0
     pose: tuple[float, ...] = ()
+    link: str = ""
+    place: Place = NOWHERE
 
 
 class Lookup(NamedTuple):

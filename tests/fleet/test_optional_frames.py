@@ -66,6 +66,36 @@ def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> Non
     assert "because its description already says where it is" in said
 
 
+SEEN = """\
+<robot name="dog"><link name="base_link"/><link name="head"/>
+<joint name="neck" type="fixed"><parent link="base_link"/><child link="head"/></joint>
+<gazebo reference="head"><sensor name="eye" type="gpu_lidar"><topic>scan</topic>{}</sensor></gazebo>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("said", "simulator", "silent"),
+    [
+        ("", "gazebo", False),
+        ("", "none", True),
+        ("<gz_frame_id>head</gz_frame_id>", "gazebo", True),
+    ],
+)
+def test_a_sensor_that_names_no_frame_is_told(
+    said: str, simulator: str, silent: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "dog.urdf").write_text(SEEN.format(said))
+    head = f"layout: tf-per-robot\nsimulator: {simulator}\n"
+    (tmp_path / "fleet.yaml").write_text(f"{head}robots: [{{name: r1, description: dog.urdf}}]\n")
+    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
+    lines = [it for it in found if it.code == "MG412"]
+    assert silent == (not lines)
+    for it in lines:
+        assert "is r1/base_link/eye" in it.message and it.hint.count(">head<") == 1
+        assert (it.level, it.line, it.file) == ("warning", 3, str(tmp_path / "dog.urdf"))
+
+
 COSTMAP = """\
 amcl: {ros__parameters: {base_frame_id: base_link, odom_frame_id: odom}}
 local_costmap: {local_costmap: {ros__parameters: {robot_base_frame: base_link}}}
@@ -83,3 +113,10 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
     (said,) = [it for it in found if it.code == "MG413" and "frame base_link," in it.message]
     for node in ("/local_costmap/local_costmap", "/behavior_server"):
         assert node in said.message
+    for simulator, codes in (("none", set()), ("gazebo", {"note"})):
+        (tmp_path / "ekf.yaml").write_text(COSTMAP.partition("\n")[2])
+        head = text.replace("stack: nav2", f"stack: navigation\nsimulator: {simulator}")
+        (tmp_path / "fleet.yaml").write_text(head)
+        plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+        lines = [it for it in make_outputs(plan).findings if it.code == "MG413"]
+        assert {it.level for it in lines if "frame odom," in it.message} == codes

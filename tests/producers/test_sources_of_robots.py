@@ -21,6 +21,7 @@ from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import (
     edge,
     edges_off,
@@ -111,6 +112,34 @@ def test_the_rows_of_a_bridge_in_a_namespace() -> None:
     ]
     assert {it.node for it in found} == {"/ros_gz_bridge"}
     assert next(it.name for it in bridge_ends(read_yaml(text, "b"))) == "/scan"
+
+
+_ON_PLATE = """<robot name="r"><link name="base"/><link name="plate"/>
+<joint name="j" type="fixed"><parent link="base"/><child link="plate"/></joint>
+<gazebo reference="plate"><sensor name="s"><topic>scan</topic>{}</sensor></gazebo>{}</robot>"""
+_KEPT = "<gazebo reference='j'><preserveFixedJoint>true</preserveFixedJoint></gazebo>"
+_NESTED = """<sdf><model name="r"><model name="arm"><link name="hand"><sensor name="s">
+<topic>/scan</topic></sensor></link></model><link name="base"/></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("text", "frame", "link"),
+    [
+        (_ON_PLATE.format("", ""), "robot1/base/s", "plate"),
+        (_ON_PLATE.format("", _KEPT), "robot1/plate/s", "plate"),
+        (_ON_PLATE.format("<gz_frame_id>laser</gz_frame_id>", ""), "laser", "plate"),
+        (_NESTED, "robot1/arm/hand/s", "hand"),
+    ],
+)
+def test_the_frame_of_a_sensor_is_its_place_or_what_it_says(
+    text: str, frame: str, link: str
+) -> None:
+    """gz-sim Sensors.cc: model::link::sensor without the world; sdformat merges fixed links."""
+    sensors = [*sensor_frames(etree.fromstring(text), "robot1")]
+    for topic in ("scan", "/scan/points"):
+        found = sensor_on(topic, sensors)
+        assert found and (found.frame, found.link) == (frame, link)
+    assert sensor_on("/scanner", sensors) is None
 
 
 HARDWARE = (

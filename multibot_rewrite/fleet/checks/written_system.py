@@ -9,6 +9,7 @@ from itertools import islice
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, is_tool_word
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
@@ -20,10 +21,12 @@ from multibot_rewrite.producers.ends import (
     BRIDGE_NODE,
     NEEDS,
     bridge_ends,
+    bridge_rows,
     either_way,
     plugin_ends,
 )
 from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
@@ -31,12 +34,14 @@ from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
+    PUBLISHES,
     RUNS,
     UNKNOWN_NODES,
     Caveat,
     Edge,
     End,
     Environment,
+    Heard,
     Node,
     Place,
     Robot,
@@ -90,6 +95,7 @@ def written_system(
         edges=tuple(edges),
         robots=tuple(Robot(it.spec.namespace) for it in shown),
         environment=DRIVERS,
+        heard=tuple(heard for it in shown for heard in _heard(fleet, it, texts)),
     )
 
 
@@ -152,6 +158,22 @@ def _bridged(robots: Iterable[RewrittenRobot], texts: Iterable[OutputFile]) -> I
         for it in bridge_ends(text.yaml):
             place = Place(*line_in_source(text, it.place.line)) if text.sources else NOWHERE
             yield from either_way(it._replace(node=node, place=place))
+
+
+def _heard(fleet: Fleet, robot: RewrittenRobot, texts: Iterable[OutputFile]) -> Iterator[Heard]:
+    """The frames of what a robot's bridge has from sensors whose description names none; those that it
+    names are compared with its links."""
+    if robot.spec.simulator == REAL:
+        return
+    roots = (fleet.inventories[robot.spec.namespace].document.root, robot.member.source.root)
+    sensors, sources = ([*sensor_frames(it, robot.spec.model)] for it in roots)
+    for text in (it for it in texts if it.path == f"{robot.spec.name}/{BRIDGE_FILE}"):
+        for end, inside, frame in bridge_rows(text.yaml):
+            it = sensor_on(inside, sensors)
+            if end.role == PUBLISHES and it and not frame and not it.is_named:
+                old = sources[sensors.index(it)]
+                place = Place(robot.member.source.file, old.line)
+                yield Heard(end.name, it.frame, link=old.link, place=place)
 
 
 def of_robot(whole: System, robot: str) -> System:

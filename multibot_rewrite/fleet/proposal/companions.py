@@ -15,7 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting
+from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
 from multibot_rewrite.fleet.proposal.given_by_launch import files_given, readings
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
@@ -151,7 +151,10 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     """The parameter files that can be read; those with fewest names that the robot has not come first,
     then the nearest. Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
-    given = files_given(readings(found.launch, robot.path, found.every))
+    launched = readings(found.launch, robot.path, found.every)
+    given = files_given(launched)
+    loaded = {*_loaded(robot)}
+    asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []
     for path in _nearest(robot, found.params, found.launch, given):
         try:
@@ -159,10 +162,13 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
         except InputError as error:
             left[path] = str(error)
             continue
+        apart = path not in asked and package_of(path) != package_of(robot.path)
+        if apart and (why := not_started(path, nodes, known, launched, given.get(path, set()))):
+            left[path] = why
+            continue
         one = fitting(robot, path, nodes, known, found.bridge)
         read.append(one._replace(given=path in given))
-    loaded = {*_loaded(robot)}
-    meant = {it.path for it in read if it.path in found.meant or os.path.abspath(it.path) in loaded}
+    meant = {it.path for it in read if it.path in asked}
     order = sorted(read, key=lambda it: (it.path not in meant, it.rank))
     settled = {node for it in order if it.path in meant for node in it.nodes}
     check_winner([it for it in order if not it.nodes & settled], robot, found)

@@ -75,17 +75,22 @@ def readings(launch: Iterable[str], description: str, every: Sequence[str]) -> l
     return [Reading(it, given.get(os.path.normpath(it.file), {})) for it in texts]
 
 
-def files_given(read: Iterable[Reading]) -> frozenset[str]:
-    """The files that nodes or included launch files get as parameters."""
-    found = (path for it in read for path in _files(it))
-    return frozenset(os.path.normpath(it) for it in found if it)
+def files_given(read: Iterable[Reading]) -> dict[str, set[str]]:
+    """The files that nodes or included launch files get as parameters, each with the packages of these
+    nodes, of which an included file tells none."""
+    found: dict[str, set[str]] = {}
+    for path, package in (one for it in read for one in _files(it)):
+        found.setdefault(os.path.normpath(path), set()).add(package)
+    return found
 
 
-def _files(it: Reading) -> Iterator[str]:
+def _files(it: Reading) -> Iterator[tuple[str, str]]:
     for _, _, arguments in _included(it):
-        yield from (value for value in arguments.values() if isinstance(value, str))
+        texts = (value for value in arguments.values() if isinstance(value, str))
+        yield from ((value, "") for value in texts if value)
     for call in it.text.nodes:
-        yield from map(it.path, _elements(argument(call, "parameters")))
+        paths = map(it.path, _elements(argument(call, "parameters")))
+        yield from ((path, word_of(argument(call, "package"))) for path in paths if path)
 
 
 def _included(it: Reading) -> Iterator[tuple[int, str, dict[str, Any]]]:

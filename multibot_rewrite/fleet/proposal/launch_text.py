@@ -12,7 +12,7 @@ import ast
 import os
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -43,14 +43,15 @@ _UNREAD = "unknown()"
 
 
 class LaunchText(NamedTuple):
-    """A launch file: its calls that start nodes or include files, what it assigns to names once, and
-    the arguments that it declares, with their defaults."""
+    """A launch file: its calls that start nodes or include files, what it assigns to names once, the
+    arguments that it declares, with their defaults, and the texts in it."""
 
     file: str
     nodes: tuple[ast.Call, ...]
     includes: tuple[ast.Call, ...]
     assigned: Mapping[str, ast.expr]
     declared: Mapping[str, ast.expr]
+    texts: tuple[str, ...]
 
 
 @lru_cache(maxsize=512)
@@ -58,7 +59,7 @@ def launch_text(path: str) -> LaunchText:
     """Read a launch file; one that cannot be parsed has nothing."""
     try:
         text = text_of(path) if path.endswith(".py") else _in_python(path)
-        every = list(ast.walk(ast.parse(text)))
+        every = _used(ast.parse(text))
     except (SyntaxError, ValueError, TypeError, RuntimeError, yaml.YAMLError):
         every = []
     calls = [it for it in every if isinstance(it, ast.Call)]
@@ -69,7 +70,23 @@ def launch_text(path: str) -> LaunchText:
         tuple(_called(calls, _INCLUDE)),
         _assigned(every),
         {name: it for name, call in declared if (it := argument(call, "default_value", 1))},
+        tuple(filter(None, (word_of(it) for it in every if isinstance(it, ast.Constant)))),
     )
+
+
+def _used(tree: ast.AST) -> list[ast.AST]:
+    """All of a file but what it assigns to names that it never reads: such a node is not started."""
+    names = (it for it in ast.walk(tree) if isinstance(it, ast.Name))
+    read = {it.id for it in names if isinstance(it.ctx, ast.Load)}
+    every: list[ast.AST] = [tree]
+    for it in every:
+        below = ast.iter_child_nodes(it)
+        every += (one for one in below if not isinstance(one, ast.Assign) or _is_read(one, read))
+    return every
+
+
+def _is_read(it: ast.Assign, names: Container[str]) -> bool:
+    return any(not isinstance(one, ast.Name) or one.id in names for one in it.targets)
 
 
 def argument(call: ast.Call, name: str, at: int = -1) -> ast.expr | None:

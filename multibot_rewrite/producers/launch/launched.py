@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from itertools import pairwise
 
@@ -15,7 +15,6 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
@@ -23,6 +22,7 @@ from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.models import Model, Models
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, RunningNode
 from multibot_rewrite.producers.launch.spawners import Spawned
+from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_frames
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
 from multibot_rewrite.system.records import Place, System
 
@@ -113,12 +113,6 @@ def _split(text: str) -> list[str]:
         return []
 
 
-def frames_of_sensors(models: list[InSimulator]) -> Iterator[tuple[str, str]]:
-    """Topic in the simulator, frame: of the sensors whose description names one (``gz_frame_id``)."""
-    for model in models:
-        for sensor in model.root.iter("sensor"):
-            frame = text_at(sensor, "gz_frame_id") or text_at(sensor, "ignition_frame_id")
-            base = text_at(sensor, "topic")
-            if frame and base:
-                mine = (it.gz for it in model.topics if it.gz.startswith(base))
-                yield from ((f"/{it.lstrip('/')}", frame) for it in mine)
+def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:
+    """The sensors of the models."""
+    return [sensor for it in models for sensor in sensor_frames(it.root, it.name)]

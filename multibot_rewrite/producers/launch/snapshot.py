@@ -23,11 +23,7 @@ from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
 from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
 from multibot_rewrite.producers.launch.findings import STOOD_IN
-from multibot_rewrite.producers.launch.launched import (
-    Launched,
-    frames_of_sensors,
-    models_in_simulator,
-)
+from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator, sensors_of
 from multibot_rewrite.producers.launch.model_caveats import NOT_KNOWN, NOT_WHOLE, of_simulator
 from multibot_rewrite.producers.launch.models import (
     Models,
@@ -55,6 +51,7 @@ from multibot_rewrite.producers.launch.running import (
     running_nodes,
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
 from multibot_rewrite.producers.transforms import lookups_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
@@ -116,7 +113,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
     found = Launched(graph, nodes, spawned, models, system, known.release)
-    heard = [*_heard(nodes, dict(frames_of_sensors(models_in_simulator(found))))]
+    heard = [*_heard(nodes, sensors_of(models_in_simulator(found)))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 
@@ -151,14 +148,15 @@ def _listened_to(it: RunningNode, heard: Collection[str]) -> RunningNode:
     return it._replace(facts=as_heard(it.facts, heard, bound) if it.facts else None)
 
 
-def _heard(nodes: Iterable[RunningNode], frames: Mapping[str, str]) -> Iterator[Heard]:
+def _heard(nodes: Iterable[RunningNode], sensors: Sequence[SensorFrame]) -> Iterator[Heard]:
     """The frames of what bridges bring from sensors in the simulator."""
     for it in nodes:
         for end, inside in bridged_by(it):
-            frame = frames.get(f"/{inside.lstrip('/')}", "")
-            if end.role == PUBLISHES and frame:
+            sensor = sensor_on(inside, sensors)
+            if end.role == PUBLISHES and sensor:
                 bound = bound_of(it.name, it.namespace, it.rules)
-                yield Heard(resolve_bound(end.name, end.kind, bound), frame)
+                name = resolve_bound(end.name, end.kind, bound)
+                yield Heard(name, sensor.frame, link=sensor.link)
 
 
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:

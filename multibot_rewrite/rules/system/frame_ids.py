@@ -12,9 +12,10 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import where
 from multibot_rewrite.system.index import Index, Tree, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import NOWHERE, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
@@ -35,6 +36,8 @@ class _Message(NamedTuple):
     robot: str
     senders: tuple[str, ...]
     field: str = "frame_id"
+    link: str = ""
+    place: Place = NOWHERE
 
 
 @system_rule(
@@ -124,14 +127,13 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
             f" {_who(senders)}",
-            _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
+            _in_the_sensor(messages[0])
+            or _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
             or _sent_there(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere else WARNING,
-            robot=robot,
-            node=senders[0],
-            names=(frame,),
-        )
+            robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
+        )  # fmt: skip
 
 
 @system_rule(
@@ -203,6 +205,11 @@ def _nameless(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
+def _in_the_sensor(it: _Message) -> str:
+    """A sensor in a simulator sends what its description says, else a name that is in no tf."""
+    return f"write <gz_frame_id>{it.link}</gz_frame_id> in the sensor" if it.link else ""
+
+
 def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
     if not meant:
         return ""
@@ -268,7 +275,8 @@ def _messages(seen: Index) -> Iterator[_Message]:
             frame = written.removeprefix("/")
             if senders and frame:
                 robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-                yield _Message(it.topic, type_, frame, robot, senders, field)
+                told = (robot, senders, field, it.link, it.place)
+                yield _Message(it.topic, type_, frame, *told)
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:

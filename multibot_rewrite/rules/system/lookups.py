@@ -70,6 +70,9 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, edges) if usual else None
+    if sender is None and usual and edges and not _in_doubt(seen):
+        message = f"reads frame {it.frame}, which no known node sends"
+        return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
         return _unknown(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
@@ -93,10 +96,13 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
     """A transform that a node sends by its file. Nothing is known where only nodes without one send
     any, and others may run."""
-    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
     placed = [it for it in own if it.place != NOWHERE]
-    return next(iter(placed if placed or doubt else own), None)
+    return next(iter(placed if placed or _in_doubt(seen) else own), None)
+
+
+def _in_doubt(seen: Index) -> bool:
+    return any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
 
 
 def _is_of_a_node(seen: Index, edge: Edge) -> bool:

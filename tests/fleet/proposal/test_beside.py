@@ -87,3 +87,41 @@ def test_sections_say_the_stacks(nodes: list[str], stacks: list[str], tmp_path: 
     # Besides those that the description itself says.
     bare = companions_of(looked(tmp_path), Found(), "jazzy").stacks
     assert [it for it in made.stacks if it not in bare] == stacks
+
+
+_LAUNCH = "def generate_launch_description():\n    {} return LaunchDescription([{}])\n"
+_NODE = "it = Node(package='{}', executable='e', parameters=[{!r}]);"
+
+
+@pytest.mark.parametrize(
+    ("package", "node", "by", "why"),
+    [
+        # Beside the code of the node: an example, but where the robot's own package starts it.
+        ("nav2_collision_monitor", "collision_monitor", "", "it is an example of"),
+        ("nav2_collision_monitor", "collision_monitor", "own", ""),
+        ("own", "collision_monitor", "", ""),
+        # A node that nobody knows is the robot's where a launch file has it, and does not drop it.
+        ("own", "mapper", "", "no launch file starts mapper"),
+        ("own", "mapper", "own", ""),
+        ("own", "mapper", "unused", "no launch file starts mapper"),
+        # A section of every node is for that which gets it.
+        ("own", "/**", "own", "it is for any node"),
+        ("own", "/**", "robot_localization", ""),
+        # With the description's own package nothing is asked.
+        (".", "mapper", "", ""),
+    ],
+)
+def test_files_of_nodes_that_are_not_started(
+    package: str, node: str, by: str, why: str, tmp_path: Path
+) -> None:
+    launch = tmp_path / "bringup/up.launch.py"
+    for at in (tmp_path, tmp_path / "own", tmp_path / "nav2_collision_monitor", launch.parent):
+        at.mkdir(exist_ok=True)
+        (at / "package.xml").write_text(f"<package><name>{at.name}</name></package>")
+    file = params(tmp_path / package, "p.yaml", node)
+    starts = _NODE.format(by, file) if by else ""
+    launch.write_text(_LAUNCH.format(starts, "it" if by and by != "unused" else ""))
+    found = Found(params=(file,), launch=(str(launch),))
+    made = companions_of(looked(tmp_path), found, "jazzy")
+    assert bool(made.files.get("params")) == (not why)
+    assert made.left.get(file, "").startswith(why)

@@ -180,4 +180,4 @@ def test_arguments_of_included_files_are_followed(
         Path(path).write_text(text)
     read = readings(paths, "robot.urdf", ())
     assert given_by_launch(read, ["robot_localization"], "jazzy") == Launched(RATE, ())
-    assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read)
+    assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read).keys()
