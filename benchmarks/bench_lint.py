@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure the lint against its floor and other linters: ratios and files a second, in one run.
 
 python benchmarks/bench_lint.py            print the tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``build`` and ``inspect CODE`` say and refuse, without a fleet."""
 
 from __future__ import annotations

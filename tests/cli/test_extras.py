@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an extra brings is asked for by name, in one line, by every command that needs it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options mean the same on every command that has them, and a mistake says what was meant."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a terminal shows while a graph is looked at, and what is said where the time was over."""
 
 from __future__ import annotations

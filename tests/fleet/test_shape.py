@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Outputs in the place and the form that vendors' launch files take.
 
 Expectations: the vendors' launch files, which ``tests/support/vendor_shapes.py`` runs with these

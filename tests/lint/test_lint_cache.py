@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cache of urdf-lint: never another result than without it, however little changed."""
 
 from __future__ import annotations

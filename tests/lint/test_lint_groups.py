@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The groups of rules are complete, and what rules share of one document stays with it."""
 
 from __future__ import annotations

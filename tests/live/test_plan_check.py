@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot plan`` and ``multibot check``: the plan is a file, a snapshot is held against it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stub nodes of a rehearsal: names of the code, rules of the table, transforms."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the stub nodes of a rehearsal open, without rclpy: each call of ``ros`` is kept as a row."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SRDFs and controllers' parameters of joined parts: what they become, by hand; what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MoveIt's files of parts as one of each kind: what they become, by hand; what is refused."""
 
 from __future__ import annotations

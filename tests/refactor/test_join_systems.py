@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One ros2_control for parts of one hardware: what it becomes, by hand; the parts come out again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which links of two parts never or always touch: boxes of which it is known by hand."""
 
 from __future__ import annotations

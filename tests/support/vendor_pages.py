@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of vendors' robots, docs/robots.md.
 
     python tests/support/vendor_pages.py [ROBOT ...]      print the sections of some robots

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which description ``multibot init`` takes of several, and when it refuses to choose."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files of folders are robots, and which are beside them: by their names and their texts."""
 
 from __future__ import annotations
