@@ -71,7 +71,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, edges) if usual else None
     if sender is None and usual and edges and not _in_doubt(seen):
-        message = f"reads frame {it.frame}, which no known node sends"
+        message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
         return _unknown(seen, it, edges)
