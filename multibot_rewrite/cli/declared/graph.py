@@ -83,12 +83,7 @@ CHECK = Command(
         OptionGroup(
             "input",
             (
-                argument(
-                    "plan",
-                    "PLAN",
-                    "what multibot plan wrote, a fleet file, or an earlier snapshot",
-                    "?",
-                ),
+                argument("plan", "PLAN", "what plan or snapshot wrote, or a fleet file", "?"),
                 DISTRO,
                 TRUST,
             ),
@@ -219,15 +214,7 @@ SNAPSHOT = Command(
                 several(
                     "--expect", "NODE", "stop when these nodes are there", [], values.full_names
                 ),
-                rare(
-                    several(
-                        "--topic",
-                        "TOPIC",
-                        "look up QoS of these topics, too",
-                        [],
-                        values.full_names,
-                    )
-                ),
+                rare(several("--topic", "A,B", "QoS of these topics, too", [], values.full_names)),
                 SAVED,
                 ZENOH,
                 STATE,
