@@ -74,7 +74,16 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
                 texts[option].add(str(action.help))
     # What is written or suggested differs with the command; --stack learns or uses one; init has
     # a layout of its own; check takes several domains.
-    own = OUTPUT | {"--domain", "--form", "--stack", "--diff", "--suggest", "--layout", "--force"}
+    own = OUTPUT | {
+        "--domain",
+        "--form",
+        "--stack",
+        "--diff",
+        "--suggest",
+        "--layout",
+        "--force",
+        "--count",
+    }
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
     assert all(text.endswith("missing folders are made") for text in texts["--output"])
 

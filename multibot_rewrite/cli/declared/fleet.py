@@ -94,10 +94,10 @@ _COUNT = value(
     "-n",
     "--count",
     metavar="COUNT",
-    about="how many robots; init makes so many of each description (default: 2); build takes the first"
-    " ones of the file, or adds more like the last one (default: as the file has them)",
+    about="robots of each description (default: 2)",
     type=values.count,
 )
+_FIRST = "the first robots of the file, or more like the last one; default: as the file has them"
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -163,7 +163,7 @@ BUILD = Command(
         Example("multibot build --undo", "remove what a build wrote into out/"),
     ),
     (
-        OptionGroup("input", (_FLEET, _COUNT, DISTRO, TRUST)),
+        OptionGroup("input", (_FLEET, _COUNT._replace(help=_FIRST), DISTRO, TRUST)),
         output_group(
             output("write everything into that folder; default: out/", default="out/"),
             switch(
