@@ -75,15 +75,8 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
     # What is written or suggested differs with the command; --stack learns or uses one; init has
     # a layout of its own; check takes several domains.
     own = OUTPUT | {
-        "--domain",
-        "--form",
-        "--stack",
-        "--diff",
-        "--suggest",
-        "--layout",
-        "--force",
-        "--count",
-    }
+        "--domain", "--form", "--stack", "--diff", "--suggest", "--layout", "--force", "-n", "--count"
+    }  # fmt: skip
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
     assert all(text.endswith("missing folders are made") for text in texts["--output"])
 
