@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch file would start, read with the real launch and launch_ros; without them skipped.
 
 Expectations: what launch_ros passes to the processes, read in actions/node.py and

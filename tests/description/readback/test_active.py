@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs in a description and whether it is known what it opens, by the sources of the programs."""
 
 from __future__ import annotations

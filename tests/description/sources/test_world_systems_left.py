@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Systems of the world that a rewrite leaves to the world, by ``--world-systems leave``.
 
 Expected: gz-sim loads each <plugin> element that it meets and no comment; a strip gives the input.
