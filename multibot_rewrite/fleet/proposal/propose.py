@@ -19,6 +19,7 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import (
     Chosen,
+    Undecided,
     acts,
     chosen,
     launches_of,
@@ -257,6 +258,10 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     _refuse(
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
+    first = best.order[0]
+    if first.part and not first.moving:
+        said = {first.robot.path: "it is called as a part, and nothing in it moves"}
+        raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
     known = {*_partners(order[0], found)}
     beside = [it for it in usable if it in alike or it.path in known]
