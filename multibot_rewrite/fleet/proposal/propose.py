@@ -258,9 +258,9 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     _refuse(
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
-    first = best.order[0]
-    if first.part and not first.moving:
-        said = {first.robot.path: "it is called as a part, and nothing in it moves"}
+    likeliest = best.order[0]
+    if likeliest.part and not likeliest.moving:
+        said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
         raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
     known = {*_partners(order[0], found)}
