@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said of the words, programs and starts of a launch, and what is right and stays unsaid.
 
 Sources: tf2_ros jazzy static_transform_broadcaster_program.cpp, nav2_lifecycle_manager, ros2_control
