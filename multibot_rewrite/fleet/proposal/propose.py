@@ -257,9 +257,10 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     _refuse(
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
-    first = best.order[0]
-    if first.part and not first.moving:
-        said = {first.robot.path: "it is called as a part, and nothing in it moves"}
+    likely = best.order[0]
+    # The name of a model tells what it carries: x500_lidar.
+    if likely.part and not likely.moving and likely.robot.tag == "robot":
+        said = {likely.robot.path: "it is called as a part, and nothing in it moves"}
         raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
     known = {*_partners(order[0], found)}
