@@ -66,6 +66,14 @@ def told_release(given: str, environment: Mapping[str, str]) -> str:
     return known if known in RELEASES else ""
 
 
+def why_told(given: str, environment: Mapping[str, str]) -> str:
+    """What tells the release of ``told_release``; empty where nothing does."""
+    if not told_release(given, environment):
+        return ""
+    by_variable = VARIABLE if environment.get(VARIABLE) else "that ROS is sourced"
+    return "--distro" if given else by_variable
+
+
 def _sourced(environment: Mapping[str, str]) -> str:
     """The release of the first folder of an installed ROS among those that are sourced."""
     paths = environment.get("AMENT_PREFIX_PATH", "").split(":")
@@ -111,6 +119,11 @@ def release_here(given: str | None = None) -> str:
 def release_told(given: str | None = None) -> str:
     """``told_release`` with this process's environment: for commands and calls about a description."""
     return told_release(given or "", os.environ)
+
+
+def why_here(given: str | None = None) -> str:
+    """``why_told`` with this process's environment."""
+    return why_told(given or "", os.environ)
 
 
 def release_doubt(given: str | None = None) -> str:

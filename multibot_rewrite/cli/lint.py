@@ -17,6 +17,7 @@ from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
     release_told,
+    why_here,
 )
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import (
@@ -74,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     findings = [*unreadable, *_lint(options, config.settings, paths)]
     if options.write_baseline:
         return _write_baseline(options, findings)
-    return _conclude(options, config, paths, findings, said.why)
+    return _conclude(options, config, paths, findings, said.why or why_here(asked))
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
@@ -229,7 +230,7 @@ def check_use(options: argparse.Namespace) -> None:
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
     """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
     # What trusted files look at is not known.
-    if options.no_cache or options.trust:
+    if options.trust:
         yield None
         return
     from multibot_rewrite.lint.cache.cache import Cache, cache_folder, identity

@@ -13,6 +13,7 @@ from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
+    why_here,
 )
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
@@ -30,6 +31,7 @@ from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.verdict import given, not_proved
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
+from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
@@ -87,8 +89,9 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         tell(options, f"warning: {doubt}")
     rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
     first = next(rewrites)
-    # Robots with descriptions of their own are all made before the first is here.
-    others = list(rewrites) if first.prepared.job.naming.own else []
+    # Robots with descriptions or numbers of their own are all made before the first is here.
+    is_numbered = any(it.code == NUMBERED for it in first.findings)
+    others = list(rewrites) if first.prepared.job.naming.own or is_numbered else []
     jobs = dict.fromkeys(it.prepared for it in (first, *others))
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     found = (finding for it in (first, *others) for finding in it.findings)
@@ -99,7 +102,8 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
     deliver(options, results, changes, len(names))
-    tell(options, summary(first, names, _own_arguments(options, names)))
+    why = first.prepared.job.why or why_here(options.distro)
+    tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
 
 
@@ -128,7 +132,9 @@ def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
     return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
 
 
-def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
+def summary(
+    first: Rewrite, robots: list[str], own_arguments: str = "", of_release: str = ""
+) -> str:
     """One line: how many names of each kind were renamed, how many the xacro's own arguments have
     named, and the release with what says so."""
     inventory, plan = first.template.inventory, first.template.plan
@@ -146,5 +152,5 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     why = not_proved(first.findings)
     proved = " ".join(filter(None, ["proved", given(first.findings, first.prepared.job.aside)]))
     end = f"rewritten, not proved: {', '.join(why)}" if why else proved
-    end += facts_of_release(first.distro, first.prepared.job.why)
+    end += facts_of_release(first.distro, of_release)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

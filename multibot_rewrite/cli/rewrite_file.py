@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release, release_here
+from multibot_rewrite.base.releases import facts_of_release, release_here, why_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import check_unread, deliver, input_name, is_stopped, tell
@@ -39,13 +39,13 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
         return STOPPED
     results = ((it.robot, before.data, it.data) for it in every)
     deliver(options, results, [], len(names))
-    tell(options, summary(every, names, release))
+    tell(options, summary(every, names, release, why_here(options.distro)))
     return DONE
 
 
-def summary(made: list[RewrittenFile], robots: list[str], release: str) -> str:
+def summary(made: list[RewrittenFile], robots: list[str], release: str, of_release: str) -> str:
     """One line: what it is, and whether it is proved."""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = dict.fromkeys(it for one in made for it in one.not_proved)
     end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
-    return f"{who}: {WORDS[made[0].kind]}; {end}{facts_of_release(release)}"
+    return f"{who}: {WORDS[made[0].kind]}; {end}{facts_of_release(release, of_release)}"

@@ -2,6 +2,12 @@
 """Ports such as the one at which an autopilot is met: each further robot that has the number of an
 earlier one gets the next that is free.
 
+A comment in front of what is changed says what was there, so that ``--strip`` can give it back:
+
+    <!-- multibot robot2 numbered from 9002 -->
+
+It says ``the default`` where nothing was written.
+
 Sources of the steps (``address+STEP`` in the vocabulary): ArduPilot
 libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -I``); PX4-Autopilot
 launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
@@ -12,17 +18,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from lxml.etree import _Element
+from lxml.etree import Comment, _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, locate
+from multibot_rewrite.base.model import Change, Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem, to_findings
-from multibot_rewrite.description.readback.meeting import OPENED, advice, code_of, meetings, said
+from multibot_rewrite.description.readback.meeting import (
+    NUMBERED,
+    OPENED,
+    advice,
+    code_of,
+    meetings,
+    said,
+)
 from multibot_rewrite.description.readback.parameters import holds
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
     split_opens,
     split_path,
@@ -30,23 +44,39 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import (
 )
 from multibot_rewrite.description.steps.apply import Template, cut
 from multibot_rewrite.description.steps.collect import Inventory, collect
-from multibot_rewrite.description.steps.document import read_document, tag_end, text_slot
+from multibot_rewrite.description.steps.document import (
+    Document,
+    path_of,
+    read_document,
+    tag_end,
+    text_slot,
+)
+from multibot_rewrite.description.steps.inserted import end_of
 
-NUMBERED = "MF845"
 # So many robots are named in the note.
 _NAMED = 4
+_MARK = "<!-- multibot {} numbered from {} -->"
+_DEFAULT = "the default"
 
 
 class Port(NamedTuple):
     """A number of a robot, the parameter that holds it, the step to that of the next robot, and what
-    is replaced to change it: ``text`` with the number in it."""
+    is replaced to change it: ``text`` with the number in it. ``element`` holds it and begins ``at``,
+    or gets it there."""
 
     name: str
     number: int
     step: int
+    element: _Element
+    at: int
     start: int
     end: int
     text: str
+
+    @property
+    def is_written(self) -> bool:
+        """Is it no default?"""
+        return self.start < self.end
 
 
 class Numbered(NamedTuple):
@@ -71,7 +101,7 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
             taken.add(new[it.number])
             given.setdefault(it.name, []).append((robot, new[it.number]))
         held |= {*new.values()}
-        edits = _edits(own, new)
+        edits = _edits(robot, ((it, new[it.number]) for it in own))
         changed |= {it.name for it in own if new[it.number] != it.number}
         texts.append(b"".join(cut(text, edits)) if edits else text)
     notes = tuple(said_of_numbers(it, given[it]) for it in sorted(changed))
@@ -113,7 +143,7 @@ def _written(source: bytes, start: int, element: _Element, path: str, step: int)
     slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
     if slot:
         name = split_step(split_path(path)[0][-1])[2] or path
-        yield Port(name, int(text), step, *slot, "{}")
+        yield Port(name, int(text), step, element, start, *slot, "{}")
 
 
 def _default(
@@ -124,17 +154,74 @@ def _default(
     inside = next(elements_at(host, tuple(above)), None)
     start = 0 if inside is None else starts[inside]
     at = tag_end(source, start) if start else 0
-    if at and not source.endswith(b"/>", start, at):
+    if inside is not None and at and not source.endswith(b"/>", start, at):
         tag, attribute, value = split_step(last)
         named = f' {attribute}="{value}"' if attribute else ""
-        yield Port(value or path, int(usual), step, at, at, f"<{tag}{named}>{{}}</{tag}>")
+        text = f"<{tag}{named}>{{}}</{tag}>"
+        yield Port(value or path, int(usual), step, inside, at, at, at, text)
 
 
-def _edits(own: Sequence[Port], new: Mapping[int, int]) -> list[Edit]:
-    changed = (it for it in own if new[it.number] != it.number)
-    return sorted(
-        Edit(it.start, it.end, it.text.format(new[it.number]).encode(), None) for it in changed
-    )
+def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
+    edits = []
+    # What is put at the begin of another element stands before its comment.
+    for it, number in sorted(given, key=lambda pair: pair[0].is_written):
+        if number != it.number:
+            mark = _MARK.format(robot, it.number if it.is_written else _DEFAULT)
+            edits += [
+                Edit(it.at, it.at, mark.encode(), None),
+                Edit(it.start, it.end, it.text.format(number).encode(), None),
+            ]
+    return sorted(edits, key=lambda it: it.start)
+
+
+def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
+    """The text of a robot with the numbers that it had before, proved by numbering it again; raises
+    InputError for one that was edited by hand."""
+    document = read_document(source, file)
+    edits = sorted(_taken_out(document, robot), key=lambda it: it.start)
+    if not edits:
+        return source
+    text = b"".join(cut(source, edits))
+    before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
+    again = _edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
+    if b"".join(cut(text, again)) != source:
+        raise _edited(document, robot)
+    return text
+
+
+def _edited(document: Document, robot: str) -> InputError:
+    what = f"a number of {robot} or the comment before it was edited by hand"
+    return InputError(f"{document.file}: {what}")
+
+
+def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
+    """The edits that give each element behind a comment its number back, or take it out."""
+    source, starts = document.source, dict(zip(document.elements, document.starts, strict=True))
+    head, tail = _MARK[4:-3].format(robot, "\n").split("\n")
+    for comment in document.root.iter(Comment):
+        said, element = comment.text or "", next(comment.itersiblings("*"), None)
+        if not (said.startswith(head) and said.endswith(tail)):
+            continue
+        start = starts[element] if element is not None else 0
+        mark, old = f"<!--{said}-->".encode(), said[len(head) : -len(tail)]
+        slot = text_slot(source, start, text_of(element)) if element is not None else None
+        if slot is None or not source.endswith(mark, 0, start):
+            raise _edited(document, robot)
+        end = end_of(source, start) if old == _DEFAULT else start
+        yield Edit(start - len(mark), end, b"", None)
+        if old != _DEFAULT:
+            yield Edit(*slot, old.encode(), None)
+
+
+def number_changes(template: Template, data: bytes) -> Iterator[Change]:
+    """The numbers of a robot's text that are others than those of its source, each at its place there;
+    raises nothing."""
+    source, file, *_ = template.inventory.document
+    written = collect(read_document(data, file), template.tree)
+    for it, new in zip(ports_of(template.inventory), ports_of(written), strict=False):
+        if new.number != it.number:
+            place, path = locate(source, it.start), path_of(it.element)
+            yield Change(*place, "port", path, str(it.number), str(new.number), "numbered")
 
 
 def judged_together(
@@ -155,7 +242,7 @@ def judged_together(
         Problem(
             next(islice(root.iter(it.name.tag), it.name.number, None), root),
             said(f"{it.robot} and {it.other} would both", it.name, it.twin),
-            hint=advice(it.name),
+            hint=advice(it.name, together=True),
             code=OPENED,
         )
         for it in meetings(names, template.naming)

@@ -155,6 +155,10 @@ def strip(
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.
     """
+    if b" numbered from " in source:
+        from multibot_rewrite.description.own_ports import without_numbers
+
+        source = without_numbers(source, file, robot, tree)
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     renames = make_renames(inventory, naming)

@@ -44,10 +44,9 @@ class Declared(NamedTuple):
         """Is it a name of the path, something in place of each word in brackets?"""
         if "<" not in self.path:
             return name == self.path
-        head, *between, tail = _pieces(self.path)
-        fits = name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
         # A pattern takes longer to compile than most paths to refuse.
-        return fits and (not between or _pattern(self.path).fullmatch(name) is not None)
+        one = len(_pieces(self.path)) == 2
+        return _may_be(self.path, name) if one else _match(self.path, name) is not None
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
@@ -62,7 +61,18 @@ def _pieces(path: str) -> list[str]:
 
 @lru_cache(maxsize=8192)
 def _pattern(path: str) -> re.Pattern[str]:
-    return re.compile(".+".join(map(re.escape, _pieces(path))))
+    return re.compile("(.+)".join(map(re.escape, _pieces(path))))
+
+
+def _may_be(path: str, name: str) -> bool:
+    """Does a name begin and end as a path with words in brackets?"""
+    pieces = _pieces(path)
+    head, tail = pieces[0], pieces[-1]
+    return name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
+
+
+def _match(path: str, name: str) -> re.Match[str] | None:
+    return _pattern(path).fullmatch(name) if _may_be(path, name) else None
 
 
 @lru_cache(maxsize=512)
@@ -80,14 +90,8 @@ def is_known(owner: str) -> bool:
 
 def stands_for(path: str, name: str) -> dict[str, str]:
     """What the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
-    parts = (f"({re.escape(it)})" if i % 2 == 0 else "(.+)" for i, it in enumerate(_split(path)))
-    found = re.fullmatch("".join(parts), name)
-    words = _split(path)[1::2]
-    return dict(zip(words, found.groups()[1::2], strict=True)) if found else {}
-
-
-def _split(path: str) -> list[str]:
-    return re.split(r"(<[^>]*>)", path)
+    found = _match(path, name)
+    return dict(zip(_WILD.findall(path), found.groups(), strict=True)) if found else {}
 
 
 def says_something(path: str) -> bool:

@@ -54,6 +54,7 @@ GRAPH_WORDS = (
     "unmanaged",
 )
 SENT_KEYS = ("child", "if")
+_LIFE_CYCLE = "lifecycle"
 CLAIM_KINDS = ("command", "state")
 CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
 NODE_KEYS = ("package", *GRAPH_KEYS, *GRAPH_WORDS, *FACT_KEYS)
@@ -141,9 +142,13 @@ def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
 def taken_over(
     keys: Mapping[str, YamlItem], parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> Iterator[Endpoint]:
-    """The endpoints of the parts that an entry names under ``with``."""
+    """The endpoints of the parts that an entry names under ``with``, and those of the life cycle in
+    the releases of ``unmanaged``."""
     for entry in entries_of(keys, "with"):
         yield from known_word(entry, "part", parts)
+    if "unmanaged" in keys:
+        releases = releases_of(keys, "unmanaged")
+        yield from (it._replace(releases=releases) for it in parts.get(_LIFE_CYCLE, ()))
 
 
 def check_name(item: YamlItem, name: str) -> None:

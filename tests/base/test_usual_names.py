@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is everybody's by convention, as the sources that ``conventions`` names have it."""
 
 from __future__ import annotations

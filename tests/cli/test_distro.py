@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``--distro`` of the commands about descriptions: the option, the configuration, or ROS_DISTRO."""
 
 from __future__ import annotations
@@ -149,7 +150,34 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
     assert (folder / "back.urdf").read_text() == CLASSIC
     monkeypatch.setenv("ROS_DISTRO", "iron")
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
-    assert "(ROS 2 jazzy)" in capsys.readouterr().err
+    assert "(ROS 2 jazzy: ROS_DISTRO)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "options", "variable", "said"),
+    [
+        ("distro: jazzy", "", "lyrical", "jazzy: the fleet file says so"),
+        ("distro: jazzy", "--distro kilted", "lyrical", "kilted: --distro"),
+        ("", "", "lyrical", "lyrical: ROS_DISTRO"),
+        ("", "", "", "humble: c.urdf loads libgazebo_ros_p3d.so"),
+    ],
+)
+def test_a_build_says_which_release_it_is_for_and_why(
+    folder: Path,
+    line: str,
+    options: str,
+    variable: str,
+    said: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (folder / "c.urdf").write_text(CLASSIC)
+    (folder / "plain.urdf").write_text('<robot name="r"><link name="base"/></robot>')
+    robots = "[{name: a, description: c.urdf}, {name: b, description: plain.urdf}]"
+    (folder / "fleet.yaml").write_text(f"layout: postfix\nrobots: {robots}\n{line}\n")
+    monkeypatch.setenv("ROS_DISTRO", variable)
+    assert multibot.main(["build", "fleet.yaml", "-o", "out", *options.split()]) == 0
+    assert f"(ROS 2 {said})" in capsys.readouterr().err
 
 
 def test_the_lint_goes_on_with_a_release_that_is_not_known(

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py``: what it starts, without launch and in the real one."""
 
 from __future__ import annotations
@@ -183,6 +184,22 @@ def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     before = python.partition("executable='sync_slam_toolbox_node'")[0].split()
     assert before[-3:] == ["*brought_up(", "LifecycleNode(", "package='slam_toolbox',"]
     assert python.count("*brought_up(") == 1, "in the one function for both robots"
+
+
+@pytest.mark.slow
+def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None:
+    """Brought up twice, the second fails, and the manager gives all of its nodes up."""
+    listed = "lifecycle_manager_navigation:\n  ros__parameters: {node_names: [slam_toolbox]}\n"
+    (tmp_path / "slam.yaml").write_text(listed)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\ndistro: jazzy\ndescription: hexbase.urdf.xacro\n"
+        f"stack: nav2_slam\ncompanions: {{params: slam.yaml}}\n{TWO}"
+    )
+    shutil.copy(ROOT / "examples" / "namespace_and_prefix" / "hexbase.urdf.xacro", tmp_path)
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
+    python = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert "executable='sync_slam_toolbox_node'" in python
+    assert "brought_up" not in python
 
 
 @pytest.mark.slow

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that a robot's own files leave idle: build says it as check-launch does."""
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ def manager(*listed: str) -> NodeFacts:
     return base._replace(name="manager", known="lifecycle_manager", endpoints=tuple(made))
 
 
-def given(name: str, known: str = "", manager: str = "", **values: list[str]) -> GivenNode:
+def given(name: str, known: str = "", manager: str = "", **values: object) -> GivenNode:
     of = {key: Given(value, FILE) for key, value in values.items()}
     return GivenNode(name, known or name, "", of, FILE, manager)
 
@@ -43,6 +44,20 @@ def test_a_node_that_the_robots_own_list_leaves_out_is_told(
     assert [(it.code, it.message.split()[0], it.file, it.line) for it in found] == [
         ("MG726", it, "nav2.yaml", 7) for it in idle
     ]
+
+
+@pytest.mark.parametrize(
+    ("own", "timeout", "count"),
+    [("manager", None, 1), ("manager", 0.0, 0), ("manager", 2.0, 1), ("slam_toolbox", None, 0)],
+)
+def test_a_listed_node_without_a_bond_is_told(own: str, timeout: float | None, count: int) -> None:
+    mapper = MAPPER._replace(endpoints=tuple(it for it in MAPPER.endpoints if it.name != "bond"))
+    values = {} if timeout is None else {"bond_timeout": timeout}
+    nodes = [manager("slam_toolbox", "velocity_smoother"), SMOOTHER, mapper]
+    found = list(left_idle(nodes, [given(own, **values)], NODES))
+    assert [it.message for it in found] == [
+        "manager waits for a bond with slam_toolbox, which keeps none"
+    ] * count
 
 
 @pytest.mark.parametrize(("joints", "told"), [([], ["MG725"]), (["shoulder"], [])])

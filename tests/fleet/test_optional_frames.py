@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of a node that a fleet leaves to others are not missed in what it writes."""
 
 from __future__ import annotations

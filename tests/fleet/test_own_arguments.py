@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleets whose xacro names its robots by arguments: all files of a robot have the same names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports of simulated robots: the numbers that the autopilots of the second and third instance take.
 
 Expected: ArduPilot libraries/AP_HAL_SITL/SITL_cmdline.cpp raises its ports by 10 for each instance
@@ -12,8 +13,9 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite import rewrite, rewrite_all
+from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -86,6 +88,7 @@ HARDWARE = (
     '<robot name="r"><link name="base"/><ros2_control name="c" type="system"><hardware>'
     "<plugin>{}</plugin>{}</hardware></ros2_control></robot>"
 )
+KUKA_PORT = '<param name="client_port">59152</param>'
 UNITREE, KUKA = "hardware_unitree_sdk2/HardwareUnitree", "kuka_rsi_driver::KukaRSIHardwareInterface"
 OF_LO = '<param name="network_interface">lo</param><param name="domain">7</param>'
 OF_WIRE = '<param name="network_interface">eth0</param>'
@@ -99,7 +102,7 @@ OF_WIRE = '<param name="network_interface">eth0</param>'
         (HARDWARE.format(UNITREE, OF_LO), ".//param[@name='domain']", ["7", "8", "9"]),
         (HARDWARE.format(UNITREE, OF_WIRE), ".//param[@name='domain']", None),
         (
-            HARDWARE.format(KUKA, '<param name="client_port">59152</param>'),
+            HARDWARE.format(KUKA, KUKA_PORT),
             ".//param[@name='client_port']",
             ["59152", "59153", "59154"],
         ),
@@ -118,3 +121,21 @@ def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     assert [it.data for it in three[:1]] == [one.data] and one.not_proved
     assert bool(three[2].not_proved) == (numbers is None)
     assert ("MF845" in {it.code for it in three[0].findings}) == bool(numbers)
+    met = [it.hint for it in one.findings if it.code == "MB412"]
+    assert all(("in one call" in it) == bool(numbers) for it in met) and met
+    assert [strip(it.data, it.robot, distro="jazzy") for it in three] == [text.encode()] * 3
+    listed = [[one.new for one in it.changes if one.kind == "port"] for it in three]
+    assert listed == [[], *([it] for it in numbers[1:])] if numbers else not any(listed)
+
+
+def test_a_number_is_taken_back_only_as_it_was_written() -> None:
+    """A port that is written first in the place where another one's default is put, without a blank."""
+    plugin = MAVLINK.format("<mavlink_udp_port>14560</mavlink_udp_port>")
+    both = plugin.replace("<mav", "<use_tcp>1</use_tcp><mav") + plugin.replace('"m"', '"n"')
+    text = MODEL.format(both)
+    two = [*rewrite_all(text, ["a", "b"], distro="humble")]
+    assert strip(two[1].data, "b", distro="humble") == text.encode()
+    for old, new in (("14561<", "14560<"), ("from 14560 -->", "from 14560 --> ")):
+        assert old.encode() in two[1].data
+        with pytest.raises(InputError, match="edited by hand"):
+            strip(two[1].data.replace(old.encode(), new.encode()), "b", distro="humble")

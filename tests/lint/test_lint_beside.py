@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files beside a description: planted defects are found at their line, what is odd and healthy is not.
 
 What a parameter is was read in the sources that the rows of declared.schema name.
@@ -571,6 +572,26 @@ def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> No
     file.write_text(PLUGINS.replace("raytrace_max_range", "obstacle_range"))
     (it,) = lint_file(str(file), Settings())
     assert (it.code, it.hint) == ("MB110", "did you mean 'scan.obstacle_max_range'?")
+
+
+@pytest.mark.parametrize(
+    ("beside", "code", "hint"),
+    [
+        ("", "MB110", "did you mean 'enable_odom_tf'?"),
+        # The right one is there: the other does nothing, whatever it is near to.
+        ("    enable_odom_tf: true\n", "MB111", "nothing reads it; see "),
+    ],
+)
+def test_a_drive_is_given_the_name_of_another_program(
+    beside: str, code: str, hint: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "drive.yaml"
+    head = "controller_manager:\n  ros__parameters:\n    drive:\n      type: "
+    own = f"drive:\n  ros__parameters:\n{beside}    publish_tf: false\n"
+    file.write_text(f"{head}diff_drive_controller/DiffDriveController\n{own}")
+    (it,) = lint_file(str(file), Settings(select=("MB110", "MB111"), distro="jazzy"))
+    assert it.code == code
+    assert (it.hint or "").startswith(hint)
 
 
 def test_an_empty_name_in_a_list_is_told_for_what_it_is(tmp_path: Path) -> None:

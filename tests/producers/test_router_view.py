@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a Zenoh router says becomes a snapshot, once or again and again.
 
 The session here answers from tables, as ``zenoh.Session`` does: liveliness tokens are key expressions,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said of the words, programs and starts of a launch, and what is right and stays unsaid.
 
 Sources: tf2_ros jazzy static_transform_broadcaster_program.cpp, nav2_lifecycle_manager, ros2_control
@@ -125,6 +126,27 @@ def test_a_remap_rule_for_a_name_that_is_nearly_there(
     assert judged(known, "MR103", UNKNOWN._replace(remappings=((rule, "x"),))) == []
 
 
+@pytest.mark.parametrize(("namespace", "count"), [("/robot1", 0), ("/robot2", 1)])
+def test_a_rule_for_a_name_that_a_parameter_has_below_the_namespace(
+    namespace: str, count: int, known: Knowledge
+) -> None:
+    """The standard file of Nav2 names a footprint; a build writes it and keeps the rule."""
+    name, rule = "/robot1/local_costmap/published_footprint", "/local_costmap/published_footprint"
+    node = started(
+        *("nav2_collision_monitor", "collision_monitor", "collision_monitor"),
+        namespace=namespace,
+        parameters=with_values(
+            {
+                "polygons": ["Front"],
+                "Front.action_type": "approach",
+                "Front.footprint_topic": name,
+            }
+        ),
+        remappings=((rule, "local_costmap/published_footprint"),),
+    )
+    assert len(judged(known, "MR103", node)) == count
+
+
 def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
     there, gone = tmp_path / "there.yaml", tmp_path / "gone.yaml"
     there.write_text("")
@@ -228,6 +250,29 @@ def test_a_node_of_nav2_that_no_manager_knows(known: Knowledge) -> None:
     assert len(judged(known, "MG726", elsewhere, managed("amcl"))) == 2
     unread = started(*LIFECYCLE, parameters=with_values({"node_names": "amcl"}))
     assert judged(known, "MG726", amcl, unread) == []
+
+
+@pytest.mark.parametrize(
+    ("node", "manager", "count"),
+    [
+        ({}, {}, 1),
+        ({"use_lifecycle_manager": True}, {}, 0),
+        ({"use_lifecycle_manager": False}, {}, 1),
+        ({}, {"bond_timeout": 0.0}, 0),
+        ({}, {"bond_timeout": 4.0}, 1),
+    ],
+)
+def test_a_manager_that_waits_for_a_bond_that_is_not_kept(
+    node: dict[str, object], manager: dict[str, object], count: int, known: Knowledge
+) -> None:
+    """slam_toolbox jazzy, slam_toolbox_common.cpp on_activate: createBond by a parameter alone."""
+    mapper = started(
+        *("slam_toolbox", "async_slam_toolbox_node", "slam_toolbox"), parameters=with_values(node)
+    )
+    amcl = started(*AMCL)
+    found = judged(known, "MG726", amcl, mapper, managed("amcl", "slam_toolbox", **manager))
+    waits = "/manager waits for a bond with /slam_toolbox, which keeps none"
+    assert [it.message for it in found] == [waits] * count
 
 
 def test_a_manager_that_waits_for_a_node_that_is_not_started(known: Knowledge) -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards
@@ -25,6 +24,7 @@ from multibot_rewrite.description.checks.references import (
     undeclared_names,
 )
 from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
+from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
@@ -32,9 +32,6 @@ from multibot_rewrite.description.steps.document import Document, without_commen
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
-
-# A step of a path that asks for an attribute.
-_STEP = lazy_compile(r"\[@(\w+)=(.*)\]")
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
@@ -125,18 +122,12 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             if site.path in {it.path for it in section.sites} or site.role == "keep":
                 continue
             where = not_here(tree.vocabulary, releases_with(site.releases))
-            for element in _elements_at(host.element, site.path):
+            steps, attribute = split_path(site.path)
+            for element in elements_at(host.element, steps):
+                if attribute and element.get(attribute) is None:
+                    continue
                 message = f"{site.path} of {section.name} {where}: nothing in it is renamed"
                 yield Problem(element, message, None, ANOTHER_RELEASE, (), "MB905")
-
-
-def _elements_at(element: _Element, path: str) -> Iterator[_Element]:
-    """The elements of a path of the vocabulary that hold its value."""
-    steps, attribute = split_path(path)
-    below = "/".join(_STEP.sub(r"[@\1='\2']", it) for it in steps)
-    for found in element.iterfind(below) if below else [element]:
-        if not attribute or found.get(attribute) is not None:
-            yield found
 
 
 def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:

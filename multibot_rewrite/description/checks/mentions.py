@@ -26,6 +26,9 @@ from multibot_rewrite.description.steps.document import finding, value_slot
 # Kinds whose names are looked for in values without a site.
 MENTIONED = ("link", "joint", "light")
 HARDWARE, PLUGIN = "hardware", "plugin"
+# Of these urdfdom reads attributes and children.
+NO_TEXT = frozenset({"link", "joint"})
+_NODE = "ros/"
 # Frames that no description declares are common words: they count where the key says so.
 _FRAME_KEY = lazy_compile(r"(?:^|_)(?:frame|frame_id|link)$")
 # What is between names: of lists and paths, of structures, and of what has parts. A name may hold
@@ -104,21 +107,27 @@ def unclaimed_mentions(
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree, nodes)
-        and not _is_unread(slot[0], tree.vocabulary)
+        and not _is_unread(slot[0], slot[2], tree.vocabulary)
         and (telling[slot[3]] in names or _is_meant(slot[0], slot[2], slot[3]))
     ]
 
 
-def _is_unread(element: etree._Element, vocabulary: Vocabulary) -> bool:
-    """Is it in a parameter that a plugin or hardware does not read, in no release, for ROS 1 or 2? All
-    is known then that it reads."""
+def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) -> bool:
+    """Is it text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or in a parameter that a
+    plugin or hardware does not read, in no release, for ROS 1 or 2? All is known then that it reads."""
+    parent = element.getparent()
+    if not attribute and element.tag in NO_TEXT and parent is not None and parent.tag == "robot":
+        return True
+    path = ""
     for parent in element.iterancestors():
+        path = f"{element.tag}/{path}"
         if parent.tag == HARDWARE:
             name = element.get("name", "")
             every = [vocabulary.values(text_at(parent, PLUGIN))]
         elif parent.tag == PLUGIN:
-            name = str(element.tag)
             every = [values_of_plugin(parent, vocabulary, it) for it in (False, True)]
+            # A node's own element has a known content.
+            name = path[:-1] if path.startswith(_NODE) else str(element.tag)
         else:
             element = parent
             continue

@@ -15,6 +15,7 @@ from multibot_rewrite.description.readback.meeting import (
     FRAMES,
     LOOKUP,
     NOT_TAKEN,
+    NUMBERED,
     OPENED,
     TWO_NODES,
     TWO_SERVERS,
@@ -52,7 +53,7 @@ REASONS = {
 GIVEN = {
     NOT_TAKEN: "where each controller is spawned with its rules",
     ELSEWHERE: "where what shows an image has the rule for its camera_info",
-    "MF845": "where what each robot talks to has its number",
+    NUMBERED: "where what each robot talks to has its number",
 }
 
 

@@ -26,7 +26,8 @@ from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, Vocabu
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
-ADDRESS, FILE = "address", "file"
+# A number is an address of which it is known how that of the next robot is made.
+ADDRESS, NUMBER, FILE = "address", "number", "file"
 NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
 # The kind of what only a namespace keeps apart.
 RELATIVE = "relative names of"
@@ -116,10 +117,10 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     for word in section.opens:
-        kind, _, when, path, usual = split_opens(word)
+        kind, step, when, path, usual = split_opens(word)
         if not path or (when and not holds(host, when)):
             continue
         values = [it for it in given_at(host, path) if it]
         for value in values or ([usual] if usual else []):
             if value not in ANY_ADDRESS:
-                yield kind, value, path
+                yield NUMBER if step else kind, value, path

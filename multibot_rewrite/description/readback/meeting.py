@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.description.readback.active import ADDRESS, FILE, RELATIVE
+from multibot_rewrite.description.readback.active import ADDRESS, FILE, NUMBER, RELATIVE
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
     BELOW,
@@ -36,6 +36,8 @@ from multibot_rewrite.description.readback.reading import (
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
 OPENED = "MB412"
+# What is said of a number that each further robot got in the place of such a one.
+NUMBERED = "MF845"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
@@ -57,6 +59,7 @@ _CODES = {
     RELATIVE: TWO_NODES,
     FRAME: FRAMES,
     ADDRESS: OPENED,
+    NUMBER: OPENED,
     FILE: OPENED,
 }
 
@@ -138,10 +141,13 @@ def said(who: str, *names: RuntimeName) -> str:
     return f"{who} have the {name.kind} {name.name!r} ({by})"
 
 
-def advice(name: RuntimeName) -> str:
-    """What to do about a shared name, but for those of controllers."""
+def advice(name: RuntimeName, together: bool = False) -> str:
+    """What to do about a shared name, but for those of controllers; ``together`` where its robots were
+    rewritten in one call, so that each has a number of its own where it can have one."""
     if name.kind == TRANSFORMS:
         return "ROS 1 has one /tf: use --layout frames-per-robot"
+    if name.kind == NUMBER and not together:
+        return "name all robots in one call, or in a fleet file: each gets a number of its own"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
     if name.path == IN_CODE:

@@ -99,7 +99,8 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     made = (node_of(*it, known_links, vocabulary.release) for it in hosts)
     nodes = tuple(node for node in made if node is not None)
     with_node = {it.number for it in nodes}
-    names = [*links, *_of_nodes(nodes), *_of_plugins(root, hosts, with_node, vocabulary)]
+    names = [*links, *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
+    names += _of_plugins(root, hosts, with_node, vocabulary)
     names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
     names += _of_elements(root, vocabulary)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
@@ -155,6 +156,18 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
         yield from _endpoints(node, below=False)
         for path, full in node.stems:
             yield RuntimeName(BELOW, full, "plugin", node.number, path)
+
+
+def _without_rules(
+    root: _Element, hosts: list[_Host], with_node: Container[int]
+) -> Iterator[RuntimeName]:
+    """The nodes of plugins for ROS 2 that read no <ros>: they have the plugin's name, and no namespace
+    (Plankton ThrusterROSPlugin.cpp, gazebo_ros node.hpp CreateWithArgs)."""
+    for host in hosts if root.find(".//plugin/ros") is not None else ():
+        is_named = any(it.path == "@name" and "node" in it.kinds for it in host.section.sites)
+        if is_named and host.number not in with_node:
+            name = host.element.get("name", "").strip()
+            yield RuntimeName(NODE, f"/{name}", "plugin", host.number, "@name")
 
 
 def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:

@@ -7,6 +7,7 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Change, Claim
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled
 from multibot_rewrite.description.steps.apply import Template
+from multibot_rewrite.description.steps.document import path_of
 
 
 def list_changes(template: Template, robot: str) -> list[Change]:
@@ -24,20 +25,12 @@ def list_changes(template: Template, robot: str) -> list[Change]:
     for item in plan.insertions:
         place = locate(source, starts[item.parent])
         new = item.new.replace(ROBOT_SLOT, robot)
-        changes.append(Change(*place, item.kind, _path(item.parent), item.old, new, "inserted"))
+        changes.append(Change(*place, item.kind, path_of(item.parent), item.old, new, "inserted"))
     return sorted(changes)
 
 
 def _change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
     attribute = f"@{claim.attribute}" if claim.attribute else ""
-    path = _path(claim.element) + attribute
+    path = path_of(claim.element) + attribute
     place = locate(source, claim.start)
     return Change(*place, kind, path, claim.value, new, claim.site.section)
-
-
-def _path(element: object) -> str:
-    steps = []
-    while element is not None:
-        steps.append(str(element.tag))  # type: ignore[attr-defined]
-        element = element.getparent()  # type: ignore[attr-defined]
-    return "/".join(reversed(steps))

@@ -37,14 +37,15 @@ class SaidRelease(NamedTuple):
     why: str = ""
 
 
-def release_said(told: str, text: bytes, file: str) -> SaidRelease:
-    """The release that was ``told``, else that of a description's text, else of its repository."""
+def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRelease:
+    """The release that was ``told``, else that of a description's text, else of its repository;
+    ``who`` is what has the text."""
     if told:
         return SaidRelease(told)
     if built := _release_of_build(file):
         return SaidRelease(built, f"{MANIFEST} says so")
     if library := evidence(text):
-        return SaidRelease(OF_OLD, f"it loads {library}")
+        return SaidRelease(OF_OLD, f"{who} loads {library}")
     named, _, why = release_in_repository(file).partition(" ") if file else ("", "", "")
     return SaidRelease(named or NEWEST_LTS, why)
 
@@ -61,14 +62,14 @@ def release_of_launch(
 
 
 def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
-    """The same for several files: of what they say, where that is one release."""
+    """The same for several files: of what they say, where that is one release; the first says it."""
     if told:
         return SaidRelease(told)
-    said = {
-        it.release: it
-        for it in (release_said("", _bytes_of(path), path) for path in files)
-        if it.why
-    }
+    said: dict[str, SaidRelease] = {}
+    for path in files:
+        it = release_said("", _bytes_of(path), path, os.path.basename(path))
+        if it.why:
+            said.setdefault(it.release, it)
     return said.popitem()[1] if len(said) == 1 else SaidRelease(NEWEST_LTS)
 
 

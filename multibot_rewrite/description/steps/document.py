@@ -315,6 +315,11 @@ def tag_end(source: bytes, start: int) -> int:
     return tag.end()
 
 
+def path_of(element: etree._Element) -> str:
+    """The tags from the root to an element, as ``robot/gazebo/plugin``."""
+    return "/".join(str(it.tag) for it in (*[*element.iterancestors()][::-1], element))
+
+
 def finding(
     document: Document, offset: int, code: str, level: str, message: str, hint: str = ""
 ) -> Finding:

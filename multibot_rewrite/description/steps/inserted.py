@@ -173,7 +173,7 @@ def _removal(
     at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
     # Everything back to the tag before it is white space that was written with it.
     begin = source.rindex(b">", 0, at) + 1
-    end = _end(source, starts[inserted[-1]]) if inserted else source.index(b"-->", at) + 3
+    end = end_of(source, starts[inserted[-1]]) if inserted else source.index(b"-->", at) + 3
     if marker.expanded:
         yield Edit(begin - 1, source.index(b">", source.index(b"</", end)) + 1, b"/>", None)
     else:
@@ -203,8 +203,8 @@ def _edited(document: Document, marker: Marker) -> InputError:
     return InputError(f"{place}: the elements this marker counts were edited by hand")
 
 
-def _end(source: bytes, start: int) -> int:
-    """The end of an element that this module wrote: no child has its tag."""
+def end_of(source: bytes, start: int) -> int:
+    """The end of an element that a rewrite put in: no child has its tag."""
     end = tag_end(source, start)
     if source[end - 2 : end] == b"/>":
         return end

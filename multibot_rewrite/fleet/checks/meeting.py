@@ -101,7 +101,7 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
     """At the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
-    found = Finding(code, _level(code), message, advice(name), names=(name.name,))
+    found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
     if name.tag and member:
         found = found._replace(hint=_own_value(name, member, written) or found.hint)
         line = line_of(member.source, name.tag, name.number)

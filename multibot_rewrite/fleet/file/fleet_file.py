@@ -10,8 +10,8 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import chosen_release, told_release
-from multibot_rewrite.description.sources.release_said import release_of_all
+from multibot_rewrite.base.releases import chosen_release, why_told
+from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
@@ -34,6 +34,8 @@ LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topi
 POLICY = tuple(Policy.__annotations__)
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"
+# What says the release, where the fleet file does.
+IN_FILE = "the fleet file says so"
 
 
 class FleetFile(NamedTuple):
@@ -43,7 +45,7 @@ class FleetFile(NamedTuple):
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
     ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations;
-    ``apart`` are the domains of robots that are not in one.
+    ``apart`` are the domains of robots that are not in one; ``why`` is what says the release.
     ``installed`` is where the results are when they are used, empty for where
     they are written. ``simulator_world`` is the user's world for it, which the file names at
     ``world_place``."""
@@ -68,6 +70,7 @@ class FleetFile(NamedTuple):
     simulator_world: str = ""
     world_place: tuple[str, int] = ("", 1)
     apart: Apart = TOGETHER
+    why: str = ""
 
 
 def read_fleet(
@@ -85,7 +88,7 @@ def read_fleet(
     """
     read = with_cell(with_robots(read_data(source), choice))
     data = read.data
-    release = _release(data, distro or data.get("distro", ""), environment)
+    release, why = _release(data, distro, environment)
     policy = _policy(data)
     naming = _naming(read, policy)
     files = tuple(_files(read))
@@ -113,15 +116,19 @@ def read_fleet(
         data.get("simulator_world", ""),
         read.places.get(("simulator_world",), (read.file, 1)),
         apart_of(read, {it.name: it.namespace for it in robots}),
+        why,
     )
 
 
-def _release(data: Mapping[str, Any], asked: str, environment: Mapping[str, str]) -> str:
+def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]) -> SaidRelease:
+    """The release, and what says it."""
+    asked = given or data.get("distro", "")
     chosen = chosen_release(asked, environment)
-    if told_release(asked, environment):
-        return chosen
+    if why := why_told(asked, environment):
+        return SaidRelease(chosen, IN_FILE if asked and not given else why)
     named = (it.get("description") or data.get("description") for it in data["robots"])
-    return release_of_all("", dict.fromkeys(it for it in named if isinstance(it, str))).release
+    said = release_of_all("", dict.fromkeys(it for it in named if isinstance(it, str)))
+    return said if said.why else said._replace(why="the newest LTS")
 
 
 def _policy(data: Mapping[str, Any]) -> Policy:

@@ -151,8 +151,13 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
             it.rules,
             program.words,
             tuple(_components(given, name)),
-            is_unmanaged(facts, given.release),
+            is_unmanaged(facts, given.release) and not _is_listed(given, name),
         )
+
+
+def _is_listed(given: _Given, name: str) -> bool:
+    """Does a lifecycle manager bring it up?"""
+    return any(name in listed for listed in given.names.managed.values())
 
 
 def _components(given: _Given, container: str) -> Iterator[Component]:

@@ -4,14 +4,21 @@ without a joint. What ``check-launch`` says of a launch file, by the same rules.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.launch.declaration import at
-from multibot_rewrite.rules.launch.started import is_managed, moves_nothing, no_joints, not_listed
+from multibot_rewrite.rules.launch.started import (
+    is_managed,
+    keeps_no_bond,
+    moves_nothing,
+    no_joints,
+    not_listed,
+    said_of_bond,
+)
 
 
 def left_idle(
@@ -20,6 +27,7 @@ def left_idle(
     """What starts and does nothing, by the robot's own files of parameters."""
     own = {it.name: it for it in given}
     yield from _unlisted(nodes, own)
+    yield from _unbonded(nodes, own)
     running = {it.name for it in nodes if not it.when}
     for it in own.values():
         facts = known.get(it.known)
@@ -34,9 +42,25 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Itera
     """Where a file has the list; a manager of the stack alone lists what the stack starts."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
-    listed = {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}
+    listed = _listed(managers)
     for it in nodes if place else ():
         idle = is_managed(it.kind) and it.name not in listed and not (it.when or it.shared)
         if idle and place:
             message = f"{it.name} is in the list of no lifecycle manager"
             yield at(not_listed, place, message, "add it to node_names", level=WARNING)
+
+
+def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Iterator[Finding]:
+    """Where a file has the list, and a node on it keeps no bond with its manager."""
+    for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
+        given, listed = own[manager.name], _listed([manager])
+        timeout = given.values.get("bond_timeout")
+        for it in nodes if timeout is None or timeout.value != 0 else ():
+            if it.name in listed and keeps_no_bond(it):
+                said = said_of_bond(manager.name, it.name)
+                yield at(not_listed, given.place, *said, level=WARNING)
+
+
+def _listed(managers: Sequence[NodeFacts]) -> Set[str]:
+    """The nodes whose services managers call."""
+    return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

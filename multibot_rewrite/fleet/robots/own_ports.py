@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.description.own_ports import NUMBERED, numbered, ports_of
+from multibot_rewrite.description.own_ports import numbered, ports_of
+from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.robots.member import with_text
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
@@ -47,29 +48,40 @@ _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
-    guesses = Guesses()
     for section in sections(file):
-        unknown = [
-            it
-            for it, found in section.known
-            if all(map(_is_any_name, found))
-            and not _is_known(section, it)
-            and PARAMETERS not in it.name.split(".")
-        ]
-        if not unknown:
-            continue
-        facts = [it for it in section.facts if it.how != READ]
-        paths = [it.path for it in of_release(facts, file.context.distro)]
-        there = [it for it in paths if "<" not in it]
-        there += _in_blocks(section, paths) if section.node is None else ()
-        there += {name for it in unknown for name in _beside(it, paths)}
-        said = {it.name for it in section.given}
-        free = [it for it in there if it not in said]
-        for it in unknown if there else ():
-            near = _meant(it.name, free, guesses)
+        unknown = [it for it, found in section.known if all(map(_is_any_name, found))]
+        for it, near in _meant_by(section, unknown, file.context.distro):
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"did you mean {near!r}?")
+
+
+def _meant_by(
+    section: Section, given: Iterable[Given], release: str
+) -> Iterator[tuple[Given, str]]:
+    """Each parameter that its node is not known to have, and the one that is probably meant."""
+    unknown = [
+        it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
+    ]
+    if not unknown:
+        return
+    facts = [it for it in section.facts if it.how != READ]
+    paths = [it.path for it in of_release(facts, release)]
+    there = [it for it in paths if "<" not in it]
+    there += _in_blocks(section, paths) if section.node is None else ()
+    above = sorted({it.name.rpartition(".")[0] for it in unknown})
+    there += dict.fromkeys(name for group in above for name in _beside(group, paths))
+    said = {it.name for it in section.given}
+    free = [it for it in there if it not in said]
+    groups, guesses = _by_group(free), Guesses()
+    for it in unknown:
+        yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
+
+
+def _renamed(name: str) -> str:
+    """Today's name of a parameter that has another one elsewhere; empty for none."""
+    *above, last = name.split(".")
+    return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
 
 
 def _is_any_name(fact: Declared) -> bool:
@@ -77,9 +89,8 @@ def _is_any_name(fact: Declared) -> bool:
     return fact.how == READ and fact.path.endswith(">")
 
 
-def _beside(it: Given, paths: Sequence[str]) -> Iterator[str]:
-    """What may be beside a parameter by a pattern: ``joint_limits.<joint>.max_velocity``."""
-    above = it.name.rpartition(".")[0]
+def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
+    """What may be in a group by a pattern: ``joint_limits.<joint>.max_velocity``."""
     for path in paths:
         pattern, _, last = path.rpartition(".")
         stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
@@ -100,10 +111,21 @@ def _is_known(section: Section, it: Given) -> bool:
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
 
-def _meant(name: str, known: Sequence[str], guesses: Guesses) -> str:
+def _by_group(names: Iterable[str]) -> Mapping[str, Mapping[str, str]]:
+    """Group -> last word -> parameter."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in names:
+        above, _, last = name.rpartition(".")
+        found[above][last] = name
+    return found
+
+
+def _meant(
+    name: str, known: Sequence[str], groups: Mapping[str, Mapping[str, str]], guesses: Guesses
+) -> str:
     """The parameter in the same place, or the same one in another, that differs by little."""
     above, _, last = name.rpartition(".")
-    beside = {it.rpartition(".")[2]: it for it in known if it.rpartition(".")[0] == above}
+    beside = groups.get(above, {})
     if RENAMED.get(last) in beside:
         return beside[RENAMED[last]]
     near = meant_name(last, beside) or _cut(last, beside) or guesses.nearest(last, beside, MISTYPED)
@@ -165,12 +187,11 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
         if section.node is None or not _are_all(facts):
             continue
-        paths = [fact.path for fact in facts]
-        for it, found in section.known:
-            if found or _is_known(section, it) or _meant(it.name, paths, Guesses()):
-                continue
-            message = f"{section.title} declares no parameter {it.name!r}"
-            yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+        unread = [it for it, found in section.known if not found]
+        for it, near in _meant_by(section, unread, file.context.distro):
+            if not near:
+                message = f"{section.title} declares no parameter {it.name!r}"
+                yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
 
 
 def _are_all(facts: Sequence[Declared]) -> bool:

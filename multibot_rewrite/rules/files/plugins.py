@@ -24,8 +24,14 @@ LISTED = {
     "polygons": "nav2_collision_monitor::Polygon",
     "observation_sources": "nav2_collision_monitor::Source",
 }
-# Older names that no supported release reads: obstacle_layer.cpp of Foxy and of Galactic.
-RENAMED = {"obstacle_range": "obstacle_max_range", "raytrace_range": "raytrace_max_range"}
+# Older names that no supported release reads (obstacle_layer.cpp of Foxy and of Galactic), and those
+# that robot_localization and Gazebo's drive have for what diff_drive_controller calls otherwise.
+RENAMED = {
+    "obstacle_range": "obstacle_max_range",
+    "raytrace_range": "raytrace_max_range",
+    "publish_tf": "enable_odom_tf",
+    "publish_odom_tf": "enable_odom_tf",
+}
 # A part of a filter of filter_chain.hpp (ros/filters), by its number.
 FILTER = re.compile(r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d{0,9}))\.(?P<word>\w+).*")
 _PLUGIN, _PRIMARY = ".plugin", ".primary_controller"

@@ -61,7 +61,7 @@ _ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
 _OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
 _LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
 _AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
-_CHANGE = "/change_state"
+_CHANGE, _BOND = "/change_state", "bond"
 _UNSURE = "a node that is not known may; see what is incomplete"
 
 
@@ -255,9 +255,11 @@ def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
     "MG726",
     "not-activated",
     what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
-    "file starts one. Or a manager lists a node that the launch file does not start.",
+    "file starts one. Or a manager lists a node that the launch file does not start, or that keeps no "
+    "bond with it.",
     why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
-    fix="Write the same names in `node_names` and at the nodes.",
+    fix="Write the same names in `node_names` and at the nodes; let slam_toolbox have "
+    "`use_lifecycle_manager: true`.",
     bad=launch_of(
         _AMCL, node_of("nav2_map_server", "map_server", name='"map_server"'), _managed('"amcl"')
     ),
@@ -277,6 +279,9 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
             hint = f"add it to node_names of {managers[0].full_name}"
             yield at(not_listed, it.place, message, hint)
     for name, manager in listed.items() if _is_known(launched) else ():
+        facts = started[name].facts if name in started else None
+        if facts and keeps_no_bond(facts) and manager.value("bond_timeout") != 0:
+            yield at(not_listed, manager.place, *said_of_bond(manager.full_name, name))
         if name not in started:
             near = nearest(name, started)
             hint = (
@@ -284,6 +289,19 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
             )
             message = f"{manager.full_name} waits for {name}, which the launch file does not start"
             yield at(not_listed, manager.place, message, hint)
+
+
+def keeps_no_bond(node: NodeFacts) -> bool:
+    """Has it a life cycle, and no bond with its manager, by its parameters? nav2_lifecycle_manager
+    jazzy, lifecycle_manager.cpp: without one it aborts after ``bond_timeout``."""
+    names = [it.name for it in node.endpoints]
+    return f"~{_CHANGE}" in names and _BOND not in names
+
+
+def said_of_bond(manager: str, name: str) -> tuple[str, str]:
+    """That a manager waits for the bond of a node, and what to set."""
+    hint = "set use_lifecycle_manager: true for the node, or bond_timeout: 0.0 for the manager"
+    return f"{manager} waits for a bond with {name}, which keeps none", hint
 
 
 # Some releases of it have no life cycle, in others its own launch file brings it up.

@@ -106,9 +106,12 @@ def _number(word: str) -> float | None:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Only for a name that is mistyped: the code of a node may have more than is known."""
+    """Only for a name that is mistyped: the code of a node may have more than is known. A rule for a
+    name that a parameter has in the node's namespace already does no harm."""
     for it in launched.nodes:
-        names = [end.name.lstrip("/~") for end in it.facts.endpoints] if it.facts else []
+        above = f"{it.full_name.rpartition('/')[0]}/"
+        known = it.facts.endpoints if it.facts else ()
+        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
         for old, _ in it.rules:
             bare = old.lstrip("/~")
             near = nearest(bare, names, SLIP) if bare not in names and ":" not in old else ""
@@ -198,11 +201,14 @@ def argument_not_read(launched: Launched) -> Iterator[Finding]:
 
 _PATH = "correct the path, or install the file"
 _NAMED = ("config_file", "yaml_filename")
+# Programs write there what others read.
+_TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def _is_ours(path: str) -> bool:
     """May it be judged here? What another machine has, or a program makes, may not."""
-    return os.path.isdir(os.path.dirname(path))
+    folder = os.path.dirname(path)
+    return os.path.isdir(folder) and folder not in _TEMPORARY
 
 
 def _files(it: RunningNode) -> Iterator[str]:

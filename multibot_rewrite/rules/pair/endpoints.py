@@ -153,8 +153,10 @@ def _unplanned_names(plan: Index, seen: Index, planned: End) -> list[str]:
 def topic_of_some_robots(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
     there for some of them."""
+    if seen.nodes:
+        return
     there = {name for kind, name in seen.by_name if kind == TOPIC}
-    for names in _sent_by_each(plan).values() if not seen.nodes else ():
+    for names in _sent_by_each(plan).values():
         others = [name for name in names.values() if name in there]
         for robot, name in names.items() if others else ():
             if name not in there:

@@ -10,26 +10,28 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.declaration import found_by_plan
 from multibot_rewrite.rules.pair.causes import caused, plugin_of
 from multibot_rewrite.rules.system.matching import STAMPED, types_differ
-from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.records import SUBSCRIBES, End
 
 
 @found_by_plan(types_differ, nodes=False)
 def type_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Each end of a planned name whose type is none that the plan has; a tool reads what is there."""
-    planned = _types(plan)
     said = set()
     for end in seen.system.ends:
         known = plan.by_key.get((end.node, end.kind, end.role, end.name))
-        by_name = planned.get((end.kind, end.name), frozenset())
+        if not end.type or (known and known.type == end.type):
+            continue
+        by_name = _types(plan).get((end.kind, end.name), frozenset())
         wanted = {known.type, *known.also} if known and known.type else by_name
         looks = end.role == SUBSCRIBES and seen.is_tool(end.node)
-        differs = end.type and wanted and end.type not in wanted and not looks
+        differs = wanted and end.type not in wanted and not looks
         if differs and (end.node, end.name, end.type) not in said:
             said.add((end.node, end.name, end.type))
             yield _not_as_planned(plan, seen, end, wanted)
 
 
+@once
 def _types(plan: Index) -> Mapping[tuple[str, str], Set[str]]:
     """Those of each planned name, where they are known."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)

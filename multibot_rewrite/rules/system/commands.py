@@ -50,8 +50,9 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK and not seen.robot(name)
-        order = kind == TOPIC and (joystick or name in seen.orders)
-        nodes = nodes_of(at_work(ends.subscribers)) if order else ()
+        if kind != TOPIC or not (joystick or name in seen.orders):
+            continue
+        nodes = nodes_of(at_work(ends.subscribers))
         robots = robots_of(seen, nodes)
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"

@@ -145,7 +145,7 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
     """One for each subscription and what it lacks; where several lack the same of one publisher, it is
     the publisher's. Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
-        if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
+        if kind != TOPIC or name in EVERYBODYS or not _refuses(ends):
             continue
         found: dict[tuple[object, ...], list[_Refused]] = defaultdict(list)
         for end in {(it.node, it.qos): it for it in ends.subscribers}.values():
@@ -159,6 +159,13 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
                     one = _Refused(end, nodes_of(publishers), conflicts, hears)
                     found[one[1:]].append(one)
         yield from (_never_meets(seen, *them) for them in found.values())
+
+
+def _refuses(ends: Ends) -> bool:
+    """Does any QoS that is offered not do for one that is asked for?"""
+    offered = {it.qos for it in ends.publishers if it.qos}
+    asked = {it.qos for it in ends.subscribers if it.qos} if offered else ()
+    return any(qos_conflicts(one, other) for one in offered for other in asked)
 
 
 class _Refused(NamedTuple):

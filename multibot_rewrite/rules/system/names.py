@@ -57,13 +57,15 @@ running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
     common, a warning: something else may send it."""
-    sent = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
+    topics = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
+    unsent = [it for it in topics.values() if not it.publishers and it.type != TF]
+    unsent = [it for it in unsent if it.name not in EVERYBODYS]
+    if not unsent:
+        return
     # What only may be sent is not what was meant.
-    published = {name: it for name, it in sent.items() if any(map(_runs, it.publishers))}
+    published = {name: it for name, it in topics.items() if any(map(_runs, it.publishers))}
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
-    for (kind, name), ends in seen.by_name.items():
-        if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
-            continue
+    for ends in unsent:
         by_kind: dict[str, list[End]] = {}
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node) or not _runs(end):
@@ -74,10 +76,10 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
-            elif absent := nobody_in(seen, name, published):
+            elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
-                    f"subscribes to {name}, which no node publishes; {absent}",
-                    ABSENT, level=WARNING, node=end.node, names=(name,), **where([end]),
+                    f"subscribes to {ends.name}, which no node publishes; {absent}",
+                    ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
             yield _missed_topic(seen, first, published[other_name], WARNING, more)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in values that no site claims: where they are seen, and what is no name."""
 
 from __future__ import annotations
@@ -84,12 +85,24 @@ def test_a_rewrite_warns_of_it(value: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("element", "warned"),
+    [("<link name='wr'>wl</link>", False), ("<own><link name='wr'>wl</link></own>", True)],
+)
+def test_text_of_a_link_is_read_by_nobody(element: str, warned: bool) -> None:
+    found = rewrite(f"<robot name='r'><link name='wl'/>{element}</robot>", "robot1").findings
+    assert ("MB901" in {it.code for it in found}) is warned
+
+
+@pytest.mark.parametrize(
     ("library", "row", "warned"),
     [
         # gazebo_ros_joint_state_publisher.cpp reads update_rate and joint_name.
         ("gazebo_ros_joint_state_publisher", "<odometry_frame>odom</odometry_frame>", False),
         ("gazebo_ros_joint_state_publisher", "<extra>wl</extra>", False),
         ("gazebo_ros_joint_state_publisher", "<extra><more>wl</more></extra>", False),
+        # gazebo_ros node.cpp reads namespace, remapping, argument, parameter and qos of a <ros>.
+        ("gazebo_ros_imu_sensor", "<ros><frame_name>wl</frame_name></ros>", False),
+        ("acme", "<ros><frame_name>wl</frame_name></ros>", True),
         # Of another library nobody knows what it reads.
         ("acme", "<odometry_frame>odom</odometry_frame>", True),
         ("acme", "<extra>wl</extra>", True),

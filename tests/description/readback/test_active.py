@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs in a description and whether it is known what it opens, by the sources of the programs."""
 
 from __future__ import annotations
@@ -223,6 +224,38 @@ def test_a_topic_that_is_kept_is_an_end_like_others() -> None:
         world = plugin("BaseStation", f"<target_topic>{topic}</target_topic>")
         parted = "1 topic whose ends no longer match" in why(robot(sent + world))
         assert parted == (topic == "/eye")
+
+
+P3D = plugin("gazebo_ros_p3d", "<ros/>").replace('"p"', '"q"')
+
+
+@pytest.mark.parametrize(
+    ("layout", "beside", "met"),
+    [("tf-per-robot", P3D, True), ("postfix", P3D, False), ("tf-per-robot", "", False)],
+)
+def test_a_node_that_no_namespace_reaches(layout: str, beside: str, met: bool) -> None:
+    """Plankton ThrusterROSPlugin.cpp makes its node with the plugin's name alone. In ROS 1 it is no
+    node: uuv_simulator's plugin is a part of Gazebo's."""
+    known = "<linkName>a</linkName><thrusterID>0</thrusterID>"
+    text = robot(plugin("uuv_thruster_ros_plugin", known) + beside)
+    found = rewrite(text, "robot1", layout=layout, distro="humble").findings
+    met_nodes = [it.message for it in found if it.code == "MG301" and "'/p'" in it.message]
+    assert bool(met_nodes) is met
+
+
+@pytest.mark.parametrize(("namespace", "parted"), [("", False), ("r", True), ("other", False)])
+def test_a_topic_below_the_model_is_met_in_the_namespace_of_its_name(
+    namespace: str, parted: bool
+) -> None:
+    """rotors_gazebo_plugins gazebo_mavlink_interface.cpp:198 sends on ~/<model>/command, and
+    gazebo_motor_model.cpp:301 listens on ~/<robotNamespace>/command."""
+    above = f"<robotNamespace>{namespace}</robotNamespace>"
+    sent = "<motorSpeedCommandPubTopic>/command</motorSpeedCommandPubTopic>"
+    heard = "<commandSubTopic>command</commandSubTopic><jointName>j</jointName>"
+    both = plugin("rotors_gazebo_mavlink_interface", sent) + plugin(
+        "rotors_gazebo_motor_model", above + heard
+    )
+    assert ("whose ends no longer match" in str(why(robot(both)))) == parted
 
 
 def test_a_word_that_topics_are_made_of_is_no_topic() -> None:

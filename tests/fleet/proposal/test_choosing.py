@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which description ``multibot init`` takes of several, and when it refuses to choose."""
 
 from __future__ import annotations
@@ -58,6 +59,16 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
     assert f"{two}/digger.urdf, {two}/tractor.urdf" in said
     assert f"name one: multibot init {two}/digger.urdf" in said
     assert not (two / "fleet.yaml").exists()
+
+
+@pytest.mark.more
+def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
+    (two / "a.launch.py").write_text("robot = 'tractor.urdf'")
+    assert taken(two)["description"] == "tractor.urdf"
+    other = f"one of 2 descriptions; for another: multibot init {two}/digger.urdf"
+    assert other in capsys.readouterr().err
+    assert init(two, str(two / "tractor.urdf"), "--force") == 0
+    assert "descriptions" not in capsys.readouterr().err
 
 
 @pytest.mark.more

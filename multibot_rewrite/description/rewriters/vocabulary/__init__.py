@@ -19,8 +19,8 @@ A section is one of
     [hardware NAME]    a ros2_control hardware class, as in ``<plugin>``
     [sensor TYPE]      a ``<sensor>`` by its type
     [block NAME]       lines that several sections share by ``with: NAME``
-    [values NAME]      what one of the plugins or hardware classes of another section reads, in
-                       ``value`` lines alone: whether names are in it nobody has looked
+    [values NAME...]   what plugins or hardware classes of other sections read alike, in ``value``
+                       lines alone: whether names are in it nobody has looked
 
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand, in this order or another, then ``# a note``:

@@ -121,15 +121,17 @@ class Vocabulary:
         if key not in self._values:
             raws = [it for type_ in VALUED for it in self._raw.get((type_, name), ())]
             own = [it for it in raws if has_values(it[2]) and _is_of_ros_1(it[2]) == of_ros_1]
-            self._values.setdefault(key, self._read_values(own, of_ros_1) if own else None)
+            self._values.setdefault(key, self._read_values(name, own, of_ros_1) if own else None)
         return self._values[key]
 
-    def _read_values(self, raws: Sequence[Raw], of_ros_1: bool) -> Values:
+    def _read_values(self, name: str, raws: Sequence[Raw], of_ros_1: bool) -> Values:
         whole = [it for it in raws if _set(it[2], "read")]
         file, line, chunk = (*whole, *raws)[0]
-        names = read_header(f"{file}:{line}", chunk.partition("\n")[0])[1:]
+        type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
+        # What several classes read alike is written once.
+        first = name if type_ == OF_VALUES else names[0]
         is_open = not whole or any("yes" in word for it in whole for word in _set(it[2], "open"))
-        return values_of(names, of_ros_1, is_open, self._value_rows(raws))
+        return values_of((first, *names), of_ros_1, is_open, self._value_rows(raws))
 
     def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
         for file, line, chunk in raws:

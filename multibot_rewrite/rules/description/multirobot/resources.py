@@ -10,12 +10,7 @@ from multibot_rewrite.base.findings.rule import URDF, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.readback.active import (
-    ADDRESS,
-    FILE,
-    hardware_parts,
-    opened,
-)
+from multibot_rewrite.description.readback.active import RELATIVE, hardware_parts, opened
 from multibot_rewrite.description.readback.parameters import given_at
 from multibot_rewrite.rules import of_both
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
@@ -77,7 +72,7 @@ def _usual_device(subject: Subject) -> Iterator[Problem]:
     for part in hardware_parts(subject.document.root, subject.tree.vocabulary):
         if part.section is not None:
             for kind, value, path in opened(part.element, part.section):
-                if kind in (ADDRESS, FILE) and not any(given_at(part.element, path)):
+                if kind != RELATIVE and not any(given_at(part.element, path)):
                     message = f"{value!r} is the {kind} of every robot: {path} is not given"
                     yield Problem(part.element, message, "", "make it a xacro argument")
 
