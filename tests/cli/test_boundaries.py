@@ -100,11 +100,11 @@ def test_a_bag_that_unpacks_to_more_than_a_bound(
 )
 def test_a_pipe_in_a_folder_is_not_waited_for(tmp_path: Path, words: str) -> None:
     """An archive may hold pipes under the names that are looked for beside a description."""
-    (tmp_path / "r").mkdir()
+    (tmp_path / "r" / ".git").mkdir(parents=True)
     for name in PIPES:
         os.mkfifo(tmp_path / "r" / name)
     (tmp_path / "r" / "r.urdf").write_text('<robot name="r"><link name="a"/></robot>')
-    (tmp_path / "r" / "kinematics.yaml").write_text("arm:\n  kinematics_solver: kdl/K\n")
+    (tmp_path / "r" / "a.xacro").write_text('<robot name="$(find s)" xmlns:xacro="http://x"/>')
     (tmp_path / "r" / "fleet.yaml").write_text("robots: [{name: robot1, description: r.urdf}]\n")
     command, *rest = words.split()
     said = run(
