@@ -8,6 +8,7 @@ Expected: ArduPilot libraries/AP_HAL_SITL/SITL_cmdline.cpp raises its ports by 1
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -128,16 +129,19 @@ def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     assert listed == [[], *([it] for it in numbers[1:])] if numbers else not any(listed)
 
 
-def test_a_number_is_taken_back_only_as_it_was_written() -> None:
+def test_a_number_is_taken_back_only_as_it_was_written(tmp_path: Path) -> None:
     """A port that is written where another one's default is put, without a blank."""
-    first = f"<hardware>{KUKA_PORT.replace('client', 'mxa_client')}"
-    text = HARDWARE.format(KUKA, "").replace("<hardware>", first)
-    two = [*rewrite_all(text, ["a", "b"], distro="jazzy")]
-    assert strip(two[1].data, "b", distro="jazzy") == text.encode()
+    own, text = tmp_path / "own.vocab", HARDWARE.format("a/B", "")
+    paths = (f"address+1:hardware/param[@name={it}]=59152" for it in ("client_port", "other"))
+    own.write_text(f"[hardware a/B]\nopens: {' '.join(paths)}\n")
+    text = text.replace("<hardware>", f"<hardware>{KUKA_PORT}")
+    two = [*rewrite_all(text, ["a", "b"], distro="jazzy", vocabulary=[str(own)])]
+    back = partial(strip, robot="b", distro="jazzy", vocabulary=[str(own)])
+    assert back(two[1].data) == text.encode()
     for old, new in (("59153<", "59152<"), ("from 59152 -->", "from 59152 --> ")):
         assert old.encode() in two[1].data
         with pytest.raises(InputError, match="edited by hand"):
-            strip(two[1].data.replace(old.encode(), new.encode()), "b", distro="jazzy")
+            back(two[1].data.replace(old.encode(), new.encode()))
 
 
 def test_what_is_no_number_is_not_said_to_get_one() -> None:
