@@ -218,7 +218,7 @@ def test_a_namespace_of_xml_goes_with_the_elements_that_use_it() -> None:
 
 
 REFUSED = {
-    "no link": (robot(""), "it has no link"),
+    "no link": (robot(""), "it has no link; give the file that has the robot"),
     "two roots": (robot(link("a") + link("b")), "2 of its links have no parent ('a' and 'b')"),
     "a joint to itself": (robot(link("a") + fixed("j", "a", "a")), "joins link 'a' to itself"),
     "a loop": (
