@@ -271,6 +271,8 @@ def test_a_part_that_cannot_be_joined_is_refused_in_one_line(case: str) -> None:
     [
         ('<xacro:include filename="part.xacro"/>', "give {}/arm.xacro, which includes it"),
         ('<xacro:include filename="middle.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="${1}art.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="${1}arts.xacro"/>', "give the file that has the robot"),
         ('<xacro:include filename="other/part.xacro"/>', "give the file that has the robot"),
     ],
 )
