@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a command writes and reads only if it was named: links of an output, what a fleet file names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What options mean: robots, arguments, the source of a graph, files that are read and written."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of how often rules are right: enough was judged, and what is often wrong is a note."""
 
 from __future__ import annotations

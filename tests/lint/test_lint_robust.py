@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """urdf-lint with bad files and dying processes: no traceback, no hang, other files are linted."""
 
 from __future__ import annotations

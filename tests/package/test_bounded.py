@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What anybody may write is read within bounds of size, depth and expansion, by every reader."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A package for one robot takes a prefix: its sources afterwards, written by hand; what is left."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole package takes a prefix: launch files hand it on, an SRDF follows, what is left is listed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What adopt cannot read or change is one line, with the place and what to do; nothing is written."""
 
 from __future__ import annotations

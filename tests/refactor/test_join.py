@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parts become one robot: the text by hand, what is refused, what two parts share, and back again."""
 
 from __future__ import annotations

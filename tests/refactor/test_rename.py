@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A name of a package is another one everywhere: files written by hand, and what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lint without workers where something else is tried: each would start a server of xacro of its own."""
 
 from __future__ import annotations

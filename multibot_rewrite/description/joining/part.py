@@ -217,7 +217,9 @@ def check_meeting(part: ReadPart, known: Mapping[tuple[str, str], str]) -> None:
         other = known.get((kind, name))
         if other is None or (kind, name) == ("link", WORLD):
             continue
-        more = f"another prefix than {part.prefix!r}" if part.prefix else "a prefix of its own"
+        more = (
+            f"another prefix than {part.prefix!r}" if part.prefix else "a prefix (--prefix hand_)"
+        )
         what = {"hardware": "ros2_control"}.get(kind, kind)
         raise InputError(f"{part.file}: {what} {name!r} is in {other}, too; give it {more}")
 

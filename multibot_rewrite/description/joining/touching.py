@@ -72,7 +72,7 @@ def _pinocchio() -> Any:
         return import_module("pinocchio")
     except ImportError as error:
         what = "random poses are looked at by pinocchio, which is not installed"
-        raise UsageError(f"{what}; pip install pin, or leave out --samples ({error})") from None
+        raise UsageError(f"{what}; pip install pin, or leave out samples ({error})") from None
 
 
 def _scene(

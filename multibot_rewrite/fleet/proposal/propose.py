@@ -19,6 +19,7 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import (
     Chosen,
+    Undecided,
     acts,
     chosen,
     launches_of,
@@ -257,6 +258,11 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     _refuse(
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
+    likeliest = best.order[0]
+    # The name of a model tells what it carries: x500_lidar.
+    if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
+        said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
+        raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
     known = {*_partners(order[0], found)}
     beside = [it for it in usable if it in alike or it.path in known]

@@ -42,6 +42,8 @@ _ENDS = (
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
+# What urdf-postfix has written is made of the robot that is meant.
+_REWRITTEN = re.compile(rb"<!-- multibot \S+ \+\d")
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
 _BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
 # What launch files begin with, in a folder of theirs: many are called up.py.
@@ -177,7 +179,8 @@ def _kind(path: str, data: bytes) -> str:
     if end in _BY_NAME:
         return _BY_NAME[end]
     read = _BY_TEXT.get(end)
-    return read(stem, data) if read else ""
+    kind = read(stem, data) if read else ""
+    return "" if kind == "descriptions" and _REWRITTEN.search(data) else kind
 
 
 def _of_urdf(_: str, data: bytes) -> str:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``--why FILE:LINE``: which rewriter claims a value, why, and what it becomes."""
 
 from __future__ import annotations

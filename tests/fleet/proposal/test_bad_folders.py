@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders that have no robot that can be told: one line that says what to give, and nothing written."""
 
 from __future__ import annotations
