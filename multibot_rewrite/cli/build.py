@@ -17,7 +17,7 @@ from multibot_rewrite.cli.folders import change_folder, check_inside, clear_left
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
-from multibot_rewrite.cli.walk import is_same_file
+from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
@@ -102,6 +102,7 @@ def _check_inputs(folder: str, files: Iterable[OutputFile], read: Collection[str
 
 
 def _check_folder(folder: str) -> None:
+    check_link(folder)
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise UsageError(f"{folder}: it is a file; name a folder")
 

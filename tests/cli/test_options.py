@@ -164,6 +164,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --select MB9999", "did you mean 'MB9'?"),
         ("multibot plan a b --ignore undeclared-link", "did you mean 'MB202'?"),
         ("multibot inspect MB20X", "did you mean 'MB20'?"),
+        (f"multibot snapshot {PARAMS}", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
         ("urdf-postfix a --separator link=_ frame=_", "write --separator link=_,frame=_"),
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),

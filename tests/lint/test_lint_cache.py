@@ -465,7 +465,7 @@ ASKING = re.compile(
 )
 # The cache itself, what decides which files are linted, processes; what only marked functions call.
 ALLOWED = (
-    "lint/cache/", "lint/config/", "lint/workers.py", "lint/run.py", "lint/__main__.py",
+    "lint/cache/", "lint/config/", "base/workers.py", "lint/run.py", "lint/__main__.py",
     "lint/launched.py", "rules/launch/", "rules/files/parameter_table.py",
     "rules/files/plugin_table.py",
     "description/sources/child/", "description/sources/processes.py",

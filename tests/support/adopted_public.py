@@ -41,6 +41,7 @@ KINDS = {
     "code": "code names",
     "data": "it names",
     "composed": "put together",
+    "stays": "stays with",
     "unsaid": "where no element says",
     "launch": "by hand",
     "unproved": "not proved",

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from multibot_rewrite.lint import workers
+from multibot_rewrite.base import workers
 
 
 class Here(NamedTuple):

@@ -27,7 +27,7 @@ FILES = {
 SAYS = {
     "no robot": "no description of a robot is there; give a URDF, xacro or SDF",
     "a thing": "nothing in it moves or senses; give the file that has the robot",
-    "macros": "it has no link; give the file that has the robot",
+    "macros": "it has no link; it defines macros; give the file that has the robot",
     "broken": "car.urdf.xacro",
     "not XML": "car.urdf",
     "a package": "package 'wheels' is not found",

@@ -122,6 +122,16 @@ def test_a_part_and_a_prop_are_no_rivals(two: Path) -> None:
     assert taken(two)["description"] == "digger.urdf"
 
 
+def test_a_part_alone_is_asked_for(tmp_path: Path, capsys: Any) -> None:
+    camera = tmp_path / "camera.urdf"
+    camera.write_text(robot("camera", "eye").replace("continuous", "fixed"))
+    assert init(tmp_path) == 2
+    said = capsys.readouterr().err
+    assert "nothing in it moves" in said and f"multibot init {camera}" in said
+    assert not (tmp_path / "fleet.yaml").exists()
+    assert main(["init", str(camera), "--yes", "-o", str(tmp_path / "fleet.yaml")]) == 0
+
+
 @pytest.mark.more
 def test_files_of_one_name_in_two_folders_are_variants(tmp_path: Path, capsys: Any) -> None:
     for name, more in (("one", ()), ("two", ("third",))):
