@@ -547,6 +547,7 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         ('SetLaunchConfiguration("a", "1")', _GROUP.format('LaunchConfiguration("a")')),
     ),
     "a condition that is a text": ("MG721", True, "", (_GROUP.format('"true"'),)),
+    "a file that includes itself": ("MG721", True, "", ("IncludeLaunchDescription(__file__)",)),
     "no condition": ("MG721", False, "", (_GROUP.format("None"),)),
     # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
     "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
@@ -587,6 +588,16 @@ def test_a_file_says_what_it_has_to_be_given(
     assert "'robot' is not set; give it with robot:=VALUE" in capsys.readouterr().err
     main(["check-launch", str(tmp_path / LAUNCH), "robot:=r1"])
     assert "is not set" not in capsys.readouterr().err
+
+
+def test_what_is_not_known_is_in_json_with_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    of_nodes(tmp_path, _DRIVER, 'SetLaunchConfiguration("a", LaunchConfiguration("b"))', head=_HEAD)
+    code, found = found_in(tmp_path, capsys)
+    (told,) = (it for it in found if it["code"] == "MF823")
+    line = (tmp_path / LAUNCH).read_text().splitlines()[int(str(told["line"])) - 1]
+    assert (code, told["level"]) == (3, "inconclusive") and "SetLaunchConfiguration" in line
 
 
 def test_files_that_a_package_of_sources_lacks(
