@@ -85,7 +85,7 @@ def graph(
         if options.zenoh:
             from multibot_rewrite.producers.zenoh.observe import look
 
-            return look(asked, _router(options))
+            return look(asked, _router(options, environ(options.domain)))
         from multibot_rewrite.producers.ros.child import observe
 
         def tell(said: str | System) -> None:
@@ -101,7 +101,7 @@ def so_far(seen: System, judge: Judge | None) -> str:
     sure = [it for it in found if it.code not in ABSENCE]
     nodes = f"{plural(len(seen.nodes), 'node')} so far"
     if not sure:
-        return f"{nodes}, nothing wrong"
+        return f"{nodes}, nothing wrong" if seen.nodes else nodes
     first = min(sure, key=lambda it: it.level != ERROR)
     more = f", and {plural(len(sure) - 1, 'more finding')}" if len(sure) > 1 else ""
     return f"{nodes}; {first.code} {first.message}{more}"
@@ -169,33 +169,31 @@ def watched(
     """What is seen of the live graph that the options name, or in each of these domains once all were
     seen, after each change; with ``--state`` also with what nodes answer, who are asked for
     ``parameters`` besides."""
-    if options.zenoh and len(domains) > 1:
-        raise UsageError("--watch through a router looks at one domain: give one with --domain")
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)
+    environs = {it: environ(it) for it in domains} or {0: environ(options.domain)}
     if options.zenoh:
         from multibot_rewrite.producers.zenoh import observe
 
-        with closing(observe.watch(asked, _router(options))) as seen:
-            yield from ({0: it} for it in seen)
-        return
-    from multibot_rewrite.producers.ros import child
+        looks = observe.watch(asked, {it: _router(options, environs[it]) for it in environs})
+    else:
+        from multibot_rewrite.producers.ros import child
 
-    environs = {it: environ(it) for it in domains} or {0: environ(options.domain)}
+        looks = child.watch(asked, environs)
     views: dict[int, System] = {}
-    with closing(child.watch(asked, environs)) as changes:
+    with closing(looks) as changes:
         for number, view in changes:
             views[number] = view
             if len(views) == len(environs):
                 yield {it: views[it] for it in environs}
 
 
-def _router(options: argparse.Namespace) -> Router:
-    """The domain is that of the option, else of ROS_DOMAIN_ID; it is a part of every key."""
+def _router(options: argparse.Namespace, given: Mapping[str, str]) -> Router:
+    """The domain is that of ROS_DOMAIN_ID in the environment; it is a part of every key."""
     from multibot_rewrite.producers.zenoh.observe import Router
 
-    return Router(options.zenoh, settings(environ(options.domain)).domain)
+    return Router(options.zenoh, settings(given).domain)
 
 
 def environ(domain: int | None = None) -> dict[str, str]:

@@ -68,10 +68,11 @@ def _saved(options: argparse.Namespace) -> Mapping[int, System]:
 
 
 def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System]) -> int:
+    _check_folders(options, views)
     each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
     for domain, one in each.items():
         note(options, f"domain {domain}: {next(survey(one))}")
-    return _report(options, diagnose_domains(each), [*_empty(each)])
+    return _report(options, diagnose_domains(each), [*_empty(each)], each)
 
 
 def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
@@ -81,30 +82,45 @@ def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
 
 def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
     live.check_source(options)
-    if domains and options.suggest:
-        raise UsageError("--suggest is for one domain: give one with --domain")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
         check_target(options.output, options.snapshot)
-    if options.suggest:
-        from multibot_rewrite.live.suggestion import FILES  # reads descriptions: as long as a check
+    _check_folders(options, domains)
 
-        for name in FILES:
-            path = os.path.join(options.suggest, name)
-            check_folder(path)
-            if os.path.lexists(path):
-                raise UsageError(f"{path} is there already; name another folder with --suggest")
+
+def _check_folders(options: argparse.Namespace, domains: Collection[int]) -> None:
+    """Raise UsageError where a suggestion would replace a file, or its folder cannot be made."""
+    if not options.suggest:
+        return
+    from multibot_rewrite.live.suggestion import FILES  # reads descriptions: as long as a check
+
+    folders = _folders(options, domains)
+    for path in (os.path.join(folder, name) for folder in folders for name in FILES):
+        check_folder(path)
+        if os.path.lexists(path):
+            raise UsageError(f"{path} is there already; name another folder with --suggest")
+
+
+def _folders(options: argparse.Namespace, domains: Collection[int]) -> list[str]:
+    """Where the files of a suggestion go: those of several domains each into a folder of its own."""
+    apart = [os.path.join(options.suggest, f"domain{it}") for it in domains]
+    return apart if len(apart) > 1 else [options.suggest]
 
 
 def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
     """Say what is seen, report the findings, write what is asked for; the exit code."""
     for line in survey(seen):
         note(options, line)
-    return _report(options, seen, [*_nothing_seen(seen.graph)])
+    return _report(options, seen, [*_nothing_seen(seen.graph)], {0: seen})
 
 
-def _report(options: argparse.Namespace, seen: Diagnosis, empty: Sequence[str]) -> int:
+def _report(
+    options: argparse.Namespace,
+    seen: Diagnosis,
+    empty: Sequence[str],
+    each: Mapping[int, Diagnosis],
+) -> int:
     """The findings, and what is asked for; ``empty`` says that there was nothing to see."""
     findings = chosen(options, seen.findings)
     failed = _listed(options, seen, findings)
@@ -113,7 +129,8 @@ def _report(options: argparse.Namespace, seen: Diagnosis, empty: Sequence[str]) 
         say(f"incomplete: {reason}", PROGRAM)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if failed else inconclusive
-    _write(options, seen, findings, _outcome(verdict, unsure))
+    _draw(options, seen, findings, _outcome(verdict, unsure))
+    _suggest(options, each)
     return _sum_up(options, findings, verdict)
 
 
@@ -128,25 +145,30 @@ def _nothing_seen(graph: System) -> Iterator[str]:
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
-def _write(
+def _draw(
     options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
-    """The report and the files that the options ask for."""
     if options.report:
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
-    if options.suggest:
-        from multibot_rewrite.base.editors import schema_line
-        from multibot_rewrite.knowledge.stacks import built_in
-        from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
-        files = suggestion(seen, built_in(release_here(options.distro)))
-        lines = {it: f"{schema_line(schema, options.suggest)}\n" for it, schema in SCHEMAS.items()}
-        paths = {
-            os.path.join(options.suggest, name): f"{lines.get(name, '')}{text}"
-            for name, text in files.items()
+
+def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
+    """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
+    if not options.suggest:
+        return
+    from multibot_rewrite.base.editors import schema_line
+    from multibot_rewrite.knowledge.stacks import built_in
+    from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
+
+    library = built_in(release_here(options.distro))
+    for folder, seen in zip(_folders(options, each), each.values(), strict=True):
+        lines = {it: f"{schema_line(schema, folder)}\n" for it, schema in SCHEMAS.items()}
+        files = {
+            os.path.join(folder, name): f"{lines.get(name, '')}{text}".encode()
+            for name, text in suggestion(seen, library).items()
         }
-        write_files(options, [(path, text.encode()) for path, text in paths.items()])
-        note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
+        write_files(options, files.items())
+        note(options, f"wrote {', '.join(files)}: see {next(iter(files))}")
 
 
 def _listed(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
@@ -166,24 +188,27 @@ def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
 
 
 def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
-    last = follow(_looking(), live.watched(options, domains=domains), WORDS)
+    each: dict[int, Diagnosis] = {}
+    last = follow(_looking(each), live.watched(options, domains=domains), WORDS)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
     if options.output:
         _listed(options, diagnose(last.graph), last.findings)
-    _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
+    _draw(options, diagnose(last.graph), last.findings, _outcome(final(last)))
+    _suggest(options, each)
     note(options, f"{counted_findings(last.findings)}: {in_words(last, _words(last.findings))}")
     return live.CODES[final(last)]
 
 
-def _looking() -> Look:
-    """What is found in one graph after another; a robot that ran is missed when it is gone."""
+def _looking(each: dict[int, Diagnosis]) -> Look:
+    """What is found in one graph after another, ``each`` of the last; a robot that ran is missed when
+    it is gone."""
     known: dict[str, set[str]] = {}
 
     def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
-        each = {at: diagnose(it) for at, it in views.items()}
+        each.update({at: diagnose(it) for at, it in views.items()})
         seen = diagnose_domains(each) if len(each) > 1 else next(iter(each.values()))
         there = {it.name for it in seen.graph.nodes if not is_tool(it.name)}
         for node in there:

@@ -58,8 +58,9 @@ def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
     shared = f"/{TF_TOPICS[0]}"
     # A base may send its own on a topic beside, from where a node sends it again (TurtleBot 4).
     tf, _ = max(topics, key=lambda it: len(it[1]), default=(shared, ()))
+    # tf2 takes a slash in front of a frame away.
     own = {
-        it
+        it.removeprefix("/")
         for edge in seen.graph.edges
         for it in (edge.child, edge.parent)
         if whose.frame_robot(it) == robot.name

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every error that the lint finds in a description is said by a fleet that has it, once."""
 
 from __future__ import annotations

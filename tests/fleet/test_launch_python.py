@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py`` as text: what each record of what is started becomes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py`` as a reviewer reads it: ament_flake8, ament_pep257, and a person.
 
 Source: ament_lint, ament_flake8/configuration/ament_flake8.ini, ament_pep257/main.py (D213 is on).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports of simulated robots: the numbers that the autopilots of the second and third instance take.
 
 Expected: ArduPilot libraries/AP_HAL_SITL/SITL_cmdline.cpp raises its ports by 10 for each instance

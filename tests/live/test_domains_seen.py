@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plan whose robots are in several ROS domains, held against what was seen in each."""
 
 from __future__ import annotations
@@ -168,8 +169,6 @@ def test_saved_snapshots_are_told_apart_by_their_domains(
     assert "give one of each of 10, 11, 12" in capsys.readouterr().err
     assert main([*words, "--domain", "13"]) == 2
     assert "the plan has no node there; it has 10, 11, 12" in capsys.readouterr().err
-    assert main([*words, "--watch", "--zenoh", "tcp/localhost:1"]) == 2
-    assert "--watch through a router looks at one domain" in capsys.readouterr().err
 
 
 SCAN, TWIST = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist"
@@ -213,6 +212,13 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     lidar = f"{spaces[0]}/lidar" if spaces[0] else "/lidar of domain 11"
     assert f"{like} has no lidar, as {who} has ({lidar})" in line
     assert page.read_text()
+    first = tmp_path / "first"
+    words = ["check", *saved(tmp_path, healthy), "--suggest", str(first)]
+    assert (main(words), main(words)) == (0, 2)
+    assert f"{first / 'domain11' / 'fleet.yaml'} is there already" in capsys.readouterr().err
+    for at in healthy:
+        one = ["--snapshot", str(tmp_path / f"{at}.json")]
+        assert main(["check", str(first / f"domain{at}" / "plan.yaml"), *one]) == 0
 
 
 def test_a_robot_without_a_name_that_vanishes_is_called_by_its_domain(

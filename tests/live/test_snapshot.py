@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pure half of a snapshot: the file, the environment, how answers of the graph fit together."""
 
 from __future__ import annotations
@@ -418,18 +419,19 @@ TOPICS = {
     "/one": ["std_msgs/msg/String"],
     "/nobody": ["std_msgs/msg/String"],
     "/robot1/tf": ["tf2_msgs/msg/TFMessage"],
+    "/robot1/amcl_pose": ["geometry_msgs/msg/PoseWithCovarianceStamped"],
     "/rosout": ["rcl_interfaces/msg/Log"],
 }
 ENDS = [
     end("/a", "/both"),
     end("/b", "/both", "subscribes"),
-    *(end("/a", name) for name in ("/one", "/robot1/tf", "/rosout")),
+    *(end("/a", name) for name in ("/one", "/robot1/tf", "/robot1/amcl_pose", "/rosout")),
 ]
 
 
 def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
     asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
-    assert asked == ["/both", "/nobody", "/robot1/tf", "/rosout"]
+    assert asked == ["/both", "/nobody", "/robot1/amcl_pose", "/robot1/tf", "/rosout"]
     assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
     assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults planted in a healthy fleet of two in Gazebo, and what check-launch says of them.
 
 Expectations: what the programs do with it, by their sources (the rules name them).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch file would start, read with the real launch and launch_ros; without them skipped.
 
 Expectations: what launch_ros passes to the processes, read in actions/node.py and
@@ -548,7 +549,7 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
 
 
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="it starts no node"):
+    with pytest.raises(InputError, match="starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
 
 

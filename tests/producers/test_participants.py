@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many participants run here, by their ports."""
 
 from __future__ import annotations
@@ -6,6 +7,7 @@ import socket
 import sys
 from collections.abc import Iterator
 from math import inf
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +17,7 @@ from multibot_rewrite.live.staged import stage
 from multibot_rewrite.producers.ros import assemble, observe
 from multibot_rewrite.producers.ros.participants import (
     lost_here,
+    make_room,
     participants_at,
     participants_here,
     sockets_in,
@@ -54,6 +57,23 @@ def port_in_use() -> Iterator[None]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
         own.bind(("127.0.0.1", 7400 + 250 * DOMAIN + 10))
         yield
+
+
+def test_a_socket_gets_room_and_stays_open(tmp_path: Path) -> None:
+    """Of datagrams alone: it is the middleware's, and no file, pipe or stream is touched."""
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own,
+        socket.socket() as stream,
+        open(tmp_path / "file", "w") as file,
+    ):
+        before = [it.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) for it in (own, stream)]
+        make_room()
+        after = [it.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) for it in (own, stream)]
+        own.bind(("127.0.0.1", 0))
+        file.write("open")
+    if sys.platform.startswith("linux"):
+        assert after[0] > before[0]
+    assert after[1] == before[1]
 
 
 @pytest.mark.usefixtures("port_in_use")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Healthy and broken systems through every source: silent, or one code for a fault wherever it is met.
 
 The faults come from thought (``graph_faults.py``), what a source lacks from its format.
@@ -42,7 +43,10 @@ def test_a_healthy_system_has_no_finding(name: str, source: str) -> None:
 @pytest.mark.more
 @pytest.mark.parametrize("name", TWINS)
 def test_what_looks_like_a_fault_and_is_none_has_no_finding(name: str) -> None:
-    assert [str(it) for it in diagnose(SOURCES["file"].read(TWINS[name]())).findings] == []
+    graph = SOURCES["file"].read(TWINS[name]())
+    seen = diagnose(graph)
+    assert [str(it) for it in seen.findings] == []
+    assert [str(it) for it in check(seen_plan(seen), graph)] == []
 
 
 @pytest.mark.slow

@@ -38,6 +38,10 @@ BUSY_MACHINE = "busy-machine"
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
+# Their QoS is wanted where nobody reads them, too: what is latched comes to no other reader.
+_LISTENED_TO = frozenset((
+    *TF_TYPES, "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseWithCovarianceStamped",
+))  # fmt: skip
 NO_ENCLAVES: Mapping[str, str] = {}
 # Of transforms: below a micrometre.
 _DIGITS = 9
@@ -166,7 +170,7 @@ def topics_to_query(
     return sorted(
         topic
         for topic, types in topics.items()
-        if len(sides[topic]) != 1 or topic in wanted or not set(TF_TYPES).isdisjoint(types)
+        if len(sides[topic]) != 1 or topic in wanted or not _LISTENED_TO.isdisjoint(types)
     )
 
 

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.ros.look import (
     receive,
     view,
 )
-from multibot_rewrite.producers.ros.participants import lost_here, participants_here
+from multibot_rewrite.producers.ros.participants import lost_here, make_room, participants_here
 from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
@@ -86,6 +86,7 @@ def _open_session(
     with ros.opened() as opened:
         lost = lost_here(opened.context.get_domain_id())
         node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
+        make_room()
         yield GraphSession(opened, node, request, stop, time.monotonic(), tell, lost)
 
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import ExitStack, closing
+from itertools import zip_longest
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
@@ -60,8 +62,20 @@ def look(request: Request, router: Router) -> System:
         return _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
 
 
-def watch(request: Request, router: Router) -> Generator[System, None, None]:
-    """Snapshots for ``request.timeout`` seconds, one after each change; raises as ``look``."""
+def watch(
+    request: Request, routers: Mapping[int, Router]
+) -> Generator[tuple[int, System], None, None]:
+    """Snapshots of each for ``request.timeout`` seconds, one after each change, with its number; raises
+    as ``look``."""
+    with ExitStack() as stack:
+        views = [stack.enter_context(closing(_views(request, it))) for it in routers.values()]
+        for seen in zip_longest(*views):
+            yield from ((at, it) for at, it in zip(routers, seen, strict=True) if it)
+            time.sleep(POLL_SECONDS)
+
+
+def _views(request: Request, router: Router) -> Generator[System | None, None, None]:
+    """At each poll a snapshot, or None where there is nothing new."""
     started = time.monotonic()
     try:
         with opened(router.address, request.timeout) as session:
@@ -145,7 +159,7 @@ def _cut_short(router: Router) -> Caveat:
 
 def _watch(
     session: RouterSession, request: Request, router: Router, started: float
-) -> Iterator[System]:
+) -> Iterator[System | None]:
     there: set[str] = set()
     tf = ZenohTf(session, router.domain)
     before: object = None
@@ -170,7 +184,7 @@ def _watch(
             seen = seen._replace(tf=tf.subscriptions, settled=QUIET if quiet else CHANGING)
             caveats = list(tf.caveats()) if connected else [_lost(router)]
             yield _snapshot(router, seen, now, caveats)
-        time.sleep(POLL_SECONDS)
+        yield None
     end()
 
 

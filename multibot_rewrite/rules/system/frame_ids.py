@@ -15,15 +15,15 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.system.index import Index, Tree, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, Edge, Place
+from multibot_rewrite.system.records import NOWHERE, Edge, Heard, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
-_MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry", "stereo_msgs/", "radar_msgs/")
+_ODOMETRY = "nav_msgs/msg/Odometry"
+_MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
 # Of no use without a frame.
 _PLACED = (
-    "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/Odometry",
-    "nav_msgs/msg/OccupancyGrid",
+    "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", _ODOMETRY, "nav_msgs/msg/OccupancyGrid",
 )  # fmt: skip
 
 
@@ -91,7 +91,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
     ERROR,
     absence=True,
     what="`header.frame_id` of messages is in no transform that the robot gets. For a name that is like"
-    " none of its frames it is a warning.",
+    " none of its frames it is a warning, and for odometry without `child_frame_id`.",
     why="tf cannot say where the sensor is: RViz shows nothing, costmaps and filters drop every message"
     " (`frame does not exist`).",
     fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has "
@@ -192,17 +192,27 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
 
 
 def _nameless(seen: Index) -> Iterator[Finding]:
-    """What a sensor or odometry sends without any frame: tf2 refuses it (an empty frame_id)."""
-    for topic, written, *_ in seen.system.heard:
-        type_, senders = sent_on(seen, topic)
-        if senders and not written and type_ in _PLACED:
+    """What a sensor or odometry sends without a frame: tf2 refuses an empty frame_id; whose speed it is
+    readers guess (robot_localization ros_filter.cpp: the base's)."""
+    for it in seen.system.heard:
+        type_, senders = sent_on(seen, it.topic)
+        field = _unsaid(it, type_)
+        if senders and field:
             yield frame_id_unknown.finding(
-                f"frame_id of {topic} is empty: tf cannot say where it was measured; sent by"
+                f"{field} of {it.topic} is empty: tf cannot say where it was measured; sent by"
                 f" {_who(senders)}",
                 f"set the frame of {_who(senders)}",
-                robot=seen.robot(topic) or only(robots_of(seen, senders)),
-                node=senders[0], names=(topic,),
+                level=WARNING if it.frame else ERROR,
+                robot=seen.robot(it.topic) or only(robots_of(seen, senders)),
+                node=senders[0], names=(it.topic,),
             )  # fmt: skip
+
+
+def _unsaid(it: Heard, type_: str) -> str:
+    if not it.frame and type_ in _PLACED:
+        return "frame_id"
+    # Its pose is known where all of the message was read.
+    return "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
 
 
 def _in_the_sensor(it: _Message) -> str:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A hint that is followed ends in "proved": each reason that a user can mend, with what its hint says.
 
 Expected: the word, and that the hint names what was written here (never what the code thinks of it).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in values that no site claims: where they are seen, and what is no name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What runs in a description and whether it is known what it opens, by the sources of the programs."""
 
 from __future__ import annotations
@@ -394,3 +395,19 @@ def test_a_class_of_ros2_control_is_no_plugin_of_gazebo() -> None:
     root = read_xml(robot(hardware("mock_components/GenericSystem")).encode(), "r.urdf")
     parts = list(active_parts(root, load_vocabulary((), NEWEST_LTS)))
     assert [it.kind for it in parts] == ["hardware class"]
+
+
+@pytest.mark.parametrize(
+    ("name", "library", "known"),
+    [
+        ("drone", "libplugin_drone.so", True),
+        # gz-sim loads a class by its name, which is no node's: another library of that file name.
+        ("sjtu_drone::DroneSimpleController", "libplugin_drone.so", False),
+        ("a::label", "libgazebo_ros_diff_drive.so", True),
+    ],
+)
+def test_a_class_of_gz_sim_is_no_plugin_of_classic(name: str, library: str, known: bool) -> None:
+    inside = f'<gazebo><plugin name="{name}" filename="{library}"/></gazebo>'
+    root = read_xml(robot(inside).encode(), "r.urdf")
+    (part,) = active_parts(root, load_vocabulary((), NEWEST_LTS))
+    assert part.is_known == known

@@ -1,10 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """A real router and sessions of robots on loopback: what is seen through it, and what is said."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -47,6 +49,11 @@ def fleet(address: str, domain: int, names: tuple[str, ...] = BOTH) -> Iterator[
 
 def seen(address: str, domain: int, **more: tuple[str, ...]) -> System:
     return look(Request(10.0, **more), Router(address, domain))
+
+
+def watched(address: str, domain: int) -> Generator[System, None, None]:
+    with closing(watch(Request(20.0), {domain: Router(address, domain)})) as changes:
+        yield from (it for _, it in changes)
 
 
 def check(plan: Path, address: str, domain: int) -> int:
@@ -182,7 +189,7 @@ def test_expected_nodes_are_waited_for(address: str) -> None:
 
 
 def test_watching_shows_what_comes_and_goes(address: str) -> None:
-    graphs = watch(Request(20.0), Router(address, 11))
+    graphs = watched(address, 11)
     try:
         with fleet(address, 11, ("robot1",)) as there:
             first = next(it for it in graphs if it.nodes)
@@ -200,9 +207,26 @@ def test_watching_shows_what_comes_and_goes(address: str) -> None:
     assert not gone.edges and "no-router" not in codes(gone)
 
 
+def test_several_domains_are_watched_side_by_side(
+    address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What leaves one of them is told with its number, and the other is still there."""
+    with fleet(address, 16, ("robot1",)):
+        changes = watch(Request(20.0), {it: Router(address, it) for it in (16, 17)})
+        with fleet(address, 17, ("robot2",)):
+            nodes = {at: it.nodes for at, it in islice(changes, 2)}
+            words = ["check", "--watch", "--zenoh", address, "--domain", "16,17"]
+            assert main([*words, "--timeout", "1"]) == 0
+        gone = next(it for it in changes if not it[1].nodes)
+        changes.close()
+    assert [it.name for own in nodes.values() for it in own] == ["/robot1/drive", "/robot2/drive"]
+    assert (*nodes, gone[0]) == (16, 17, 17)
+    assert "2/2 nodes" in capsys.readouterr().out
+
+
 def test_a_router_that_ends_is_no_robot_that_left() -> None:
     with router() as address, fleet(address, 12):
-        graphs = watch(Request(20.0), Router(address, 12))
+        graphs = watched(address, 12)
         next(it for it in graphs if it.environment.settled != CHANGING and len(it.nodes) == 2)
     lost = next(it for it in graphs if "no-router" in codes(it))
     graphs.close()
@@ -222,7 +246,7 @@ def test_a_session_configuration_is_a_router(tmp_path: Path, address: str) -> No
 @pytest.mark.deep
 def test_a_graph_that_goes_on_changing_is_shown_as_changing(address: str) -> None:
     with fleet(address, 15) as there:
-        graphs = watch(Request(20.0), Router(address, 15))
+        graphs = watched(address, 15)
         next(graphs)
         stop = threading.Event()
 
