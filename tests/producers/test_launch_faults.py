@@ -474,9 +474,12 @@ _AMCL = (
 _CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
 _GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
 _SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
-_SPAWN_AS = _SPAWN.replace(
-    '"-file", {}', '"{}", "--string", "<robot name=\'r\'><link name=\'a\'/></robot>"'
+_R = "\"<robot name='r'><link name='a'/></robot>\""
+_SPAWN_AS = _SPAWN.replace('"-file", {}', f'"{{}}", "--string", {_R}')
+_TURNED = _STATIC.replace(
+    '"r1/odom"', '"r1/odom", "--qx", "0", "--qy", "{}", "--qz", "0", "--qw", "0"'
 )
+_TURNED = _TURNED.replace("{}arg", "arg")
 _BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
@@ -524,6 +527,19 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     ),
     # ros_gz_sim jazzy create.cpp reads its words by gflags.
     "one name, by two dashes": ("MG701", True, "", (_SPAWN_AS.format("--name=a"),) * 2),
+    "one name, by parameters": (
+        *("MG701", True, ""),
+        (
+            _SPAWN.replace(
+                'arguments=["-file", {}]', f'parameters=[{{"name": "a", "string": {_R}}}]'
+            ),
+        )
+        * 2,
+    ),
+    "one name, of the description": ("MG701", True, "", (_SPAWN_AS.format("--z=0"),) * 2),
+    # All four of a quaternion count.
+    "half a turn": ("MG711", False, "", (_TURNED.format(1),)),
+    "no turn": ("MG711", True, "", (_TURNED.format(0),)),
     "two names, by two dashes": (
         *("MG701", False, ""),
         (_SPAWN_AS.format("--name=a"), _SPAWN_AS.format("--name=b")),
