@@ -475,6 +475,7 @@ _CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
 _GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
 _SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
 _R = "\"<robot name='r'><link name='a'/></robot>\""
+_SPAWN_BY = _SPAWN.replace('arguments=["-file", {}]', "parameters=[{}]")
 _SPAWN_AS = _SPAWN.replace('"-file", {}', f'"{{}}", "--string", {_R}')
 _TURNED = _STATIC.replace(
     '"r1/odom"', '"r1/odom", "--qx", "0", "--qy", "{}", "--qz", "0", "--qw", "0"'
@@ -529,12 +530,7 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     "one name, by two dashes": ("MG701", True, "", (_SPAWN_AS.format("--name=a"),) * 2),
     "one name, by parameters": (
         *("MG701", True, ""),
-        (
-            _SPAWN.replace(
-                'arguments=["-file", {}]', f'parameters=[{{"name": "a", "string": {_R}}}]'
-            ),
-        )
-        * 2,
+        (_SPAWN_BY.format('{"name": "a", "string": ' + _R + "}"),) * 2,
     ),
     "one name, of the description": ("MG701", True, "", (_SPAWN_AS.format("--z=0"),) * 2),
     # All four of a quaternion count.
