@@ -17,6 +17,7 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.producers.launch.findings import not_read
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
 from multibot_rewrite.rules.launch.judge import judge_launch, placed
@@ -38,6 +39,8 @@ def run(options: argparse.Namespace) -> int:
         if not it.incomplete:
             note(options, it.message)
     found = [*judge_launch(made), *named_findings(made)]
+    if options.format != "text":
+        found += not_read(made.graph)
     if plan is not None:
         return check.conclude(options, plan, made.system, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.

@@ -474,9 +474,13 @@ _AMCL = (
 _CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
 _GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
 _SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
-_SPAWN_AS = _SPAWN.replace(
-    '"-file", {}', '"{}", "--string", "<robot name=\'r\'><link name=\'a\'/></robot>"'
+_R = "\"<robot name='r'><link name='a'/></robot>\""
+_SPAWN_BY = _SPAWN.replace('arguments=["-file", {}]', "parameters=[{}]")
+_SPAWN_AS = _SPAWN.replace('"-file", {}', f'"{{}}", "--string", {_R}')
+_TURNED = _STATIC.replace(
+    '"r1/odom"', '"r1/odom", "--qx", "0", "--qy", "{}", "--qz", "0", "--qw", "0"'
 )
+_TURNED = _TURNED.replace("{}arg", "arg")
 _BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
@@ -524,6 +528,14 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     ),
     # ros_gz_sim jazzy create.cpp reads its words by gflags.
     "one name, by two dashes": ("MG701", True, "", (_SPAWN_AS.format("--name=a"),) * 2),
+    "one name, by parameters": (
+        *("MG701", True, ""),
+        (_SPAWN_BY.format('{"name": "a", "string": ' + _R + "}"),) * 2,
+    ),
+    "one name, of the description": ("MG701", True, "", (_SPAWN_AS.format("--z=0"),) * 2),
+    # All four of a quaternion count.
+    "half a turn": ("MG711", False, "", (_TURNED.format(1),)),
+    "no turn": ("MG711", True, "", (_TURNED.format(0),)),
     "two names, by two dashes": (
         *("MG701", False, ""),
         (_SPAWN_AS.format("--name=a"), _SPAWN_AS.format("--name=b")),
@@ -548,6 +560,7 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         ('SetLaunchConfiguration("a", "1")', _GROUP.format('LaunchConfiguration("a")')),
     ),
     "a condition that is a text": ("MG721", True, "", (_GROUP.format('"true"'),)),
+    "a file that includes itself": ("MG721", True, "", ("IncludeLaunchDescription(__file__)",)),
     "no condition": ("MG721", False, "", (_GROUP.format("None"),)),
     # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
     "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
@@ -588,6 +601,16 @@ def test_a_file_says_what_it_has_to_be_given(
     assert "'robot' is not set; give it with robot:=VALUE" in capsys.readouterr().err
     main(["check-launch", str(tmp_path / LAUNCH), "robot:=r1"])
     assert "is not set" not in capsys.readouterr().err
+
+
+def test_what_is_not_known_is_in_json_with_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    of_nodes(tmp_path, _DRIVER, 'SetLaunchConfiguration("a", LaunchConfiguration("b"))', head=_HEAD)
+    code, found = found_in(tmp_path, capsys)
+    (told,) = (it for it in found if it["code"] == "MF823")
+    line = (tmp_path / LAUNCH).read_text().splitlines()[int(str(told["line"])) - 1]
+    assert (code, told["level"]) == (3, "inconclusive") and "SetLaunchConfiguration" in line
 
 
 def test_files_that_a_package_of_sources_lacks(

@@ -8,6 +8,8 @@ actions/load_composable_nodes.py.
 from __future__ import annotations
 
 import sys
+import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,7 @@ from paths import ROOT
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.launch import missing
+from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.door import of_launch_ros
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
@@ -59,6 +62,7 @@ NAMES = HEAD.count("\n")
 IN_THE_CHILD = (
     "test_a_node_is_under_the_group_that_has_it",
     "test_a_launch_file_that_cannot_be_read_is_one_line",
+    "test_nothing_of_a_launch_file_stays",
     "test_without_launch_a_stand_in_reads_and_says_so",
 )
 
@@ -959,3 +963,32 @@ def test_what_the_stand_in_does_not_read_has_its_name_in_a_note(
     file.write_text(f"import launch\n{HEAD}{coroutine},\n    ])\n")
     (note,) = launch_graph(LaunchOrder(str(file), (), (), True)).notes
     assert "OpaqueCoroutine" in note.message or "LaunchService" in note.message
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("waits", [False, True])
+def test_nothing_of_a_launch_file_stays(
+    waits: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that it starts itself, folders for what it makes; whether it ends or is ended."""
+    made, file, number = tmp_path / "made", tmp_path / "a.launch.py", tmp_path / "number"
+    made.mkdir()
+    monkeypatch.setattr(child, "SECONDS", 3 if waits else 120)
+    monkeypatch.setattr("tempfile.tempdir", str(made))
+    started = f"subprocess.Popen(['sleep', '987'], cwd={str(tmp_path)!r})"
+    kept = f"open({str(number)!r}, 'w').write(str({started}.pid))"
+    file.write_text(f"import subprocess, time\n{kept}\ntime.sleep({987 if waits else 0})\n")
+    with pytest.raises(InputError, match="took more than 3 s" if waits else "cannot be read"):
+        launch_graph(LaunchOrder(str(file), (), (), True))
+    assert not [*made.iterdir()]
+    until = time.monotonic() + 10
+    while runs(number.read_text()) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not runs(number.read_text())
+
+
+def runs(process: str) -> bool:
+    """Not as one that has ended, which nobody asks for."""
+    with suppress(OSError):
+        return bool(Path("/proc", process, "cmdline").read_bytes())
+    return False

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
+import tempfile
+from contextlib import suppress
 
 from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.file_kinds import LAUNCH, refuse_others
@@ -41,23 +44,36 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
 
 
 def _asked(order: LaunchOrder) -> LaunchGraph:
-    environ = {**variables(), _INSIDE: "1"}
-    command = python(_MODULE)
-    try:
-        done = subprocess.run(
-            command,
-            input=to_json(order),
-            capture_output=True,
-            text=True,
-            errors="replace",
-            env=environ,
-            timeout=SECONDS,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise InputError(f"{order.file}: reading it took more than {SECONDS} s; stopped") from None
-    if done.returncode == 0 and done.stdout:
-        return graph_of(done.stdout)
-    lines = [it.strip() for it in done.stderr.splitlines() if it.strip()]
-    last = lines[-1] if lines else f"exit code {done.returncode}"
+    with tempfile.TemporaryDirectory(prefix="multibot_launch_") as folder:
+        code, answer, said = _run(order, folder)
+    if code == 0 and answer:
+        return graph_of(answer)
+    lines = [it.strip() for it in said.splitlines() if it.strip()]
+    last = lines[-1] if lines else f"exit code {code}"
     raise InputError(f"{order.file}: the launch file cannot be read: {last}")
+
+
+def _run(order: LaunchOrder, folder: str) -> tuple[int, str, str]:
+    """Exit code, answer and errors. What a launch file starts itself ends with the process that reads
+    it, and what it makes is in ``folder``."""
+    environ = {**variables(), _INSIDE: "1", "TMPDIR": folder}
+    with open(f"{folder}/answer", "w+b") as out, open(f"{folder}/said", "w+b") as said:
+        process = subprocess.Popen(
+            python(_MODULE),
+            stdin=subprocess.PIPE,
+            stdout=out,
+            stderr=said,
+            env=environ,
+            start_new_session=True,
+        )
+        try:
+            process.communicate(to_json(order).encode(), timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            problem = f"{order.file}: reading it took more than {SECONDS} s; stopped"
+            raise InputError(problem) from None
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        texts = [it.read().decode("utf-8", "replace") for it in (out, said) if it.seek(0) == 0]
+        return process.returncode, texts[0], texts[1]

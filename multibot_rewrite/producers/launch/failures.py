@@ -42,6 +42,8 @@ def failure(error: BaseException) -> str:
     name = missing_package(error) or missing_module(error)
     if name:
         return not_installed(name)
+    if isinstance(error, RecursionError):
+        return "it includes or calls itself without an end"
     if known := _known(error):
         return known
     text = " ".join(f"{type(error).__name__}: {error}".split())
@@ -159,7 +161,7 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
         folder = os.path.dirname(os.path.realpath(launch_file))
         return os.path.realpath(str(error.filename or "")).startswith(f"{folder}/")
     frame = _frame(error)
-    if is_no_condition(error):
+    if is_no_condition(error) or isinstance(error, RecursionError):
         return True
     own = frame is not None and frame.f_code.co_filename.endswith(".launch.py")
     # What is taken of a module that is not there does not fail where it is.

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
@@ -91,6 +91,15 @@ def launch_findings(
             hint = "leave out the stack, or name the launch file that starts it, too"
             place = Place(next((it.place.file for it in graph.nodes), ""), 1)
             yield NOT_LAUNCHED.finding(message, hint, **_place(place))
+
+
+def not_read(graph: LaunchGraph) -> Iterator[Finding]:
+    """What of a launch is not known, for those who read no lines of a terminal; each once."""
+    first: dict[str, Place] = {}
+    for note in (it for it in graph.notes if not it.fails):
+        first.setdefault(note.message, note.place)
+    for message, place in first.items():
+        yield NOT_WHOLE.finding(message, "", level=INCONCLUSIVE, **_place(place))
 
 
 def _place(place: Place) -> dict[str, object]:
