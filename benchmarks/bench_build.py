@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure ``multibot build`` on 100 robots with Nav2's full set, against other ways, in one run.
 
 python benchmarks/bench_build.py            print the table

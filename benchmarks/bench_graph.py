@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure the checking of a live graph, with real nodes on this machine, in one run.
 
 python benchmarks/bench_graph.py            print the table

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure how the cost of a rewrite and of the lint grows: what twice as much costs, in CPU time.
 
 python benchmarks/bench_growth.py            print the table

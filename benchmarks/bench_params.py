@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure parameter files against other ways to namespace them: ratios, taken in pairs in one run.
 
 python benchmarks/bench_params.py [FILE]            print the table

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure the rewrite against its floors: ratios of CPU time, all taken in one run.
 
 python benchmarks/bench_rewrite.py                    print the tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small bugs in a Python file, as people make them: an operator, constant, condition or statement."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which test calls which function of the package: a plugin of pytest for ``planted_bugs.py``.
 
 With CALLED set it writes a file of JSON there: function, as ``file:line`` -> the tests that call it.

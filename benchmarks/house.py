@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The house in figures: rooms, lines, functions, and what runs for a command.
 
 python benchmarks/house.py                  this checkout

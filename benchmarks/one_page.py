@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of all measurements: each program writes a section of its own."""
 
 from __future__ import annotations

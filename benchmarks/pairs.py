@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ratios that hold on a busy machine: CPU time, the least of each side, both sides in turn in one run.
 
 CPU time is that of the process and of its ended children, user and system. Other processes can only

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Do the tests notice? Plants bugs in a copy of the repository, one at a time, and runs the fast tests.
 
 python benchmarks/planted_bugs.py                     6 bugs in each room, and the table

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robot descriptions that real people wrote: what is made for measuring flatters who made it."""
 
 from __future__ import annotations

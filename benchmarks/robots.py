@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot of any size, with what real ones hold: fixed and moving joints, blocks, plugins."""
 
 from __future__ import annotations

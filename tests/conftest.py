@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shared set-up: repeatable property tests, and loud skips where test data is not there."""
 
 from __future__ import annotations

@@ -165,7 +165,7 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
 def _unread(unknown: str, told: str) -> tuple[str, str]:
     """What nobody has read: the build says each by its name, or not."""
     names = unknown.removeprefix("unknown: ").split(", ")
-    silent = [it for it in names if it not in told]
+    silent = [it for it in names if it.rpartition(" ")[2] not in told]
     return ("drive: unknown" if silent else "drive: the build says what is not known"), unknown
 
 

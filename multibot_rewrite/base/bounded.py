@@ -11,6 +11,7 @@ from __future__ import annotations
 import errno
 import os
 import re
+import stat
 from collections.abc import Callable, Iterable
 from functools import cache
 from itertools import accumulate
@@ -29,6 +30,8 @@ MAX_DEPTH = 100
 # What aliases may stand for, together: MoveIt's files repeat some hundred values.
 MAX_REPEATED = 100_000
 MAX_DIGITS = 100
+# Where `<(xacro ...)` and standard input are.
+_OF_A_SHELL = ("/dev/", "/proc/")
 _TAG = "tag:yaml.org,2002:"
 _TEXT = f"{_TAG}str"
 # Of YAML 1.1, as PyYAML has them.
@@ -46,7 +49,9 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
-    is too large, and ValueError for a path that no system takes."""
+    is too large or a pipe in a folder, and ValueError for a path that no system takes."""
+    if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
+        raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
         size = min(os.fstat(file.fileno()).st_size, limit)

@@ -11,7 +11,7 @@ from multibot_rewrite.cli.changed import deliver_changed
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
-from multibot_rewrite.refactor.adopt import adopt
+from multibot_rewrite.refactor.adopt import Adopted, adopt
 
 
 def run(options: argparse.Namespace) -> int:
@@ -24,6 +24,11 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=options.in_place)
+    _tell(options, made)
+    return DONE
+
+
+def _tell(options: argparse.Namespace, made: Adopted) -> None:
     if made.argument:
         many = plural(len(made.proved), "description")
         if made.configurations:
@@ -44,4 +49,3 @@ def run(options: argparse.Namespace) -> int:
         note(options, f"{one.place}: left as it is: {one.why}")
     for path, why in made.unread.items():
         note(options, f"not looked at: {why or path}")
-    return DONE

@@ -17,7 +17,7 @@ from multibot_rewrite.cli.folders import change_folder, check_inside, clear_left
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
-from multibot_rewrite.cli.walk import is_same_file
+from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
@@ -49,9 +49,10 @@ def run(options: argparse.Namespace) -> int:
     check_report(options, printed=False)
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
+    if not os.path.lexists(options.fleet):
+        raise UsageError(f"{options.fleet} is not there; multibot init PATH... writes a fleet file")
     choice = Choice(number=options.count or 0)
     fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
-    fleet = fleet._replace(shape=options.shape or fleet.shape)
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
@@ -101,6 +102,7 @@ def _check_inputs(folder: str, files: Iterable[OutputFile], read: Collection[str
 
 
 def _check_folder(folder: str) -> None:
+    check_link(folder)
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise UsageError(f"{folder}: it is a file; name a folder")
 

@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.file_kinds import SNAPSHOT, recognised
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
@@ -124,9 +125,16 @@ def _check_use(options: argparse.Namespace) -> None:
 
 
 def plan_of(options: argparse.Namespace) -> System:
-    """The plan that a file holds, or that follows from a fleet file."""
+    """The plan that a file holds, or that follows from a fleet file; of an earlier snapshot that all
+    of it is there again."""
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
+    if recognised(data) == SNAPSHOT:
+        from multibot_rewrite.live.diagnose import diagnose
+        from multibot_rewrite.live.seen_plan import seen_plan
+        from multibot_rewrite.producers.snapshot_file import read_snapshot
+
+        return seen_plan(diagnose(read_snapshot(path)))
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr
@@ -67,7 +68,10 @@ def run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
-    return _deliver(options, made)
+    done = _deliver(options, made)
+    if made.others and not seen.named:
+        note(options, _one_of_several(made))
+    return done
 
 
 def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
@@ -129,6 +133,13 @@ def _deliver(options: argparse.Namespace, made: Proposal) -> int:
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
     return STOPPED if made.notes else DONE
+
+
+def _one_of_several(made: Proposal) -> str:
+    """Which description was taken, and how another one is."""
+    (taken,) = made.members
+    many, other = len(made.others) + 1, shlex.quote(made.others[0])
+    return f"{taken.looked.path} is one of {many} descriptions; for another: multibot init {other}"
 
 
 def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.model import UsageError
@@ -14,12 +14,12 @@ from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.companions.join import Joined, join, split
-from multibot_rewrite.description.joining.from_file import parts_of
+from multibot_rewrite.description.joining.from_file import listed_in
 from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
 
 # Options that are written for each part.
-_OF_PARTS = ("at", "pose", "prefix", "srdf", "controllers", "moveit", "rviz", "one_system")
+_OF_PARTS = ("at", "pose", "prefix")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -29,10 +29,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _join(options: argparse.Namespace) -> int:
-    parts = list(_parts(options))
-    samples = options.samples or 0
-    if samples and not any(it.srdf for it in parts):
-        raise UsageError("--samples is for an SRDF: give --srdf, too")
+    parts, samples = _listed(options) if options.words[0].endswith(JOIN) else (_parts(options), 0)
     made = join(
         parts,
         vocabulary=options.vocabulary,
@@ -78,9 +75,9 @@ def _write(
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
         raise UsageError("--split takes one file, which multibot join made")
-    given = next((it for it in ("output", "samples", *_OF_PARTS) if getattr(options, it)), None)
+    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
     if given:
-        raise UsageError(f"{_option(given)} is for joining, it cannot go with --split")
+        raise UsageError(f"--{given} is for joining, it cannot go with --split")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
     items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
@@ -88,25 +85,18 @@ def _split(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _parts(options: argparse.Namespace) -> Iterator[Part]:
+def _parts(options: argparse.Namespace) -> list[Part]:
     """The parts as the words name them: each file with the xacro arguments behind it."""
-    if options.words[0].endswith(JOIN):
-        yield from _listed(options)
-        return
     files = _files(options.words)
     many = len(files)
     ends = _for_each("--at", options.at, many)
     poses = _for_each("--pose", options.pose, many)
     prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
-    srdfs = _of_each("--srdf", options.srdf, many)
-    controllers = _of_each("--controllers", options.controllers, many)
-    moveit = _of_each("--moveit", options.moveit, many)
-    rviz = _of_each("--rviz", options.rviz, many)
-    every = zip(files, ends, poses, prefixes, srdfs, controllers, moveit, rviz, strict=True)
-    for (file, given), at, pose, prefix, srdf, yaml, plans, window in every:
-        where = at, _numbers(pose), prefix
-        some, others = (tuple(filter(None, it.split(","))) for it in (yaml, plans))
-        yield Part(file, *where, "", given, srdf or None, some, options.one_system, others, window)
+    every = zip(files, ends, poses, prefixes, strict=True)
+    return [
+        Part(file, at, _numbers(pose), prefix, "", given)
+        for (file, given), at, pose, prefix in every
+    ]
 
 
 def _files(words: Sequence[str]) -> list[tuple[str, dict[str, str]]]:
@@ -122,29 +112,22 @@ def _files(words: Sequence[str]) -> list[tuple[str, dict[str, str]]]:
     return files
 
 
-def _listed(options: argparse.Namespace) -> Sequence[Part]:
-    """The parts that a file lists, which says everything of them."""
-    more = [*options.words[1:], *(_option(it) for it in _OF_PARTS if getattr(options, it))]
+def _listed(options: argparse.Namespace) -> tuple[Sequence[Part], int]:
+    """The parts that a file lists, which says everything of them, and the poses that are tried."""
+    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
     if more:
         raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
-    return parts_of(options.words[0])
-
-
-def _option(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
+    return listed_in(options.words[0])
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
     """The value for each part; the first part has none unless there is one for all."""
     if of_all and len(values) == many:
         return list(values)
-    return ["", *_of_each(option, values, many - 1, " behind the first")]
-
-
-def _of_each(option: str, values: Sequence[str], many: int, which: str = "") -> list[str]:
-    if not values or len(values) == many:
-        return list(values) or [""] * many
-    what = f"{option} is there {plural(len(values), 'time')} for {plural(many, 'part')}{which}"
+    if not values or len(values) == many - 1:
+        return ["", *(values or [""] * (many - 1))]
+    parts = f"{plural(many - 1, 'part')} behind the first"
+    what = f"{option} is there {plural(len(values), 'time')} for {parts}"
     raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
 
 

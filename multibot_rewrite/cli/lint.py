@@ -230,7 +230,7 @@ def check_use(options: argparse.Namespace) -> None:
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
     """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
     # What trusted files look at is not known.
-    if options.no_cache or options.trust:
+    if options.trust:
         yield None
         return
     from multibot_rewrite.lint.cache.cache import Cache, cache_folder, identity

@@ -12,6 +12,7 @@ from itertools import pairwise, takewhile
 from typing import NoReturn
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
@@ -188,9 +189,24 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         parser.error(wrong)
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:
-        parser.error(f"unexpected {' '.join(unknown)}; a list is written A,B")
+        what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}; a list is written A,B"
+        parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
     return options
+
+
+def _kind_of(word: str, program: str) -> str:
+    """What a file is that a command does not take, and which one does."""
+    from multibot_rewrite.base.bounded import read_bytes
+    from multibot_rewrite.base.file_kinds import refuse_others
+
+    try:
+        refuse_others(read_bytes(word), word)
+    except InputError as error:
+        return "" if program in str(error) else str(error)
+    except (OSError, ValueError):
+        return ""
+    return ""
 
 
 def _colour_asked(words: Sequence[str]) -> str:

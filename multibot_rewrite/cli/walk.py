@@ -82,14 +82,14 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 
 def check_link(target: str) -> None:
-    """Raise UsageError where ``target`` is a link to a file outside of its folder: a result would
+    """Raise UsageError where ``target`` is a link out of its folder: a result would
     replace what nobody named. The links of the system, as /dev/stdout is, are what they lead to."""
     folder = os.path.realpath(os.path.dirname(target) or ".")
     if not os.path.islink(target) or folder.startswith(("/dev", "/proc")):
         return
     real = os.path.realpath(target)
     if os.path.commonpath((real, folder)) != folder:
-        raise UsageError(f"{target} is a link to {real}; name that file, if it is meant")
+        raise UsageError(f"{target} is a link to {real}; name that, if it is meant")
 
 
 def is_same_file(path: str, other: str) -> bool:

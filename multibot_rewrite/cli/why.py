@@ -42,7 +42,8 @@ def _place(text: str) -> tuple[str, int]:
 
 
 def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
-    yield f"{path}:{item.line}:{item.column}: {item.path}"
+    within = f", of {item.within}" if item.within else ""
+    yield f"{path}:{item.line}:{item.column}: {item.path}{within}"
     yield from _facts(item, robot)
     if item.made_of:
         yield f"  made of: {' + '.join(item.made_of)}"

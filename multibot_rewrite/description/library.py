@@ -28,10 +28,11 @@ from multibot_rewrite.description.sources.read import Source, is_xacro
 from multibot_rewrite.description.sources.world_systems import put_back
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING, collect
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.reports.explain import Explanation
+    from multibot_rewrite.description.reports.explain_xacro import OnLine
 
 
 class Prepared:
@@ -274,7 +275,8 @@ def explain(
     distro: str = "",
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``; of a
-    xacro, about those that the element on this line of the file makes, and of which pieces.
+    xacro, about those that something on this line makes, and of which pieces: an element, the call of a
+    macro, a property. Of a file that others include, it is what the line makes in one of them.
 
     The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
     the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
@@ -282,24 +284,23 @@ def explain(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     release = release_told(distro)
-    job = read_job(
-        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
-    )
-    from multibot_rewrite.description.reports.explain import (
-        explain_line,  # a rewrite does not need it
-    )
-
-    urdf_declarations = job.urdf_declarations
-    document = read_document(job.data, job.file)
-    inventory = collect(document, job.tree, urdf_declarations, naming.read_as)
-    pipeline.check_urdf(inventory, urdf_declarations)
-    on_line = partial(explain_line, inventory, job.naming, job.tree, robot)
-    if isinstance(source, bytes) or not is_xacro(os.fspath(source)):
-        return on_line(line)
+    # A rewrite does not need it.
+    from multibot_rewrite.description.reports.explain import explain_line
     from multibot_rewrite.description.reports.explain_xacro import explain_source
 
+    def explaining(whole: Source) -> tuple[Document, OnLine]:
+        job = read_job(
+            whole, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
+        )
+        document = read_document(job.data, job.file)
+        inventory = collect(document, job.tree, job.urdf_declarations, naming.read_as)
+        pipeline.check_urdf(inventory, job.urdf_declarations)
+        return document, partial(explain_line, inventory, job.naming, job.tree, robot)
+
+    if isinstance(source, bytes) or not is_xacro(os.fspath(source)):
+        return explaining(source)[1](line)
     given = filled(xacro_args or {}, robot)
-    return explain_source(os.fspath(source), given, trust, document, line, on_line)
+    return explain_source(os.fspath(source), line, given, trust, explaining)
 
 
 @checked

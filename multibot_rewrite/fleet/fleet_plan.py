@@ -57,6 +57,13 @@ class FleetPlan(NamedTuple):
         """What one robot's own files say; raises nothing."""
         return self.evidence[node_sources(robot.spec)]
 
+    @property
+    def of_rewrites(self) -> list[Finding]:
+        """What the rewrites of the robots say, but for what the fleet says itself at the line."""
+        told = {(it.code, it.file, it.line) for it in self.fleet.table.problems}
+        every = (it for robot in self.robots for it in robot.findings)
+        return [it for it in every if (it.code, it.file, it.line) not in told]
+
 
 def plan_fleet(
     file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False

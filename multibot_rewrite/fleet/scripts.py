@@ -170,8 +170,7 @@ def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
 
 
 def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
-    found = (it for robot in plan.robots for it in robot.findings)
-    return tuple(dict.fromkeys((*found, *plan.fleet.table.problems)))
+    return tuple(dict.fromkeys((*plan.of_rewrites, *plan.fleet.table.problems)))
 
 
 def _refuse(findings: Iterable[Finding]) -> None:

@@ -106,7 +106,7 @@ def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings,
     look = partial(recorded, partial(set_among, paths, settings))
     if not any(path.endswith(".xacro") for path in paths):
         return look()
-    from multibot_rewrite.lint.workers import limit_time, worker_pool
+    from multibot_rewrite.base.workers import limit_time, worker_pool
 
     def within(_: str) -> tuple[Settings, Asked | None]:
         limit_time(settings.seconds)
@@ -124,8 +124,8 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
     in_this_process = not any(path.endswith(".xacro") for path in paths)
     if in_this_process and (jobs == 1 or len(paths) <= FEW):
         return list(watch(recorded(partial(lint_file, path, settings)) for path in paths))
+    from multibot_rewrite.base.workers import limit_time, worker_pool
     from multibot_rewrite.lint.failures import lost, too_long
-    from multibot_rewrite.lint.workers import limit_time, worker_pool
 
     def lint(path: str) -> Linted:
         limit_time(settings.seconds + GRACE)

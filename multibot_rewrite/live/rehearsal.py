@@ -41,9 +41,9 @@ from multibot_rewrite.system.records import (
     edge_of,
 )
 
-TF = "tf2_msgs/msg/TFMessage"
-# The types used in place of one that is not installed.
-SUBSTITUTE_TYPES = {TOPIC: "std_msgs/msg/Empty", SERVICE: "std_srvs/srv/Empty", ACTION: ""}
+TF, EMPTY = "tf2_msgs/msg/TFMessage", "std_msgs/msg/Empty"
+# The types used in place of one that is not installed; an action's is seen by its feedback.
+SUBSTITUTE_TYPES = {TOPIC: EMPTY, SERVICE: "std_srvs/srv/Empty", ACTION: EMPTY}
 TF_SUBSTITUTE = "geometry_msgs/msg/TransformStamped"
 # Types of an action's parts that are the same for every action.
 PART_TYPES = {

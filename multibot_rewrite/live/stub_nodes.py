@@ -105,14 +105,13 @@ def _create_endpoint(
 ) -> Iterator[Publish]:
     """Create one endpoint, with a substitute where its type is not installed."""
     type_ = _installed(endpoint.type)
-    if type_ is None and endpoint.kind == ACTION:
-        stubs.replaced[endpoint.type] = "its services and topics"
-        for part in action_parts(endpoint):
-            yield from _create_endpoint(stubs, node, part, ())
-        return
     if type_ is None:
         substitute = substitute_type(endpoint.kind, endpoint.type)
         stubs.replaced.update({endpoint.type: substitute} if endpoint.type else {})
+        if endpoint.kind == ACTION:
+            for part in action_parts(endpoint):
+                yield from _create_endpoint(stubs, node, part, ())
+            return
         type_ = _installed(substitute)
     if endpoint.kind == TOPIC and endpoint.role == PUBLISHES:
         yield from _create_publisher(stubs, node, type_, endpoint, edges)

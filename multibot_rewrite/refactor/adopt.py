@@ -32,22 +32,20 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.refactor.configurations import configurations
 from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.launch_argument import Space
-from multibot_rewrite.refactor.launches import with_launches
+from multibot_rewrite.refactor.launches import Trial, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
-from multibot_rewrite.refactor.namespaces import (
-    namespaced,
-    space_proved,
-)
+from multibot_rewrite.refactor.namespaces import namespaced, space_proved
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
+    Package,
     as_named,
     inventory_of,
     read_package,
@@ -108,38 +106,43 @@ def adopt(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
-    unread = dict(package.unread)
-    arguments = {it.path: _arguments(it, tree, how) for it in package.descriptions}
+    job = _Job(folder, package, tree, how, dict(package.unread))
+    arguments = {it.path: _arguments(it, job) for it in package.descriptions}
     already = {path: name for path, its in arguments.items() if (name := _first(its, _is_prefix))}
-    others = [it for it in package.descriptions if it.path not in already]
-    found = list(_as_xacros(others, tree, how, unread))
+    found = list(_as_xacros((it for it in package.descriptions if it.path not in already), job))
     if not found and not already:
-        why = next(iter(unread.values()), f"{folder}: there is no description of a robot in it")
-        raise InputError(why)
+        nothing = f"{folder}: there is no description of a robot in it"
+        raise InputError(next(iter(job.unread.values()), nothing))
     if not found:
-        return Adopted("", {}, {}, (), (), unread, already)
-    found = list(_configured(found, how, tree, unread))
-    own = {it.path: _first(arguments.get(it.path, ()), _is_space) for it in found}
-    made = _with_namespace(found, own, how, tree)
-    made = _with_files_beside(made, folder, package.found, found, trust)
-    return made._replace(unread=unread, already=already)
+        return Adopted("", {}, {}, (), (), job.unread, already)
+    own = {path: _first(its, _is_space) for path, its in arguments.items()}
+    found = list(_configured(found, job))
+    made = _with_files_beside(_with_namespace(found, own, job), found, job)
+    return made._replace(unread=job.unread, already=already)
 
 
-def _with_files_beside(
-    made: Adopted, folder: str, there: Found, found: Sequence[Description], trust: bool
-) -> Adopted:
+class _Job(NamedTuple):
+    """The package to adopt; ``unread`` gets what cannot be expanded."""
+
+    folder: str
+    package: Package
+    tree: Tree
+    how: Expanding
+    unread: dict[str, str]
+
+
+def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
     """With launch files and the parameters that they fill in, and what other files name."""
-    names = set(_names(found))
+    there, names = job.package.found, set(_names(found))
     urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
     filled = fillable(there.params, urdfs, names, made.argument, TRIED)
     space = Space(made.namespace or SPACES[0], bool(made.namespace))
-    launches = with_launches(
-        folder, there.launch, made.argument, made.after, TRIED, trust, filled, space
-    )
+    how = Trial(made.argument, TRIED, job.how.reach.trust, filled, space)
+    launches = with_launches(job.folder, there.launch, made.after, how)
     # A plain description that becomes a xacro is one of them.
     files = {file for it in found for file in (*it.sources, it.path.removesuffix(".xacro"))}
     files |= {it.path for it in filled.values() if it.path in launches.after}
-    elsewhere = [*named_elsewhere(folder, names, set(map(os.path.realpath, files)))]
+    elsewhere = [*named_elsewhere(job.folder, names, set(map(os.path.realpath, files)))]
     elsewhere += root_sections(there.params) if made.namespace else ()
     return made._replace(
         before={**made.before, **{path: read_file(path) for path in launches.after}},
@@ -149,13 +152,11 @@ def _with_files_beside(
     )
 
 
-def _configured(
-    found: Sequence[Description], how: Expanding, tree: Tree, unread: dict[str, str]
-) -> Iterator[Description]:
+def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description]:
     """Each description with its other configurations; SRDFs after the URDFs whose names they have."""
     urdfs: list[Inventory] = []
     for it in sorted(found, key=_is_srdf):
-        own = [it, *configurations(it, how, tree, urdfs, unread)]
+        own = [it, *configurations(it, job.how, job.tree, urdfs, job.unread)]
         urdfs += () if _is_srdf(it) else (one.inventory for one in own)
         yield from own
 
@@ -175,51 +176,55 @@ def _made(
     edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument), *more}
     after = edited(texts, edits)
     every = zip(found, made.changes, strict=True)
-    faults = [(it, _fault(it, changes, after, argument, how)) for it, changes in every]
-    wrong = [(it, why) for it, why in faults if why]
-    paths = dict.fromkeys(it.path for it in found)
-    if len({it.path for it, _ in wrong}) == len(paths):
-        it, why = wrong[0]
-        raise InputError(f"{it.words}: {_ALONE}; {why}")
-    # One with a name that is left has some without the prefix.
-    unmade = {found[at].path for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
-    unmade |= {it.path for it, _ in wrong}
-    proved = tuple(path for path in paths if path not in unmade)
+    wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
+    wrong = {at: why for at, why in wrong.items() if why}
+    lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
+    proved = _proved(found, wrong, lacking)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
-        *(Left(it.words, f"its names are not proved: {why}") for it, why in wrong),
+        *(Left(found[at].words, f"its names are not proved: {it}") for at, it in wrong.items()),
     )
     named = as_named(after, found)
     before = {path: data for path, data in as_named(texts, found).items() if path in named}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
-    others = tuple(it.words for it, why in faults if it.arguments and not why)
+    others = tuple(it.words for at, it in enumerate(found) if it.arguments and at not in wrong)
     return Adopted(argument, before, named, proved, left, {}, configurations=others), after
 
 
-def _with_namespace(
-    found: Sequence[Description], own: Mapping[str, str], how: Expanding, tree: Tree
-) -> Adopted:
-    """With the argument for a namespace, too, where one changes names alone; ``own`` are arguments that
+def _proved(
+    found: Sequence[Description], wrong: Mapping[int, str], lacking: Collection[int]
+) -> tuple[str, ...]:
+    """The descriptions without a configuration that is ``wrong`` or ``lacking`` the prefix of a name.
+    Raises InputError where each has a wrong one."""
+    paths = dict.fromkeys(it.path for it in found)
+    if len({found[at].path for at in wrong}) == len(paths):
+        at, why = next(iter(wrong.items()))
+        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
+    unmade = {found[at].path for at in (*wrong, *lacking)}
+    return tuple(path for path in paths if path not in unmade)
+
+
+def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
+    """With an argument for a namespace, too, where one changes names alone; ``own`` are arguments that
     descriptions have for that already, by their paths."""
-    texts = texts_of(found)
-    prefix = free_name(found)
-    has = (
-        Left(path, f"it has an argument for a namespace: {it}") for path, it in own.items() if it
+    texts, prefix = texts_of(found), free_name(found)
+    has = {it.path: own.get(it.path, "") for it in found}
+    space = namespaced([] if any(has.values()) else found, texts, job.tree)
+    left = [*space.left]
+    left += (
+        Left(path, f"it has an argument for a namespace: {it}") for path, it in has.items() if it
     )
-    space = namespaced([] if any(own.values()) else found, texts, tree)
-    left = (*space.left, *has)
     if space.argument:
         try:
-            made, after = _made(found, texts, prefix, how, space.edits)
-            proved, wrong = space_proved(space, prefix, TRIED, after, how, tree)
+            made, after = _made(found, texts, prefix, job.how, space.edits)
+            proved, wrong = space_proved(space, prefix, TRIED, after, job.how, job.tree)
         except InputError as error:
             proved, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
-        left = (*left, *wrong)
+        left += wrong
         if proved:
-            left = (*made.left, *left)
-            return made._replace(left=left, namespace=space.argument, spaced=proved)
-    made, _ = _made(found, texts, prefix, how)
+            return made._replace(left=(*made.left, *left), namespace=space.argument, spaced=proved)
+    made, _ = _made(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 
 
@@ -227,18 +232,14 @@ def _is_srdf(it: Description) -> bool:
     return it.inventory.format != "robot"
 
 
-def _is_meant(it: Description) -> bool:
-    """A URDF or an SRDF."""
-    return it.inventory.format in ("robot", "srdf.robot")
-
-
-def _arguments(it: Description, tree: Tree, how: Expanding) -> Sequence[Argument]:
+def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
     """The arguments of a xacro that are called as those for a robot's names."""
     if it.read is None or it.inventory.format != "robot":
         return ()
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        found = find_arguments(it.path, how.arguments, tree, reach=how.reach, wanted=names_robots)
+        reach, given = job.how
+        found = find_arguments(it.path, given, job.tree, reach=reach, wanted=names_robots)
     return found.arguments
 
 
@@ -266,18 +267,23 @@ def _names(found: Iterable[Description]) -> Iterator[str]:
     yield from (name for names in declared for name in names if name not in shared)
 
 
-def _as_xacros(
-    descriptions: Iterable[Description], tree: Tree, how: Expanding, unread: dict[str, str]
-) -> Iterator[Description]:
-    """Each description as a xacro; those that cannot be one are noted in ``unread``."""
-    for it in filter(_is_meant, descriptions):
-        if it.read is None and os.path.exists(f"{it.path}.xacro"):
-            unread[it.path] = f"{it.path}: its xacro is beside it; make it anew from that"
+def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:
+    """Each description as a xacro; those that cannot be one are noted as unread."""
+    for it in descriptions:
+        if it.inventory.format not in ("robot", "srdf.robot"):
+            continue
+        why = ""
+        if not _is_srdf(it) and not it.inventory.declared.get("link"):
+            why = f"it has no link; {robot_instead(it.path)}"
+        elif it.read is None and os.path.exists(f"{it.path}.xacro"):
+            why = "its xacro is beside it; make it anew from that"
+        if why:
+            job.unread[it.path] = f"{it.path}: {why}"
             continue
         try:
-            yield it if it.read else _as_xacro(it, tree, how)
+            yield it if it.read else _as_xacro(it, job.tree, job.how)
         except InputError as error:
-            unread[it.path] = str(error)
+            job.unread[it.path] = str(error)
 
 
 def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:

@@ -12,8 +12,6 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from tempfile import TemporaryDirectory
-from types import MappingProxyType
-from typing import Any
 
 import yaml
 
@@ -42,7 +40,7 @@ class Launches(NamedTuple):
     left: tuple[Left, ...]
 
 
-class _Trial(NamedTuple):
+class Trial(NamedTuple):
     """How a launch file is tried: the argument and a value of it, whether the file may run, the
     parameter files that it may fill in, by their names, and its namespace."""
 
@@ -61,47 +59,41 @@ class _Verdict(NamedTuple):
 
 
 def with_launches(
-    folder: str,
-    launches: Collection[str],
-    argument: str,
-    after: Mapping[str, bytes],
-    prefix: str,
-    trust: bool,
-    parameters: Mapping[str, Filled] = MappingProxyType({}),
-    space: Space | None = None,
+    folder: str, launches: Collection[str], after: Mapping[str, bytes], how: Trial
 ) -> Launches:
     """The launch files that expand a description of ``after``, files by their paths. One that does not
-    hand the argument on, tried with ``prefix``, is left as it was. Of the ``parameters``, by their
-    names, those are filled in that no other file names and that are proved with their launch file; so
-    is a namespace, ``space``, given where it is proved."""
-    names = {os.path.basename(it) for it in after}
+    hand the argument on is left as it was. Of the parameter files those are filled in that no other
+    file names and that are proved with their launch file; so is a namespace given."""
     texts = {path: read_file(path) for path in launches}
     alone = {
         name: it
-        for name, it in parameters.items()
+        for name, it in how.parameters.items()
         if sum(name.encode() in text for text in (*texts.values(), *after.values())) == 1
     }
-    found = Launches({}, (), ())
-    for path, text in texts.items():
-        tries: list[tuple[Mapping[str, Filled], Space | None]]
-        tries = [(alone if trust else {}, space), ({}, space), ({}, None)]
-        one = Launches({}, (), ())
-        for filled, spaced in tries:
-            made = with_argument(path, text, argument, names, filled, spaced)
-            how = _Trial(argument, prefix, trust, filled, spaced if made.spaced else None)
-            one = _one(folder, path, made, after, how)
-            if path in one.after or not (made.filled or made.spaced):
-                break
-        found = Launches(*(_both(*it) for it in zip(found, one, strict=True)))
-    return found
+    how = how._replace(parameters=alone if how.trust else {})
+    made = [_tried(folder, path, text, after, how) for path, text in texts.items()]
+    return Launches(
+        {path: data for it in made for path, data in it.after.items()},
+        tuple(path for it in made for path in it.proved),
+        tuple(one for it in made for one in it.left),
+    )
 
 
-def _both(one: Any, other: Any) -> Any:
-    return {**one, **other} if isinstance(one, Mapping) else (*one, *other)
+def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how: Trial) -> Launches:
+    """A launch file with all that is asked for, or with less of it, as far as that is proved."""
+    names = {os.path.basename(it) for it in after}
+    plain = how._replace(parameters={})
+    one = Launches({}, (), ())
+    for it in (how, plain, plain._replace(space=None)):
+        made = with_argument(path, text, it.argument, names, it.parameters, it.space)
+        one = _one(folder, path, made, after, it if made.spaced else it._replace(space=None))
+        if path in one.after or not (made.filled or made.spaced):
+            break
+    return one
 
 
 def _one(
-    folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: _Trial
+    folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: Trial
 ) -> Launches:
     """One launch file with what it fills in, as far as it is proved."""
     argument = how.argument
@@ -129,7 +121,7 @@ def _read(
     folder: str,
     files: Mapping[str, bytes],
     path: str,
-    how: _Trial,
+    how: Trial,
     filled: Sequence[Filled],
 ) -> _Verdict:
     """A launch file in a copy of the package."""
@@ -158,7 +150,7 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _verdict(order: LaunchOrder, how: _Trial, filled: Sequence[Filled]) -> _Verdict:
+def _verdict(order: LaunchOrder, how: Trial, filled: Sequence[Filled]) -> _Verdict:
     argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)

@@ -9,10 +9,18 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterator
+from contextlib import suppress
+from itertools import chain
 
+import yaml
+
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.wording import plural
+from multibot_rewrite.companions.params.sections import MANAGER
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.refactor.launch_argument import OF_ROBOT
 from multibot_rewrite.refactor.placing import Left
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
@@ -41,15 +49,29 @@ def named_elsewhere(
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
-    """Sections of parameter files whose nodes are in no namespace. Source: rcl_yaml_param_parser."""
-    for path in paths:
-        data = read_file(path)
-        found = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
+    """Sections of parameter files whose nodes are in no namespace, of nodes that get it: the robot's
+    own and its controllers. Source: rcl_yaml_param_parser."""
+    texts = {path: read_file(path) for path in paths}
+    own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
+    for path, data in texts.items():
+        every = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
+        found = [(line, name) for line, name in every if name in own]
         if found:
             line, name = found[0]
-            more = f", and {len(found) - 1} sections more" if len(found) > 1 else ""
+            more = f", and {plural(len(found) - 1, 'section')} more" if len(found) > 1 else ""
             why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"
             yield Left(f"{path}:{line}", why)
+
+
+def _controllers(data: bytes) -> Iterator[str]:
+    """The controllers that a parameter file gives its manager."""
+    with suppress(yaml.YAMLError, ValueError):
+        sections = load_yaml(data.decode())
+        manager = sections.get(MANAGER) if isinstance(sections, dict) else None
+        given = manager.get("ros__parameters") if isinstance(manager, dict) else None
+        for name, value in given.items() if isinstance(given, dict) else ():
+            if isinstance(value, dict) and "type" in value:
+                yield str(name)
 
 
 def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:

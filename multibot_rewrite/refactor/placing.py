@@ -62,20 +62,24 @@ def placed(
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
     deep = _made_elsewhere(names)
-    others = _not_alone(names)
+    stay = {it.made for it in names if it.made and it.change is None}
+    others = stay.union(*(it.other for it in names))
     made = Placed([], [[] for _ in found], [])
     for name in names:
         if name.change is None:
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
         if spot is None or (spot == name.made and spot in others):
-            it = found[name.of]
-            where = place_of(it.read, name.change.element) or it.path
-            made.left.append(Left(where, f"{name.change.value!r} is put together"))
+            made.left.append(_left(found[name.of], name.change, spot in stay))
             continue
         made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
     return made
+
+
+def _left(it: Description, change: Change, stays: bool) -> Left:
+    why = "stays with other arguments or elsewhere" if stays else "is put together"
+    return Left(place_of(it.read, change.element) or it.path, f"{change.value!r} {why}")
 
 
 def _names(of: int, it: Description, changes: Iterable[Change]) -> Iterator[_Name]:
@@ -173,13 +177,3 @@ def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
         if not more:
             return deep
         deep |= more
-
-
-def _not_alone(names: Iterable[_Name]) -> set[Spot | None]:
-    """The pieces that make something besides names that get the prefix, each at its beginning."""
-    found: set[Spot | None] = set()
-    for it in names:
-        found |= it.other
-        if it.change is None:
-            found.add(it.made)
-    return found

@@ -21,6 +21,7 @@ from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
@@ -114,19 +115,17 @@ def rename_symbol(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
-    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not package.descriptions:
         raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
+    return _renamed(symbol, package, folder, how)
+
+
+def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> Renaming:
+    """The package with the name changed in its descriptions and the files beside."""
+    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
         raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
     _check_free(symbol, package, changes)
-    return _renamed(symbol, package, changes, how)
-
-
-def _renamed(
-    symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]], how: Expanding
-) -> Renaming:
-    """The package with the changes of its descriptions made, by their paths, and the files beside."""
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
     _prove(package, changes, after, how)
@@ -161,12 +160,18 @@ def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
 
 
 def _check_free(symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]]) -> None:
-    """The new name is not that of another one; a link is a frame, too."""
+    """Nothing in the folder has or uses the new name: it would be one with the old. A link is a frame,
+    too."""
     kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
-        taken = [one for one in _known(it, kinds) if one.text == symbol.new]
-        if changes[it.path] and taken:
-            raise UsageError(f"{it.path} has a {taken[0].kind} {symbol.new!r} already")
+        for one in chain.from_iterable(it.inventory.names):
+            own = (one.kind,) if one.kind else one.kinds
+            if one.text == symbol.new and not set(own).isdisjoint(kinds):
+                what = f"has a {one.kind}" if one.kind else f"uses the {symbol.kind}"
+                raise UsageError(f"{it.path} {what} {symbol.new!r} already")
+    for path, _, file, starts in _files_with(symbol.new, kinds, package, changes):
+        line, _ = locate(file.text.encode(), len(file.text[: min(starts)].encode()))
+        raise UsageError(f"{path}:{line} uses the {symbol.kind} {symbol.new!r} already")
 
 
 def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
@@ -232,19 +237,32 @@ def _beside(
     after: Mapping[str, bytes],
 ) -> Iterator[tuple[str, tuple[bytes, int]]]:
     """The files beside the descriptions that change, with their bytes and in how many places."""
+    kinds = KINDS[symbol.kind]
+    for path, data, file, starts in _files_with(symbol.old, kinds, package, changes):
+        if os.path.realpath(path) not in after:
+            made = respelled(file, data, starts, len(symbol.old), symbol.new)
+            yield path, (made, len(starts))
+
+
+def _files_with(
+    name: str,
+    kinds: Collection[str],
+    package: Package,
+    changes: Mapping[str, Sequence[Change]],
+) -> Iterator[tuple[str, bytes, NamedFile, set[int]]]:
+    """The files beside the descriptions that have a name of these kinds, and where in their text."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
     found = package.found
     for path in (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees):
         data = read_bytes(path)
-        if symbol.old.encode() not in data or os.path.realpath(path) in after:
+        if name.encode() not in data:
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, described)
-            starts = set(starts_of(file, (symbol.old,), KINDS[symbol.kind]))
+            starts = set(starts_of(file, (name,), kinds))
             if starts:
-                made = respelled(file, data, starts, len(symbol.old), symbol.new)
-                yield path, (made, len(starts))
+                yield path, data, file, starts
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Child processes are made in one place, and run nothing of the folder that they are in."""
 
 from __future__ import annotations

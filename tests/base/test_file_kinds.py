@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a file is, by its text, and what each command says of another one than it takes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a name of each kind becomes for a robot, and how it is taken away again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A report in every format, whole: readers of CI services take each word of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words in messages: lists, counts, what was meant, releases, text that a terminal may show."""
 
 from __future__ import annotations

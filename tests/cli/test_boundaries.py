@@ -1,27 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a command writes and reads only if it was named: links of an output, what a fleet file names."""
 
 from __future__ import annotations
 
+import os
+import tempfile
 from pathlib import Path
 from subprocess import run
 
 import pytest
 
+from multibot_rewrite.base import workers
 from multibot_rewrite.base.child import python
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.walk import check_link
 from multibot_rewrite.producers.bags import read
 
+PIPES = (
+    "package.xml", "manifest.json", "pyproject.toml", "urdf-lint.toml", "model.config", "r.srdf",
+    "nav.yaml", "a.rviz", "a.lua", "tree.xml", "a.mcap", "a.launch.py", "mesh.stl",
+)  # fmt: skip
 
-def test_an_output_that_is_a_link_out_of_its_folder(tmp_path: Path) -> None:
+
+def test_an_output_that_is_a_link_out_of_its_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path / "file")
     (folder / "near").symlink_to(folder / "deep" / "file")
-    with pytest.raises(UsageError, match=r"is a link to .*/file; name that file"):
+    with pytest.raises(UsageError, match=r"is a link to .*/file; name that"):
         check_link(str(folder / "link"))
     for name in ("near", "none", "/dev/stdout"):
         check_link(str(folder / name))
+    (folder / "fleet.yaml").write_text("robots: [{name: a, description: a.urdf}]\n")
+    (folder / "out").symlink_to(tmp_path)
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 2
+    assert "out is a link to " in capsys.readouterr().err
 
 
 @pytest.mark.more
@@ -51,14 +67,49 @@ def test_a_file_of_another_kind_is_not_copied_by_a_fleet(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("before", [b"", b"\x50\x2a\x4d\x18\1\0\0\0x"], ids=["plain", "skipped"])
-@pytest.mark.parametrize("name", ["a.db3.zstd", "a.db3"])
+@pytest.mark.parametrize("mode", ["FILE", "MESSAGE", "STORAGE"])
 def test_a_bag_that_unpacks_to_more_than_a_bound(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, before: bytes
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: str
 ) -> None:
-    """Its metadata say what is packed, whatever the file is called."""
-    zstd = pytest.importorskip("rosbags.rosbag2.reader").zstd
-    (tmp_path / name).write_bytes(before + zstd.compress(bytes(5_000_000)))
+    """A file, a message, a chunk of an MCAP: each is some kB of zeros packed."""
+    made_bags, rosbag2 = pytest.importorskip("made_bags"), pytest.importorskip("rosbags.rosbag2")
+    storage = rosbag2.StoragePlugin[("SQLITE3", "MCAP")[mode == "STORAGE"]]
+    writer = rosbag2.Writer(tmp_path / "bag", version=9, storage_plugin=storage)
+    writer.set_compression(rosbag2.CompressionMode[mode], rosbag2.CompressionFormat.ZSTD)
+    with writer:
+        tf = writer.add_connection("/tf", made_bags.TF, typestore=made_bags.STORE)
+        writer.write(tf, 0, bytes(100_000_000))
+    monkeypatch.setattr(workers, "MOST_MEMORY", 50_000_000)
     monkeypatch.setattr(read, "LEAST_UNPACKED", 1_000_000)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     with pytest.raises(InputError, match="unpacks to more than"):
-        read.read_bag(str(tmp_path))
+        read.read_bag(str(tmp_path / "bag"))
+    assert [it.name for it in tmp_path.iterdir()] == ["bag"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        "urdf_lint .",
+        "urdf_postfix r.urdf robot1",
+        "multibot init r.urdf",
+        "multibot build fleet.yaml -o ../out",
+        "multibot check --bag a.mcap",
+        "multibot check-launch a.launch.py",
+    ],
+)
+def test_a_pipe_in_a_folder_is_not_waited_for(tmp_path: Path, words: str) -> None:
+    """An archive may hold pipes under the names that are looked for beside a description."""
+    (tmp_path / "r").mkdir()
+    for name in PIPES:
+        os.mkfifo(tmp_path / "r" / name)
+    (tmp_path / "r" / "r.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    (tmp_path / "r" / "fleet.yaml").write_text("robots: [{name: robot1, description: r.urdf}]\n")
+    command, *rest = words.split()
+    said = run(
+        [*python(f"multibot_rewrite.cli.{command}"), *rest],
+        cwd=tmp_path / "r", capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert said.returncode in (0, 1, 2)
+    assert "Traceback" not in said.stderr

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``build`` and ``inspect CODE`` say and refuse, without a fleet."""
 
 from __future__ import annotations
@@ -31,10 +32,13 @@ def changes(**given: Any) -> OutputChanges:
 
 
 def test_a_fleet_has_a_robot(tmp_path: Path) -> None:
-    given = options(
-        output=str(tmp_path / "out"), undo=False, select=[], ignore=[], format="text", count=0
-    )
+    usual = {"undo": False, "select": [], "ignore": [], "format": "text", "fleet": "no.yaml"}
+    given = options(output=str(tmp_path / "out"), count=0, **usual)
     assert said(build.run, given) == "--count 0: a fleet has at least one robot"
+    given.count = None
+    assert (
+        said(build.run, given) == "no.yaml is not there; multibot init PATH... writes a fleet file"
+    )
 
 
 def test_a_build_goes_into_a_folder_and_not_over_its_input(tmp_path: Path) -> None:

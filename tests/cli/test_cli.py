@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command as a person meets it: what it prints, writes and returns, run as a process."""
 
 from __future__ import annotations

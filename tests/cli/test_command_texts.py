@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What commands print, from records made by hand: the view of a graph, reports, help, exit codes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``--distro`` of the commands about descriptions: the option, the configuration, or ROS_DISTRO."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results are written whole or not at all, whenever the program or the machine stops."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a xacro reads is known to every command that expands it: no result is written over it, and an
 argument that none of its files knows is a warning."""
 

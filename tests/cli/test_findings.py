@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """--select, --ignore, --fail-on and --format on every command that reports findings."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is open in a robot: plan, remap and check say the same, and a verdict does not hide it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot plan --form table`` as a person meets it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No name of a file, a description or the live graph steers the terminal or fakes a line."""
 
 from __future__ import annotations

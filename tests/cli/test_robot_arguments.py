@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments of a xacro with a robot's name, on the command lines that take NAME:=VALUE."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shell completions and manual pages: kept in share/, and what the declared options make of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a terminal shows while a graph is looked at, and what is said where the time was over."""
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ def test_a_healthy_view_has_nothing_wrong_so_far() -> None:
     seen = small_fleet.healthy("L2")
     assert so_far(seen, judge) == f"{len(seen.nodes)} nodes so far, nothing wrong"  # type: ignore[arg-type]
     assert so_far(seen, None) == f"{len(seen.nodes)} nodes so far, nothing wrong"
+    assert so_far(seen._replace(nodes=(), ends=()), None) == "0 nodes so far"
 
 
 def test_what_contradicts_is_shown_and_what_is_missing_is_not() -> None:

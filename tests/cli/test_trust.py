@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command that reads a xacro file expands it behind the fences, and ``--trust`` lifts them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What options mean: robots, arguments, the source of a graph, files that are read and written."""
 
 from __future__ import annotations
@@ -317,7 +318,7 @@ def test_a_link_out_of_its_folder_is_not_written_through(tmp_path: Path) -> None
     link.symlink_to(tmp_path / "far")
     inside.symlink_to("near")
     assert said(walk.check_link, str(link)) == (
-        f"{link} is a link to {tmp_path / 'far'}; name that file, if it is meant"
+        f"{link} is a link to {tmp_path / 'far'}; name that, if it is meant"
     )
     for fine in (str(inside), str(tmp_path / "plain"), "/dev/stdout"):
         walk.check_link(fine)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the values of options are read as."""
 
 from __future__ import annotations

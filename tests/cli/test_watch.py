@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``check --watch`` shows of one view after the other, without nodes: as lines and as a screen."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What commands do not take together, and what a watch ends with: no process, no file of a robot."""
 
 from __future__ import annotations

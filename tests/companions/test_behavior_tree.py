@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Behavior trees: ports at any depth, through the blackboard, byte for byte."""
 
 from __future__ import annotations

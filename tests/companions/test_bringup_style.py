@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files for nav2_bringup, which puts them below the robot's namespace with PyYAML.
 
 What is done with the file is read in nav2_common: rewritten_yaml.py (``{root_key: data}``, written by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of Gazebo as the rewritten description and the spawned model have them."""
 
 from __future__ import annotations

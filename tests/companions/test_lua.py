@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cartographer's Lua: plain assignments are spelled, everything else stays and is told."""
 
 from __future__ import annotations

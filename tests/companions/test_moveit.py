@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MoveIt's YAML files: what each kind names, what stays, and what a person is told."""
 
 from __future__ import annotations

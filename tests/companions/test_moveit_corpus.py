@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MoveIt's files of public repositories: intended scalars change and nothing else, or a true reason.
 
 What is expected is worked out here from the parsed text; nothing of it comes from the package.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a file beside a description is not, or cannot hold, is said in one line."""
 
 from __future__ import annotations

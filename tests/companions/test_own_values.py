@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one node has for itself: ports and files that it writes, as build gives them to each robot.
 
 rosbridge_suite rosbridge_websocket.py binds ``port``, robot_localization ros_filter.cpp writes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files: sections, names, defaults, and each pitfall of such files by its name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files by release: prefixes before frames, slashes, what is deprecated or not sent.
 
 Expectations are from ros2_controllers (diff_drive_controller.cpp, steering_controllers_library.cpp,

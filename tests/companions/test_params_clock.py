@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``use_sim_time`` of a fleet file in parameter files, which count more than a launch argument."""
 
 from __future__ import annotations

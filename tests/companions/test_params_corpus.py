@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every real parameter file is rewritten as far as names go, or refused for a reason on record."""
 
 from __future__ import annotations

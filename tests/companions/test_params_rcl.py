@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rewritten parameter files in the real rcl: every node gets what it got, with its names respelled."""
 
 from __future__ import annotations

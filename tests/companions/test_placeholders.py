@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands for a robot in vendors' files means the same in parameters, RViz, bridges and trees.
 
 Expected: a name as if the file were for one robot without a namespace, with the robot's name then.

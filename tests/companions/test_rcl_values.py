@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters with the types that rcl gives them (rcl_yaml_param_parser parse.c, get_value)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One RViz config for robots: groups, tools, views, frames, colours, and what is said about it."""
 
 from __future__ import annotations

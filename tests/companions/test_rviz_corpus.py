@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every public RViz config is made one for robots with only names changed, or refused truly."""
 
 from __future__ import annotations

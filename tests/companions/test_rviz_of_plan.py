@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The RViz configs of a fleet that has none: what a display names is in the plan, of its robot."""
 
 from __future__ import annotations

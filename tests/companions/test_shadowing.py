@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What comes first and what comes inside: sections that count before others, tools in braces."""
 
 from __future__ import annotations

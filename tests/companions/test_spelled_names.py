@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a name in a file beside a description becomes, by its kind and by the layout."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pieces of YAML texts: whole lines, values with their quotes, slots for robots, kinds of files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plugin with parameters of ROS 1 in a robot of ROS 2 is the one of ROS 2: it gets a namespace."""
 
 from __future__ import annotations

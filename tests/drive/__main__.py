@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a built folder starts, drives, sees and plans: ``python tests/drive FOLDER``.
 
 A line for each robot, then what is wrong. It ends with 0 where all is well, 1 where something is

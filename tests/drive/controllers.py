@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ros2_control: managers, the description that each gets, controllers that are spawned in them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A short film: two robots of an example in one MuJoCo scene, each driven by its own cmd_vel.
 
 ``python tests/drive/film.py``, with rclpy, mujoco and pillow, writes docs/pictures/two-robots.gif.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A built folder as it would run: launch, or a stand-in for it, executes its launch file, each program
 opens what the sources of its package say, the real rcl resolves every name, tables stand in for Gazebo.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What simulators make of a description: systems, sensors and plugins with the names that they open.
 
 The tables beside this file were read in the sources of gz-sim, gz-sensors and gazebo_ros_pkgs.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What sdformat leaves of a description, as Gazebo loads it: links, joints, sensors, plugins.
 
 ``sdf -p`` says it where it is installed and not older than 12.7; else it is read here by the rules of

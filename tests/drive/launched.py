@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the real launch starts of a built launch file: ``python launched.py FILE [NAME:=VALUE ...]``.
 
 It prints what ``started.py`` prints, which stands in where launch is not installed. No program runs:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lifecycle nodes: each is asked for by a manager that starts by itself, or by its launch file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes that are started, before their names are resolved: name, rules, parameters, ends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots in one MuJoCo scene, their drives and controllers stood in for, and who sends commands.
 
 ``python physics_child.py SPEC``: SPEC is JSON, {"robots": [...], "send": [[topic, kind, values], ...],

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Built folders that were spoiled: what was changed, and what a robot does not do then."""
 
 from __future__ import annotations

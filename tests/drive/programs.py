@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a program opens by the sources of its package, from which ``fixtures/interfaces`` was read.
 
 ``opened`` gives the names of the code, or those of the parameters that lead elsewhere.

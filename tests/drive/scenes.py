@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots of a built fleet, as the scene of ``physics_child.py`` wants them, and the scene played.
 
 Names come from the folder as the referee reads it; commands, odometry, tf and states go through DDS.

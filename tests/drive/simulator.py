@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The simulator of a folder: its world, what it keeps of each robot, and what does not work there."""
 
 from __future__ import annotations

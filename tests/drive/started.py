@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a built launch file starts: ``python started.py FILE [NAME:=VALUE ...]`` prints it as JSON.
 
 A stand-in for launch and launch_ros that runs no program, for files as ``multibot build`` writes them:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Built fleets would start, drive, see and plan; folders that were spoiled by hand would not.
 
 Each example is built by the command and judged by ``verdict``, which imports nothing of the package.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the drive test says that sdformat keeps is what sdformat keeps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which nodes a lifecycle manager calls (nav2_lifecycle_manager and nav2_util of Humble and Jazzy)."""
 
 from __future__ import annotations

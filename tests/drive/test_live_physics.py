@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two robots of a built fleet in one MuJoCo scene: a command for the first moves the first alone.
 
 Names come from the folder as the referee reads it; commands, odometry, tf and joint states go through

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stand-in for launch starts what the real launch starts: the same processes, parameters, rules."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The referee is not the judged: nothing of the package is loaded while it judges a folder."""
 
 from __future__ import annotations

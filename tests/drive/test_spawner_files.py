@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The type of a controller, where ros2_control 2.43 and later look for it (spawner.py,
 controller_manager_services.py): in the manager's parameters, else in the controller's own section of a
 file that the spawner gets."""

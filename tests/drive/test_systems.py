@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the drive test says that systems of gz-sim open, each as its source has it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which transforms are sent, and by whom: what each program makes of its parameters and description."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a robot does not do, and why; the first of it: two things of one name."""
 
 from __future__ import annotations

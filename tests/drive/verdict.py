@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a fleet would do: starts, drives, sees, plans, and one tree of transforms, for each robot.
 
 A robot drives where each topic that its reader or its Nav2 sends commands on reaches its own drive and

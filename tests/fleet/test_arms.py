@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleets of arms: names of planning groups, SRDFs with arguments, one device for two robots, mounting.
 
 The shapes are those of vendors' files: an SRDF whose xacro spells its prefix without the separator that

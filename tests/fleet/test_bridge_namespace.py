@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A vendor's bridge in a namespace below the robot's, and models whose name is a path, as Clearpath's.
 
 Expected from clearpath_generator_gz: the bridge of a sensor is started in NAMESPACE/sensors, where

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot build``: what it writes, when it writes nothing, and that it is all or nothing."""
 
 from __future__ import annotations

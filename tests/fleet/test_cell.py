@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``cell`` of a fleet file: several arms as one robot for one move_group.
 
 The consumers: urdfdom (yourdfpy's reading of the joined text), srdfdom, rcl's parameters, MoveIt's

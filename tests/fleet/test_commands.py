@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``commands.md``: the lines that load each robot's controllers, and what is written beside them."""
 
 from __future__ import annotations

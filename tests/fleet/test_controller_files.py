@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description of a built fleet loads the controllers' file that was built for its robot."""
 
 from __future__ import annotations

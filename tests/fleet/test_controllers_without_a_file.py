@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A real arm of a stack, without a parameter file: its controllers still have a type, as
 ros2_control's controller_manager.cpp needs ("The 'type' param was not defined")."""
 

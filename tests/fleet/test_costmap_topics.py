@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan has the topics of costmaps as the built parameter files have them.
 
 Source: navigation2 jazzy, nav2_costmap_2d/plugins/obstacle_layer.cpp (a relative topic is below the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS domain for each robot: what a build writes for it, and what a fleet file may not say."""
 
 from __future__ import annotations

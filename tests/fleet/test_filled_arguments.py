@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A xacro's own arguments for a robot's names are filled, where that makes the names of the layout.
 
 Expectations: names as the layouts have them in docs/fleet-file.md, and what Husarion's, Clearpath's and

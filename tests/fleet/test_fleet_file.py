@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleet files: what they mean, what is wrong with them in one line, the schema that is published."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet file that names NoDL documents: the build's plan has what they say, errors have a line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleets of different robots: every name of every file that is made, looked at one by one."""
 
 from __future__ import annotations

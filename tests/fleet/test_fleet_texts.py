@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bridge, static transforms, spawning and teleoperation of a fleet."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Layout frame-prefix: a description keeps its links, and nodes put the robot's name before frames.
 
 Expected from the sources: robot_state_publisher.cpp (frame_prefix is put before each frame as it is),

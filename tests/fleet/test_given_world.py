@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A world of the user's: without the robot that it has, with the names of the fleet's robots.
 
 The shapes are those of osrf/vrx vrx_gz/worlds (``wind_obj`` of USVWind.cc, several are read; one

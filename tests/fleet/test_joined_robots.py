@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``join`` of a fleet file: a robot that is joined of parts.
 
 What is expected is written by hand, or is what a fleet makes of the files of ``multibot join``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Gazebo leaves out of a robot that runs in it is an error of the commands that plan for it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py``: what it starts, without launch and in the real one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py`` as text: what each record of what is started becomes."""
 
 from __future__ import annotations
@@ -178,7 +179,7 @@ def test_a_robot_without_more_has_no_more() -> None:
     assert "def if_installed(" not in text and "def brought_up(" not in text
     assert described(text) == (
         "def generate_launch_description():\n"
-        '    """Start the simulator, then robot by robot, then the windows for all."""\n'
+        '    """Start robot by robot."""\n'
         "    return LaunchDescription(\n        [\n"
         + argument("robots", "''", "only these: robot1,robot2, or so many: 2")
         + argument("use_sim_time", "'true'", "whether all nodes use /clock")

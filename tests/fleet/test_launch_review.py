@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``fleet.launch.py`` as a reviewer reads it: ament_flake8, ament_pep257, and a person.
 
 Source: ament_lint, ament_flake8/configuration/ament_flake8.ini, ament_pep257/main.py (D213 is on).
@@ -24,7 +25,7 @@ FLAKE8 = (
     *("--import-order-style=google", "--max-line-length=99", "--inline-quotes=single"),
 )
 TOOLS = {"flake8": FLAKE8, "pydocstyle": ("pydocstyle", f"--ignore={IGNORED}")}
-KINDS = ("gz", "classic", "kinds", "ten")
+KINDS = ("gz", "classic", "kinds", "real", "ten")
 EXAMPLES = ("two_robots_nav2", "two_arms_moveit", "mixed_fleet")
 pytestmark = pytest.mark.slow
 
@@ -71,6 +72,9 @@ def test_docstrings_are_as_pep257_says(texts: dict[str, str]) -> None:
         assert [
             it for it in said.values() if not re.fullmatch(r"(Return|Start) [^\n]*\.", it)
         ] == []
+        whole, started = said["generate_launch_description"], text.rpartition("    return ")[2]
+        assert ("simulator" in whole) == ("IncludeLaunchDescription(" in started)
+        assert ("windows" in whole) == ("LaunchConfiguration('rviz')" in started)
 
 
 def test_imports_are_in_order(texts: dict[str, str]) -> None:

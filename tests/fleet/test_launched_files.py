@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files that only launch files name are rewritten, so that plan and files agree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet file with launch files: its plan, its remap rules, and what it refuses."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that a robot's own files leave idle: build says it as check-launch does."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files that descriptions load: rewritten, and loaded by each robot's own one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a build removes, and another robot's model in the names of a robot's files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Namespaces of two and more levels, as /fleet_a/robot1: from the fleet file to the check."""
 
 from __future__ import annotations

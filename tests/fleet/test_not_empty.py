@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No verdict about nothing: a plan holds every robot, its frames and its robot_state_publisher."""
 
 from __future__ import annotations

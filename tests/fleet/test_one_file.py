@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One file beside a description is rewritten without a fleet, by the library and the command."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two steps cannot say two things of one node: what nodes make of the written parameter files is what
 the plan has, for random files. What a node does with a parameter is asked of rcl's rules, not of the
 build."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bridge, check and lint say of a node what the plan and the written files say, for random files."""
 
 from __future__ import annotations

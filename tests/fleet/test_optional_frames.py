@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of a node that a fleet leaves to others are not missed in what it writes."""
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ SEEN = """\
     [
         ("", "gazebo", False),
         ("", "none", True),
-        ("<gz_frame_id>head</gz_frame_id>", "gazebo", True),
+        ("<gz_frame_id>nowhere</gz_frame_id>", "gazebo", True),
     ],
 )
 def test_a_sensor_that_names_no_frame_is_told(

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a build must change, by the hashes of the last one and of the files that are there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleets whose xacro names its robots by arguments: all files of a robot have the same names."""
 
 from __future__ import annotations
@@ -142,6 +143,35 @@ robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
     root = etree.fromstring(made.robot("robot2").description.encode())
     assert [it.text for it in root.iter("namespace")] == ["robot2", "/robot2"]
     assert worth_a_look(made.made.findings) == []
+
+
+BOAT = """\
+<robot name="boat" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="namespace" default="wamv"/>
+  <link name="base_link"/><link name="prop"/>
+  <joint name="turn" type="continuous"><parent link="base_link"/><child link="prop"/></joint>
+  <gazebo><plugin filename="libgz-sim-thruster-system.so" name="gz::sim::systems::Thruster">
+    <namespace>$(arg namespace)</namespace><joint_name>turn</joint_name>
+  </plugin></gazebo>
+  <gazebo reference="base_link"><sensor name="bump" type="contact"><contact>
+    <collision>hull</collision><topic>/vrx/contacts</topic>
+  </contact></sensor></gazebo>
+</robot>
+"""
+
+
+def test_a_name_that_is_then_below_that_of_an_argument(tmp_path: Path) -> None:
+    """After the rewrite, /robot1/vrx/contacts begins as <namespace> says: it is the topic it was."""
+    (tmp_path / "boat.urdf.xacro").write_text(BOAT)
+    text = """\
+affix: prefix
+description: boat.urdf.xacro
+arguments: {namespace: '{robot}'}
+robots: [{name: robot1}, {name: robot2}]
+"""
+    made = load_fleet(fleet(tmp_path, text))
+    root = etree.fromstring(made.robot("robot2").description.encode())
+    assert [it.text for it in root.iter("namespace", "topic")] == ["robot2", "/robot2/vrx/contacts"]
 
 
 @pytest.mark.more

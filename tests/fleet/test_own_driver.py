@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A driver of one's own that sends odometry: the start pose never is a second parent of the base."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A built fleet is read back: faults planted in its files are found, and a whole one is silent.
 
 Expectations: what launch does with a file that is not there, and tf2 with a frame that two robots send.

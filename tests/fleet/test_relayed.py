@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``relayed``: each robot's tf on /tf as well, as nodes of the plan.
 
 Expected are the parameters of topic_tools relay_node.cpp (input_topic, output_topic) and one node of

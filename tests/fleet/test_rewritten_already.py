@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A description that carries a robot's namespace or tag already is refused for the fleet."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots that are chosen when a fleet starts: as a text with poses, as a number, as a dict."""
 
 from __future__ import annotations

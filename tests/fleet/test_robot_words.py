@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that hold the word of a robot already, at their own lines; nothing where it is right."""
 
 from __future__ import annotations

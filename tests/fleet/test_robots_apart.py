@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots that would be spawned into each other, and how far a robot reaches."""
 
 from __future__ import annotations

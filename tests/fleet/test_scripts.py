@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``load_fleet``: what a launch script gets of a fleet file, in each layout, without launch."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames that two nodes of a fleet send, by its parameter files and descriptions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes and topics that all robots of a fleet share: one map_server, one map."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real robots and simulated ones: what a description has for a simulator, in plan, build and check."""
 
 from __future__ import annotations

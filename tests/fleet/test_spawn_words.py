@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words for programs that put robots into a simulator and into the world."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library's calls: a system from each source, the rules on it, two compared."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Systems of the whole world in a robot's description: loaded once, by the world.
 
 Expected: gz-sim makes an object of each <plugin> (src/SystemManager.cc), so of each system there has to

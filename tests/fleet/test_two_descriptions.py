@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A URDF for robot_state_publisher and an SDF for the simulator, from one entry of a fleet file.
 
 As Nav2's tb3_simulation_launch.py has it: the URDF is published, gz_waffle.sdf.xacro is spawned.

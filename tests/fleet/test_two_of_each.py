@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two robots of each sort are read back; a fault of a robot that would be left out is found as well.
 
 Expectations: the same faults in a fleet of two robots, where all is read.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The quick yes or no about a fleet file, held against jsonschema."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two arms of vendors, from their own files, against what the vendors' own prefix arguments make.
 
 The recipes are in docs/arms.md. With MULTIBOT_SOURCES=FOLDER, which holds the checkouts that

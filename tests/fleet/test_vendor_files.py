@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of vendors' robots, in small: what a healthy one of them must not be told."""
 
 from __future__ import annotations

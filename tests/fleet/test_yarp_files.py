@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of yarp plugins: each robot has its own, and its description loads that."""
 
 from __future__ import annotations

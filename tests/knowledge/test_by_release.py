@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What nodes and stacks are in one release: facts left out, conditional, different, or refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Conditions of nodes.yaml, decided by values that are written here."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every key of a file of nodes leads to its field of the record, and what is wrong is refused."""
 
 from __future__ import annotations

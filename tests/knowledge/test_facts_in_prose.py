@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fact in prose is not a fact: no program can ask it.
 
 Notes that name an endpoint, a node, a parameter, a port, a file or a condition are counted by what they

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every name that nodes were found to ask for is in ``nodes.yaml``, or its absence has a reason.
 
 ``fixtures/node_facts.tsv`` holds a line for each: node, role, kind, name and type, read from the

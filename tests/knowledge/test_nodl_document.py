@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A NoDL document: what is read of it, and the one line that a wrong one gets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """NoDL documents in their places, and what the facts of nodes become by them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What starts a node: the executables are those of each package's CMakeLists.txt or setup.py."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The schema that editors read: it takes what the reader takes, and knows no other key."""
 
 from __future__ import annotations

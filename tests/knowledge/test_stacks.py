@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Known nodes and stacks: the data is whole, and a user's own file is read or refused in words."""
 
 from __future__ import annotations

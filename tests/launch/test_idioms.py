@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch authors write, in the real launch: events, timers, groups, parameters, components."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot_rewrite.launch`` in launch, or in a stand-in for it where there is none.
 
 What needs the real one (processes, the YAML frontend, the example package) is skipped without it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch authors write, a launch file each: in the real launch, and on its page."""
 
 from __future__ import annotations

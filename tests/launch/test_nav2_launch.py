@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """nav2.launch.py and nav2_bringup's own launch files, in the real launch.
 
 What is started is told by ``launch_recorder.py``. Names are those of the layout, rules those of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """nav2.launch.py as ``check-launch`` reads it, without the real launch: what is started, and how.
 
 The names are those of the layout; programs and what a lifecycle manager is told are those of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The launch snippets of the README: by hand with nav2_common, and with a fleet file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Known findings: written, read, held against new ones; files that are not a baseline."""
 
 from __future__ import annotations

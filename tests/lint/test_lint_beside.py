@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files beside a description: planted defects are found at their line, what is odd and healthy is not.
 
 What a parameter is was read in the sources that the rows of declared.schema name.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``changed_since`` with real repositories: commits, working tree, includes, odd names, no git."""
 
 from __future__ import annotations

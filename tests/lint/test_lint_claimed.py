@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB229, MB240 and MB230: what a description and the file of its controllers say of each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``urdf-lint.toml``, ``[tool.urdf-lint]``: found, read, wrong ones named; the page's examples hold."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lint on public files: no rule falls over one, what it calls an error is counted and judged."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rule asks one question of many places: each has its broken and its healthy example here."""
 
 from __future__ import annotations

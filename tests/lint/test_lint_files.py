@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules MB1 about files: what cannot be read, and at which place; encodings, materials, fixes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """urdf-lint --fix: proved, idempotent, and nothing but the edited spans is another byte."""
 
 from __future__ import annotations

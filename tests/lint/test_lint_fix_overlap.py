@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits that overlap, levels of a configuration, and what some rules make an exception for."""
 
 from __future__ import annotations

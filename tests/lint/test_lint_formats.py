@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every format holds real findings of nasty documents, by its own schema or parser."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values below ``<gazebo>`` and parameters of plugins: what is found, and what is left alone.
 
 What libsdformat makes of a value was tried with libsdformat 12.3 (``sdf::Root::Load``,

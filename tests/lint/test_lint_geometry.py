@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Defects of geometry planted in two healthy robots, and what is odd in them and healthy.
 
 What a defect breaks was taken from its consumer: gz-sim's DiffDrive, REP 103, gz-rendering, sdformat.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The groups of rules are complete, and what rules share of one document stays with it."""
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
     file.write_bytes(MESHES)
     program = (
         "import sys; from multibot_rewrite.cli.urdf_lint import main; "
-        "main([sys.argv[1], '--no-cache']); print(*sys.modules); import typing; "
+        "main([sys.argv[1], '--trust']); print(*sys.modules); import typing; "
         "print(*(it for it in sys.modules if it.startswith('multibot') and "
         "vars(sys.modules[it]).get('NamedTuple') is typing.NamedTuple))"
     )

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lint where it is used: pre-commit really runs it, and so do the CI examples of its page."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB7: which files are looked for where, and how they may be named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values in worlds and models of SDF, and pairs of values that cannot both be meant."""
 
 from __future__ import annotations

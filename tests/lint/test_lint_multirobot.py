@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB4: what is reported for a second robot, and what is not."""
 
 from __future__ import annotations

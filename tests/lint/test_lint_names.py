@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rules MB3 about names: what is refused by whom, and what real robots are called."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB6 beyond the examples: what must be found, at which line, and what must not."""
 
 from __future__ import annotations

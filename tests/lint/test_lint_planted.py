@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Defects of the kinds other linters were measured with, one a file: each is found at its line.
 
 What follows from a defect (renaming a link leaves its joint without a child) is reported

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of how often rules are right: enough was judged, and what is often wrong is a note."""
 
 from __future__ import annotations
@@ -58,6 +59,8 @@ HALVES = {
     "worked-6": "15 worked on, a sixth sample, at first sight",
     "kept-6": "15 kept of the sixth, once",
     "again-6": "15 more of its order, once",
+    "worked-7": "8 worked on, a seventh sample, at first sight",
+    "kept-7": "7 kept of the seventh, once",
 }
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB2: what is found, where, and what is not a fault."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB9: what a rewrite would leave as it is, at the very value."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When two descriptions say the same: what a fix between versions of URDF may change, and what not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The structure of a URDF against its schema: what is a fault, and what is allowed in real files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MB8: an SRDF finds its URDF, and what is compared with it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was told of healthy files of public repositories, and of which level it is now."""
 
 from __future__ import annotations

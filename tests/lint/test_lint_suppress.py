@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Comments that suppress findings: what they reach, their faults, and when one is not needed."""
 
 from __future__ import annotations

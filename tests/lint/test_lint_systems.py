@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ros2_control as a whole: systems, what loads them, who drives their joints, what controllers need."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults of values, each alone in a healthy robot with its files: told, and how loudly."""
 
 from __future__ import annotations

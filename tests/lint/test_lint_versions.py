@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Versions of URDF: what urdfdom 6 says of small files, and conversions that other programs measure."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Findings in xacro: the place in the source, the calls that led there, the arguments, packages."""
 
 from __future__ import annotations

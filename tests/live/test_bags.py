@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings: two robots in a bag of our own, healthy and with a fault each, and damaged bags."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The doctor: silent where nothing is wrong, each seeded fault found with its cause, no plan needed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What looks like a fault, and is none: the doctor leaves it alone."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plan whose robots are in several ROS domains, held against what was seen in each."""
 
 from __future__ import annotations

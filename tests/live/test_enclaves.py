@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Policies of SROS2: what a robot needs is allowed, what crosses robots is not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two equal robots of which one has something otherwise, one unnamed robot with open ends, and QoS:
 each fault is told where its healthy twin is quiet, by a graph alone."""
 

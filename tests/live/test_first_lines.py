@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``check`` without a plan says of a graph in its first lines: robots, layout, who sends tf."""
 
 from __future__ import annotations

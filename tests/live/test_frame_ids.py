@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames that headers of messages name: who is told what, and what is healthy."""
 
 from __future__ import annotations

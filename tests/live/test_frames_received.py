@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of the plan that no transform has: joint states that no node sends, the wrong description."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The comparison of plan and graph: a healthy fleet is silent, each seeded fault is named."""
 
 from __future__ import annotations

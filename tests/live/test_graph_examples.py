@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lines in which examples of graph rules are written say what they seem to say."""
 
 from __future__ import annotations

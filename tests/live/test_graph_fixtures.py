@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole fleets with a fault each, and the lines the command prints; a healthy one has no finding."""
 
 from __future__ import annotations

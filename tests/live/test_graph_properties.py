@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Any fleet as planned is silent; one name moved away is found, and its node is named."""
 
 from __future__ import annotations

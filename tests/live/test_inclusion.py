@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """With a plan all is found that is found without one: the same code at the same place, or what the plan
 says is missing there."""
 

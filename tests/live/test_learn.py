@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot snapshot --form nodes``: what a graph shows becomes facts, whose tables serve the code."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The doctor before real nodes: a healthy fleet, and faults put into it while it runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``check`` and ``rehearse`` of robots in ROS domains of their own, before real nodes."""
 
 from __future__ import annotations

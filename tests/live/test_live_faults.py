@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planned fleet on a real graph, as it should be and with one fault each: found and named.
 
 Side by side, each on a domain of its own; in the deep run three looks at each.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What cannot be told from a view is called inconclusive; what keeps from looking has one line."""
 
 from __future__ import annotations

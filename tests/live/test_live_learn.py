@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot snapshot --form nodes`` of real nodes: with the rules of its table nothing leaks."""
 
 from __future__ import annotations

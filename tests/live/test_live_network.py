@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot`` and the robots on different hosts: what is seen, and what is said of what is not.
 
 Every host is a network namespace with a /dev/shm of its own (see ``network``).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot rehearse`` on a real graph: every layout holds, what leaks is shown, nothing is left."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot snapshot`` against real nodes, each test run in DDS domains of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot check --watch`` beside real nodes that come and go."""
 
 from __future__ import annotations

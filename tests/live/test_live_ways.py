@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rehearsal gives each rule where it stands: what a release does not hand on is found missing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several looks at one system are joined: what any of them has seen is there, once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Learned nodes as NoDL: what is written, and that a plan made of it fits the graph it came from."""
 
 from __future__ import annotations

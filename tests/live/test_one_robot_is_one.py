@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One robot is one robot: the frames of any public description, as robot_state_publisher and an EKF
 send them on one tf, are not taken for those of several."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of a checked graph: what is wrong is drawn as that, and any name may be drawn."""
 
 from __future__ import annotations

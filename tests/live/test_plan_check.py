@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot plan`` and ``multibot check``: the plan is a file, a snapshot is held against it."""
 
 from __future__ import annotations
@@ -106,6 +107,15 @@ def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 
 @pytest.mark.more
+def test_an_earlier_snapshot_is_a_plan(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = plan.with_name("before.json")
+    graph = as_planned(plan)
+    before.write_bytes(to_json(graph))
+    assert held(before, graph, capsys)[:2] == (0, "")
+    code, out, _ = held(before, without_node(graph, "/robot2/amcl"), capsys)
+    assert code == 1 and "/robot2/amcl: error: MG101" in out and "robot1" not in out
+
+
 def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
     code, out, _ = held(plan, graph, capsys)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a plan can say besides names, as people write it: shared nodes, senders, QoS, alternatives."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States of the plan and parameters of built files, compared with what nodes answer."""
 
 from __future__ import annotations

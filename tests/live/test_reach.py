@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot that is not seen: missing, or hidden by the network; and what is said of it."""
 
 from __future__ import annotations

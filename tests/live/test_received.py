@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is judged of messages besides their frames: rates of tf, names of joints, the time on /clock."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stub nodes of a rehearsal: names of the code, rules of the table, transforms."""
 
 from __future__ import annotations
@@ -205,8 +206,12 @@ def test_what_is_seen_of_substitutes_has_the_types_of_the_plan() -> None:
     scan = next(it for it in plan.ends if it.type == LASER and "robot1" in it.node)
     seen = with_substitutes(plan, replaced)
     astray = scan._replace(name=f"/{scan.code_name}", type=replaced[LASER])
-    own = with_own_types(seen._replace(ends=(*seen.ends, astray)), plan, replaced)
-    assert own.ends == (*plan.ends, astray._replace(type=LASER))
+    # rclpy tells the type of an action by that of its feedback.
+    spin = next(it for it in plan.ends if it.kind == ACTION)
+    replaced[spin.type] = substitute_type(ACTION, spin.type)
+    told = spin._replace(type="std_msgs/msg/Empty")
+    own = with_own_types(seen._replace(ends=(*seen.ends, astray, told)), plan, replaced)
+    assert own.ends == (*plan.ends, astray._replace(type=LASER), spin)
 
 
 def rewritten(layout: str) -> tuple[Inventory, Naming]:

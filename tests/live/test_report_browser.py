@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The report in a real browser: nothing is fetched, nothing from the graph runs, clicks find things."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the head of the report says, which robots a finding concerns, and all that a plan may have."""
 
 from __future__ import annotations

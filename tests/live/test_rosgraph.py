@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rosgraph_msgs/Graph as a snapshot: as ``ros2 topic echo`` prints it, and back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the rules about a graph make an exception, and where the exception ends."""
 
 from __future__ import annotations

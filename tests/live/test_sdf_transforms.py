@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The transforms of an SDF: its frames are no part of tf, the links that they are attached to are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan of what is seen: a picture is drawn by it, and a first fleet file begins with it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launches broken on purpose, each of which once ended in "as planned"; as snapshots, in four layouts.
 
 robot2 alone is broken in each; the finding has to say that, and who or what it is.

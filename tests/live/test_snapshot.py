@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pure half of a snapshot: the file, the environment, how answers of the graph fit together."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the stub nodes of a rehearsal open, without rclpy: each call of ``ros`` is kept as a row."""
 
 from __future__ import annotations
@@ -160,7 +161,7 @@ def test_an_action_without_its_type_is_its_services_and_topics(
     found = rows(
         monkeypatch, Ros(NAVIGATE), stub(StubEndpoint(ACTION, SERVES, "go", NAVIGATE, False))
     )
-    assert found[0] == ("replaced", {NAVIGATE: "its services and topics"})
+    assert found[0] == ("replaced", {NAVIGATE: EMPTY})
     assert {(it[1], it[2]) for it in found[2:]} == {
         ("serves", "go/_action/send_goal"),
         ("serves", "go/_action/cancel_goal"),

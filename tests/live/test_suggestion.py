@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files that ``check --suggest`` begins a fleet with, for graphs whose robots are known here."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ends that nothing gives, where the code of their nodes is known, asked of small systems."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``check --watch`` says of one view after the other, and the worst it remembers."""
 
 from __future__ import annotations

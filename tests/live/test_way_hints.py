@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hint to a name that no rule moved names the place where the node takes its rules."""
 
 from __future__ import annotations

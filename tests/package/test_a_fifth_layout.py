@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A layout is a row in one place: with one more row, every command knows it."""
 
 from __future__ import annotations

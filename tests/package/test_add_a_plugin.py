@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guide works as written: its files are written, its commands run, its output compared."""
 
 from __future__ import annotations

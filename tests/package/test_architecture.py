@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of the architecture: short, its paths are there, its figures are about those of today."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Input and options that cannot work: one clear line each, the right exit code, and nothing left
 behind. Run as a process, because that is where a traceback would show."""
 

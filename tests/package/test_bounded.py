@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What anybody may write is read within bounds of size, depth and expansion, by every reader."""
 
 from __future__ import annotations
@@ -240,12 +241,14 @@ def test_a_file_without_an_end_is_too_large(file: str, reader: str, tmp_path: Pa
 
 
 def test_a_file_is_read_whole_whatever_size_it_says(tmp_path: Path) -> None:
-    pipe, full = tmp_path / "pipe", tmp_path / "full"
-    os.mkfifo(pipe)
-    written = Thread(target=pipe.write_bytes, args=(b"x" * 200_000,))
-    written.start()  # in pieces: more than a pipe holds, and its size is 0
-    assert bounded.read_bytes(str(pipe)) == b"x" * 200_000
-    written.join()
+    full = tmp_path / "full"
+    reading, writing = os.pipe()  # of a shell's <(xacro ...)
+    with os.fdopen(writing, "wb") as end:
+        written = Thread(target=lambda: (end.write(b"x" * 200_000), end.close()))
+        written.start()  # in pieces: more than a pipe holds, and its size is 0
+        assert bounded.read_bytes(f"/dev/fd/{reading}") == b"x" * 200_000
+        written.join()
+    os.close(reading)
     full.write_bytes(b"x" * 10)
     assert bounded.read_bytes(str(full), 10) == b"x" * 10
     assert bounded.read_bytes("/proc/self/cmdline") == Path("/proc/self/cmdline").read_bytes()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page about a check without a plan: its commands print what is shown."""
 
 from __future__ import annotations

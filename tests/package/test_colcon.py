@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The project and the example package in a colcon workspace, with colcon from PyPI."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The container has what the README's fleet starts, and its files are what Docker and editors read.
 
 It cannot be built here: ``.github/workflows/container.yml`` builds it and runs the fleet.

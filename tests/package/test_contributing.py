@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contributor's journeys work as written: each is followed in a copy of the repository."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results and errors are copied and pickled, and read in another process."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the package imports is what package.xml and pyproject.toml ask for; each Python is named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pages say what the program does: the commands that they show run."""
 
 from __future__ import annotations

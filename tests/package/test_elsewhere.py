@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """On macOS, and where the kernel has no fences, everything can be imported and a file is linted."""
 
 from __future__ import annotations

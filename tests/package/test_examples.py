@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The worked examples: what their pages show is printed, and each fleet's rehearsal is as planned."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every fact that was read from public source has a row of the vocabulary, or a stated reason.
 
 ``fixtures/facts.tsv`` holds a line for each thing an element, plugin or hardware class reads: type,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What people ask first about two robots, from their files to the answer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged real files: each is refused with a reason, or rewritten and proved."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a description is large in, it may be large in: twice as much costs twice as much."""
 
 from __future__ import annotations

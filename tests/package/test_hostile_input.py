@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Input that was made to hurt ends, in one clear line, with the documented exit code; as processes,
 because that is where a hang, a crash or a traceback would show."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rewrite, lint, remap table, fleet and build name the same things that two robots would share."""
 
 from __future__ import annotations

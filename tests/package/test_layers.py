@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The house rules: imports run one way, heavy packages stay out, the public names are complete."""
 
 from __future__ import annotations

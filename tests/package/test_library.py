@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The calls that launch files and scripts make: sources, errors, fleets, the list of changes."""
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Each source file that is installed says its licence, as the SPDX specification has it (annex E)."""
+# SPDX-License-Identifier: Apache-2.0
+"""Each source file says its licence, as the SPDX specification has it (annex E)."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from paths import ROOT
 
 LICENCE = re.findall(r'^license = "(.*)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[0]
 LINE = f"# SPDX-License-Identifier: {LICENCE}\n"
-FOLDERS = ("multibot_rewrite", "tools", "share")
+FOLDERS = ("multibot_rewrite", "tools", "share", "tests", "benchmarks")
 
 
 def test_each_file_begins_with_the_licence() -> None:

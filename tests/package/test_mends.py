@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A finding's sentence leads to its mend: provoked in a real file, mended by what it says, it is gone.
 
 The rule by which these twenty were chosen: every 19th code of ``multibot inspect``, from the tenth on.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What describes the package to others: each file is what its reader takes, and all of them agree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page about changes to a package: its commands print what is shown."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Help, messages and pages for users are in the words of ROS, without terms of this package alone."""
 
 from __future__ import annotations

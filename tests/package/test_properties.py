@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What holds for any robot at all, tried on random ones with nasty names and odd spelling."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The public calls as a caller meets them: typed options, wrong arguments, copies, docstrings."""
 
 from __future__ import annotations

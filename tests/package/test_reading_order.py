@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A reader tries the pages one after the other in one clone: no page is in the way of the next."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of recipes: every command runs, prints what is shown, and every known question has one."""
 
 from __future__ import annotations

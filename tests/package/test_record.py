@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A record is what ``typing.NamedTuple`` would have made of the same class."""
 
 from __future__ import annotations

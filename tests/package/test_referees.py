@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Other programs load each robot before and after: same kinematics and masses under new names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is published: the archives hold the package and nothing else, and the workflow is safe."""
 
 from __future__ import annotations

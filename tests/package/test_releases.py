@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Release words and the choice of a release; what holds where is said here, not by the code."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The release that is asked for reaches every fact: nobody inside the package falls back on another."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``ros2 multibot``: what ros2cli calls, called as ros2cli does (``ros2cli/command/__init__.py``)."""
 
 from __future__ import annotations

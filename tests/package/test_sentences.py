@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sentences are short: in messages, rules, help and the pages that a user reads first."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The documentation: every link leads somewhere, on GitHub and on the site; the site is whole."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The code is typed and clean: the same tools a contributor runs by hand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The public calls from many threads give what one thread gives, from the first call on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tutorials: their files are saved and their commands run, in order, and print what is shown.
 
 What needs a simulator or nodes of ROS is a block ``sh``: those lines are held against the files that

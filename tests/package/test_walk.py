@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """tests/support/walk.md: the walk of a new user is what the commands print today."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The drawings on the page: a group for each robot, the overview above them, the trees of frames."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the nodes and names of a picture stand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The picture of the fleet: boxes in rows, arrows between them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the page puts where: sections, what is drawn of a group, ids, and where a finding leads."""
 
 from __future__ import annotations

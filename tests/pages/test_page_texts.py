@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The words and tags of the page around its drawings: filters, findings, explanations, robots, head."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a plan, a graph and its findings to what is drawn: states, groups, crossings, trees."""
 
 from __future__ import annotations

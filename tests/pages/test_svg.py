@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pictures as text: where boxes, lines and words are, their class, how a long name is cut."""
 
 from __future__ import annotations

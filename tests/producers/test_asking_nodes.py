@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes are asked for state, parameters and controllers; what they answer is in the records.
 
 The services here answer from a table, with the fields of lifecycle_msgs, rcl_interfaces and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments of bridges to Gazebo as topics of ROS, as ``parameter_bridge.cpp`` reads them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The built launch file of every example: nothing is wrong with what it starts, and all is planned."""
 
 from __future__ import annotations

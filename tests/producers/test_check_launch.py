@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What would run by a launch: names by rcl's rules, transforms by parameters, and what hurts there.
 
 The launch graphs are records as the evidence has them. Expectations: rcl's remapping (remap.c), the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Conditions that a launch decides: the command line, the files that parameters name, and who listens.
 
 Expectations are read in the sources of the nodes, each at its test.

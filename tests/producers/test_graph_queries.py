@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is asked of a graph through an rclpy node, and what becomes of the answers.
 
 The node here answers from a table, as rclpy's ``Node`` does: names and types by node, and records with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults planted in a healthy fleet of two in Gazebo, and what check-launch says of them.
 
 Expectations: what the programs do with it, by their sources (the rules name them).
@@ -302,10 +303,12 @@ def generate_launch_description():
         ("{'rate': 5}", True),
         ("{'robot_description': Command(['made_by_a_program ', 'x'])}", False),
         ("{'robot_description': Command(['xacro ', '/nowhere.xacro'])}", False),
-        ("{'robot_description': {}['x'] if False else object()}", False),
         # ECUST-Origin-Sentry-Team/gazebo_simulator_origin: a Python package that is not here makes it.
         ("{'robot_description': __import__('made_elsewhere').Macro().to_string()}", False),
+        ("{'robot_description': {'xml': __import__('made_elsewhere').MACRO}}", True),
         ("{'rate': __import__('made_elsewhere').rate()}", True),
+        ("__import__('made_elsewhere').builder().to_dict()", False),
+        ("dict(**__import__('made_elsewhere').VALUES)", False),
         ("{'robot_description': '<robot name=\"r\"><link name=\"a\"/></robot>'}", False),
         ("{'robot_description': '/opt/r.urdf'}", True),
         ("'/opt/not/here.yaml'", False),
@@ -340,7 +343,12 @@ def generate_launch_description():
 
 @pytest.mark.parametrize(
     ("given", "differs"),
-    [("True", False), ("False", True), ("object()", False), ("Command(['which_time'])", False)],
+    [
+        ("True", False),
+        ("False", True),
+        ("__import__('made_elsewhere').time", False),
+        ("Command(['which_time'])", False),
+    ],
 )
 def test_a_time_that_only_a_run_tells_differs_from_none(
     given: str, differs: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -463,6 +471,12 @@ _AMCL = (
     'Node(package="nav2_amcl", executable="amcl", name="amcl", namespace="r1", '
     'remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])'
 )
+_CLOCK = "/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock"
+_GROUP = f"GroupAction([{_DRIVER}], condition={{}})"
+_SPAWN = 'Node(package="ros_gz_sim", executable="create", arguments=["-file", {}])'
+_SPAWN_AS = _SPAWN.replace(
+    '"-file", {}', '"{}", "--string", "<robot name=\'r\'><link name=\'a\'/></robot>"'
+)
 _BASE = _STATE.format("r1").replace("'a'", "'base_link'")
 # The code, whether it is found, a child that is included, and what the file starts.
 SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
@@ -504,8 +518,40 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         *("MB874", True, ""),
         (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.IMU"),),
     ),
+    "a type of Gazebo that is misspelt": (
+        *("MB874", True, ""),
+        (_ROW.format("/odom@nav_msgs/msg/Odometry[gz.msgs.Odometri"),),
+    ),
+    # ros_gz_sim jazzy create.cpp reads its words by gflags.
+    "one name, by two dashes": ("MG701", True, "", (_SPAWN_AS.format("--name=a"),) * 2),
+    "two names, by two dashes": (
+        *("MG701", False, ""),
+        (_SPAWN_AS.format("--name=a"), _SPAWN_AS.format("--name=b")),
+    ),
     # gazebo_ros src/gazebo_ros_init.cpp has the clock.
     "no plugin with the clock": ("MG501", True, "", (_TIMED, _GAZEBO.format(""))),
+    # clearpath_simulator clearpath_gz/launch/robot_spawn.launch.py: one has ended before.
+    "one name after the other": (
+        *("MG301", False, ""),
+        (_DRIVER[:-1] + ', on_exit=[Node(package="acme", executable="two", name="driver")])',),
+    ),
+    "one name at once": ("MG301", True, "", (_DRIVER, _DRIVER.replace('"acme"', '"other"'))),
+    # Deamon-l/jaka_zu3_ros2_gazebo: the other one bridges no clock.
+    "a clock of one of two bridges": (
+        *("MG502", False, ""),
+        (_ROW.format(_CLOCK), _ROW.format("/i@sensor_msgs/msg/CameraInfo[gz.msgs.CameraInfo")),
+    ),
+    "a clock of both": ("MG502", True, "", (_ROW.format(_CLOCK), _ROW.format(_CLOCK))),
+    # launch jazzy action.py: Ast4r/Ros2_Navigation.
+    "a condition that is none": (
+        *("MG721", True, ""),
+        ('SetLaunchConfiguration("a", "1")', _GROUP.format('LaunchConfiguration("a")')),
+    ),
+    "a condition that is a text": ("MG721", True, "", (_GROUP.format('"true"'),)),
+    "no condition": ("MG721", False, "", (_GROUP.format("None"),)),
+    # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
+    "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
+    "what nobody installs": ("MG713", True, "", (_SPAWN.format('str(HERE / "lost.urdf")'),)),
     "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
     "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.
@@ -542,3 +588,21 @@ def test_a_file_says_what_it_has_to_be_given(
     assert "'robot' is not set; give it with robot:=VALUE" in capsys.readouterr().err
     main(["check-launch", str(tmp_path / LAUNCH), "robot:=r1"])
     assert "is not set" not in capsys.readouterr().err
+
+
+def test_files_that_a_package_of_sources_lacks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>acme</name></package>")
+    head = "from ament_index_python import get_package_share_directory\n" + _HEAD
+    bridge = _ROW.replace('arguments=["{}"]', 'parameters=[{"config_file": SHARE + "/a.yaml"}]')
+    of_nodes(
+        tmp_path,
+        'IncludeLaunchDescription(SHARE + "/a.launch.py")',
+        bridge,
+        head=head + 'SHARE = get_package_share_directory("acme")\n',
+    )
+    _, found = found_in(tmp_path, capsys)
+    told = {str(it["code"]): f"{it['level']} {it['message']}" for it in found}
+    for code, name in (("MG721", "a.launch.py"), ("MG713", "a.yaml")):
+        assert told[code].startswith("error ") and str(tmp_path / name) in told[code]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch file would start, read with the real launch and launch_ros; without them skipped.
 
 Expectations: what launch_ros passes to the processes, read in actions/node.py and
@@ -233,14 +234,25 @@ def test_a_wrong_launch_file_in_xml(text: str, fault: str, tmp_path: Path) -> No
     assert fault in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_a_name_that_is_not_there_is_told_with_its_line(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (
+            "LaunchDescription([])",
+            "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)",
+        ),
+        (
+            '__import__("launch_ros").actions.Node(executable="b", parameters=[{"a": None}])',
+            "TypeError: Unexpected type for parameter value None (a.launch.py:2)",
+        ),
+    ],
+)
+def test_what_python_refuses_is_told_with_its_line(value: str, told: str, tmp_path: Path) -> None:
     file = tmp_path / "a.launch.py"
-    file.write_text("def generate_launch_description():\n    return LaunchDescription([])\n")
+    file.write_text(f"def generate_launch_description():\n    return {value}\n")
     with pytest.raises(InputError) as caught:
         launch_graph(LaunchOrder(str(file), (), (), True))
-    assert str(caught.value).endswith(
-        "NameError: name 'LaunchDescription' is not defined (a.launch.py:2)"
-    )
+    assert told in str(caught.value)
 
 
 def test_components_are_in_their_container(tmp_path: Path) -> None:
@@ -533,7 +545,7 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
 
 
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="it starts no node"):
+    with pytest.raises(InputError, match="starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
 
 

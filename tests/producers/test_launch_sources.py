@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files of packages that are there as sources: where their files are, what includes read."""
 
 from __future__ import annotations

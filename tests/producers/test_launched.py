@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch files start, and the nodes of a robot that follow from it."""
 
 from __future__ import annotations

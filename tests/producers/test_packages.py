@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``--launch PACKAGE FILE``, as ros2launch finds it in installed packages and in sources."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many participants run here, by their ports."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the sources of a robot name becomes ends, addresses, interfaces and transforms of a system."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spawners that ask for a controller manager that nothing starts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The spawner's arguments, by ros2_control's spawner.py: which controllers run, where, with what."""
 
 from __future__ import annotations

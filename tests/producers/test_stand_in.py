@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts of the stand-in for launch, each by what launch jazzy does with the same words."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch files take from nav2_common, by nav2_common's own code where it is there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launched static_transform_publisher sends, in a plan and in what a launch would run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The system_model.yaml of play_launch."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A package for one robot takes a prefix: its sources afterwards, written by hand; what is left."""
 
 from __future__ import annotations
@@ -240,6 +241,20 @@ def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
         (f"2:{robot(inside).splitlines()[1].index('<gazebo') + 1}", "'a' is put together")
     ]
     assert made.proved == ()
+
+
+def test_a_name_that_stays_with_another_argument_is_left(tmp_path: Path) -> None:
+    """Robotiq's driver asks for its GPIO by that name; without it the GPIO is one of the robot."""
+    inside = (
+        '<link name="a"/><xacro:arg name="sim" default="true"/><ros2_control name="g" type="system">'
+        '<hardware><xacro:if value="$(arg sim)"><plugin>mock_components/GenericSystem</plugin>'
+        '</xacro:if><xacro:unless value="$(arg sim)">'
+        "<plugin>robotiq_driver/RobotiqGripperHardwareInterface</plugin></xacro:unless></hardware>"
+        '<gpio name="reactivate_gripper"><command_interface name="c"/></gpio></ros2_control>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    (it,) = adopt(str(tmp_path)).left
+    assert it.why == "'reactivate_gripper' stays with other arguments or elsewhere"
 
 
 def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A package is adopted in all its configurations: what a switch or a word of an argument brings in has
 the prefix, too, and a place that one of them needs as it is stays for all."""
 

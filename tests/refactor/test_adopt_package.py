@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole package takes a prefix: launch files hand it on, an SRDF follows, what is left is listed."""
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.producers.launch.door import missing
-from multibot_rewrite.refactor.named_elsewhere import named_elsewhere
+from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
 from multibot_rewrite.refactor.parameters import fillable
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -230,6 +231,43 @@ def test_names_in_code_and_data_are_listed_with_their_lines(package: Path) -> No
         ("src/a.cpp:2", "its code names 'base', which a prefix does not reach"),
         ("src/b.py:3", "its code names 'arm', which a prefix does not reach"),
     ]
+
+
+MANAGED = """\
+# of the manager
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    {}: {{type: a/B}}
+{}:
+  ros__parameters: {{k: 1}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("texts", "said"),
+    [
+        ([MANAGED.format("drive", "drive")], ["p0.yaml:2 controller_manager 1 section more"]),
+        ([MANAGED.format("drive", "amcl")], ["p0.yaml:2 controller_manager"]),
+        (
+            ["amcl:\n  ros__parameters: {}\n", MANAGED.format("amcl", "x")],
+            ["p0.yaml:1 amcl", "p1.yaml:2 controller_manager"],
+        ),
+        (["amcl:\n  ros__parameters: {}\n"], []),
+        (["robot_state_publisher:\n  ros__parameters: {}\n"], ["p0.yaml:1 robot_state_publisher"]),
+        (["controller_manager:\n  ros__parameters: [\n"], ["p0.yaml:1 controller_manager"]),
+        (["- 1\n", "controller_manager: 1\n", "controller_manager: {ros__parameters: 1}\n"], []),
+    ],
+)
+def test_sections_of_nodes_that_get_the_namespace_are_told(
+    tmp_path: Path, texts: list[str], said: list[str]
+) -> None:
+    for at, text in enumerate(texts):
+        (tmp_path / f"p{at}.yaml").write_text(text)
+    found = list(root_sections([str(tmp_path / f"p{at}.yaml") for at in range(len(texts))]))
+    names = [(it.place.rpartition("/")[2], it.why.rpartition("/")[2]) for it in found]
+    more = [" 1 section more" if "1 section more" in it.why else "" for it in found]
+    assert [f"{at} {name}{one}" for (at, name), one in zip(names, more, strict=True)] == said
 
 
 def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> None:

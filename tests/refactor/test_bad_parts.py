@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parts and packages that cannot be taken: one line, exit code 2, nothing written."""
 
 from __future__ import annotations

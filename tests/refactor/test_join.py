@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parts become one robot: the text by hand, what is refused, what two parts share, and back again."""
 
 from __future__ import annotations
@@ -264,6 +265,30 @@ def test_a_part_that_cannot_be_joined_is_refused_in_one_line(case: str) -> None:
         join([Part(robot(link("base"))), Part(text, "base", name="n")])
     assert wanted in str(found.value)
     assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("robot_file", "said"),
+    [
+        ('<xacro:include filename="part.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="middle.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="other/part.xacro"/>', "give the file that has the robot"),
+    ],
+)
+def test_a_part_of_macros_says_which_file_includes_it(
+    robot_file: str, said: str, tmp_path: Path
+) -> None:
+    head = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    include = '<xacro:include filename="part.xacro"/>'
+    middle = include if "middle" in robot_file else ""
+    macro = '<xacro:macro name="m"/>'
+    texts = {"part": macro, "middle": middle, "arm": robot_file, "one": link("a")}
+    for name, text in texts.items():
+        (tmp_path / f"{name}.xacro").write_text(f"{head}{text}</robot>")
+    with pytest.raises(InputError) as found:
+        join([Part(tmp_path / "one.xacro"), Part(tmp_path / "part.xacro", "a", prefix="p_")])
+    wanted = f"it has no link; it defines macros; {said.format(tmp_path)}"
+    assert str(found.value) == f"{tmp_path}/part.xacro (expanded): {wanted}"
 
 
 WRONG = {

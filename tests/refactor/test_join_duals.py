@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two arms that are joined, against the vendors' own descriptions of two arms.
 
 With MULTIBOT_SOURCES=FOLDER, which has the checkouts; skipped without. What differs is listed here, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ``.join`` file is a description for every command: rewritten, built, linted, joined."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MoveIt's files of parts as one of each kind: what they become, by hand; what is refused."""
 
 from __future__ import annotations
@@ -129,8 +130,9 @@ def test_the_command_writes_them_beside_the_description(
     for name, text in (("table.urdf", TABLE), ("arm.urdf", ARM), ("arm.srdf", SRDF)):
         (tmp_path / name).write_text(text)
     given = ",".join(arm_files(tmp_path / "config", names=("kinematics.yaml",)))
-    words = ["join", "table.urdf", "arm.urdf", "--at", "table", "--prefix", "l_"]
-    words += ["--srdf", "", "--srdf", "arm.srdf", "--moveit", "", "--moveit", given]
+    arm = f"description: arm.urdf, at: {{parent: table}}, srdf: arm.srdf, moveit: [{given}]"
+    Path("all.join").write_text(f"join: [{{description: table.urdf}}, {{prefix: l_, {arm}}}]\n")
+    words = ["join", "all.join"]
     assert main([*words, "-o", "robot.urdf", "-q"]) == 0
     assert yaml.safe_load(Path("robot_kinematics.yaml").read_text()) == {"l_arm": SOLVER}
     assert main([*words, "-q"]) == 2

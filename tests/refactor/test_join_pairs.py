@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Public parts joined in pairs: pinocchio has every link where its part has it, and every joint."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a join must not make: a joined text with a fault planted in it is no proof's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One ros2_control for parts of one hardware: what it becomes, by hand; the parts come out again."""
 
 from __future__ import annotations
@@ -105,17 +106,6 @@ def test_the_proof_sees_a_joint_that_is_lost(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("multibot_rewrite.description.joining.join.one_system", faulty)
     with pytest.raises(ProofError, match="<ros2_control> 'r_driver' is not what it was"):
         two()
-
-
-def test_the_option_is_for_all_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "table.urdf").write_text(TABLE)
-    (tmp_path / "arm.urdf").write_text(ONE)
-    words = ["join", "table.urdf", "arm.urdf", "arm.urdf", "--at", "table", "--at", "table"]
-    words += ["--prefix", "l_", "--prefix", "r_", "--one-system"]
-    assert main([*words, "-o", "robot.urdf", "-q"]) == 0
-    assert etree.parse("robot.urdf").xpath("count(ros2_control)") == 1
-    assert main(["join", "robot.urdf", "--split", "out", "--one-system"]) == 2
 
 
 def test_a_list_of_parts_has_the_key(tmp_path: Path) -> None:

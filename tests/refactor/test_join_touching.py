@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which links of two parts never or always touch: boxes of which it is known by hand."""
 
 from __future__ import annotations
@@ -8,8 +9,9 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite import Joined, Part, UsageError, join
+from multibot_rewrite import InputError, Joined, Part, UsageError, join
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.description.joining.from_file import listed_in
 
 BOX = '<collision><origin xyz="{}"/><geometry><box size="{}"/></geometry></collision>'
 # A bar of 1 m that turns about its end, on a column.
@@ -146,13 +148,31 @@ endsolid far
 
 def test_without_pinocchio_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pinocchio", None)
-    with pytest.raises(UsageError, match="pip install pin, or leave out --samples"):
+    with pytest.raises(UsageError, match="pip install pin, or leave out samples"):
         joined()
 
 
-def test_samples_need_an_srdf(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, text in (("arm", ARM), ("blocks", BLOCKS)):
-        (tmp_path / f"{name}.urdf").write_text(text)
-    words = [str(tmp_path / "arm.urdf"), str(tmp_path / "blocks.urdf"), "--at", "column"]
-    assert main(["join", *words, "--samples", "100"]) == 2
-    assert "--samples is for an SRDF: give --srdf, too" in capsys.readouterr().err
+@pytest.mark.slow
+def test_a_list_of_parts_says_how_many_poses(tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio")
+    listed, out = parts_in(tmp_path, "200", "srdf: it.srdf, "), tmp_path / "out"
+    assert main(["join", listed, "-q", "-o", str(out / "r.urdf")]) == 0
+    assert b'"Never"' in (out / "r.srdf").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("samples", "told"), [("100", "an SRDF: give a part its srdf"), ("few", "a number such as")]
+)
+def test_samples_are_a_number_for_an_srdf(samples: str, told: str, tmp_path: Path) -> None:
+    listed = parts_in(tmp_path, samples, "")
+    with pytest.raises(InputError, match=rf"all\.join:1: samples is .*{told}"):
+        listed_in(listed)
+
+
+def parts_in(folder: Path, samples: str, srdf: str) -> str:
+    for name, text in (("arm.urdf", ARM), ("blocks.urdf", BLOCKS), ("it.srdf", SRDF)):
+        (folder / name).write_text(text)
+    part = f"{{{srdf}description: blocks.urdf, at: {{parent: column}}}}"
+    listed = folder / "all.join"
+    listed.write_text(f"samples: {samples}\njoin: [{{{srdf}description: arm.urdf}}, {part}]\n")
+    return str(listed)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files as people write them, and what they are with the argument; read back by hand."""
 
 from __future__ import annotations

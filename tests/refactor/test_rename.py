@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A name of a package is another one everywhere: files written by hand, and what is refused."""
 
 from __future__ import annotations
@@ -96,16 +97,29 @@ def test_a_name_that_pieces_make_is_refused_with_its_place(package: Path) -> Non
         rename_symbol("left_wheel", "drive", str(package))
 
 
-def test_a_joint_is_none_of_the_links_that_are_called_so(tmp_path: Path) -> None:
-    text = (
-        '<robot name="r"><link name="arm"/><link name="a"/><joint name="arm" type="fixed">'
-        '<parent link="arm"/><child link="a"/></joint></robot>'
-    )
-    (tmp_path / "r.urdf").write_text(text)
-    made = rename_symbol("arm", "elbow", str(tmp_path), kind="joint")
-    assert next(iter(made.after.values())).decode() == text.replace(
-        'joint name="arm"', 'joint name="elbow"'
-    )
+P3D = '<plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>{}</frame_name></plugin>'
+SENSOR = (
+    '<link name="base"/><gazebo reference="base"><sensor name="s" type="{}">{}</sensor></gazebo>'
+)
+# What is renamed, of which kind, and the description with ? where the name is.
+OF_KIND = [
+    ("arm", "joint", '<link name="arm"/><link name="a"/><joint name="?" type="fixed"><parent link='
+     '"arm"/><child link="a"/></joint>'),
+    ("base", "link", SENSOR.format("imu", "<gz_frame_id>?</gz_frame_id>").replace('"base"', '"?"')
+     + f"<gazebo>{P3D.format('?')}</gazebo>"),
+    ("ground", "frame", f'<link name="base"/><gazebo>{P3D.format("?")}</gazebo>'),
+    ("scan", "topic", SENSOR.format("gpu_lidar", "<topic>?</topic>")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "kind", "inside"), OF_KIND, ids=[it[1] for it in OF_KIND])
+def test_what_is_called_so_and_is_of_the_kind_is_renamed(
+    tmp_path: Path, old: str, kind: str, inside: str
+) -> None:
+    text = f'<robot name="r" {SPACE}>{inside}</robot>'
+    (tmp_path / "r.urdf.xacro").write_text(text.replace("?", old))
+    made = rename_symbol(old, "another", str(tmp_path), kind=kind)
+    assert next(iter(made.after.values())).decode() == text.replace("?", "another")
 
 
 def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
@@ -116,41 +130,6 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
     assert made.after[str(tmp_path / "r.srdf")].decode() == srdf.replace(
         '<link name="a"', '<link name="b"'
     )
-
-
-def test_a_frame_with_the_name_of_a_link_follows_it(tmp_path: Path) -> None:
-    text = (
-        '<robot name="r"><link name="base"/><gazebo reference="base">'
-        '<sensor name="s" type="imu"><gz_frame_id>base</gz_frame_id></sensor></gazebo><gazebo>'
-        '<plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>base</frame_name></plugin>'
-        "</gazebo></robot>"
-    )
-    (tmp_path / "r.urdf").write_text(text)
-    made = rename_symbol("base", "chassis", str(tmp_path))
-    assert next(iter(made.after.values())).decode() == text.replace('"base"', '"chassis"').replace(
-        ">base<", ">chassis<"
-    )
-
-
-def test_a_frame_is_renamed(tmp_path: Path) -> None:
-    text = (
-        '<robot name="r"><link name="base"/><gazebo>'
-        '<plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>ground</frame_name></plugin>'
-        "</gazebo></robot>"
-    )
-    (tmp_path / "r.urdf").write_text(text)
-    made = rename_symbol("ground", "floor", str(tmp_path), kind="frame")
-    assert next(iter(made.after.values())).decode() == text.replace(">ground<", ">floor<")
-
-
-def test_a_topic_is_renamed(tmp_path: Path) -> None:
-    text = (
-        f'<robot name="r" {SPACE}><link name="base"/><gazebo reference="base">'
-        '<sensor name="s" type="gpu_lidar"><topic>scan</topic></sensor></gazebo></robot>'
-    )
-    (tmp_path / "r.urdf.xacro").write_text(text)
-    made = rename_symbol("scan", "front_scan", str(tmp_path), kind="topic")
-    assert next(iter(made.after.values())).decode() == text.replace(">scan<", ">front_scan<")
 
 
 @pytest.mark.parametrize(
@@ -193,25 +172,46 @@ DRIVEN = """<robot name="r"><link name="base"/><gazebo>
 """
 
 
+BESIDE = {
+    "r.srdf": '<robot name="r"><group name="g"><link name="palm"/></group></robot>',
+    "other.urdf": '<robot name="other"><link name="palm"/></robot>',
+    "own.yaml": "drive:\n  ros__parameters:\n    base_frame_id: palm\n",
+    "own.rviz": "Visualization Manager:\n  Global Options:\n    Fixed Frame: palm\n",
+    "joint_limits.yaml": "joint_limits:\n  wrist: {has_velocity_limits: true}\n",
+}
+
+
 @pytest.mark.parametrize(
-    ("old", "new", "kind", "taken"),
+    ("name", "new", "kind", "said"),
     [
-        ("go", "wheels", "topic", "topic"),
-        ("odom", "base", "frame", "link"),
-        ("base", "odom", "link", "frame"),
+        ("r.urdf", "arm", "link", "uses the link 'arm'"),
+        ("r.urdf", "wheels", "topic", "has a topic 'wheels'"),
+        ("r.urdf", "base", "frame", "has a link 'base'"),
+        ("r.urdf", "odom", "link", "has a frame 'odom'"),
+        ("r.srdf", "palm", "link", "uses the link 'palm'"),
+        ("other.urdf", "palm", "frame", "has a link 'palm'"),
+        ("own.yaml", "palm", "link", ":3 uses the link 'palm'"),
+        ("own.rviz", "palm", "frame", ":3 uses the frame 'palm'"),
+        ("joint_limits.yaml", "wrist", "joint", ":2 uses the joint 'wrist'"),
+        ("own.yaml", "palm", "joint", ""),
+        ("joint_limits.yaml", "wrist", "link", ""),
+        ("own.yaml", "pal", "link", ""),
     ],
 )
-def test_a_name_that_is_only_used_is_taken_too(
-    tmp_path: Path, old: str, new: str, kind: str, taken: str
+def test_a_name_that_a_file_of_the_folder_uses_is_taken(
+    tmp_path: Path, name: str, new: str, kind: str, said: str
 ) -> None:
-    (tmp_path / "r.urdf").write_text(DRIVEN)
-    with pytest.raises(UsageError, match=f"r.urdf has a {taken} '{new}' already"):
-        rename_symbol(old, new, str(tmp_path), kind=kind)
-
-
-def test_a_link_that_is_missed_and_a_name_of_another_robot_are_free(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(DRIVEN)
-    (tmp_path / "other.urdf").write_text('<robot name="other"><link name="palm"/></robot>')
-    for new in ("arm", "palm"):
-        made = rename_symbol("base", new, str(tmp_path))
+    joint = (
+        '<link name="hub"/><joint name="j" type="fixed"><parent link="base"/><child link="hub"/>'
+    )
+    (tmp_path / "r.urdf").write_text(DRIVEN.replace("</robot>", f"{joint}</joint></robot>"))
+    if name in BESIDE:
+        (tmp_path / name).write_text(BESIDE[name])
+    old = {"link": "base", "joint": "j", "frame": "odom", "topic": "go"}[kind]
+    if said:
+        with pytest.raises(UsageError) as found:
+            rename_symbol(old, new, str(tmp_path), kind=kind)
+        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said} already" in str(found.value)
+    else:
+        made = rename_symbol(old, new, str(tmp_path), kind=kind)
         assert [Path(it).name for it in made.after] == ["r.urdf"]

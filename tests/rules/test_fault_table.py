@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Healthy and broken systems through every source: silent, or one code for a fault wherever it is met.
 
 The faults come from thought (``graph_faults.py``), what a source lacks from its format.

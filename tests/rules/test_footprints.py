@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A footprint as nav2_util's parseVVF reads it."""
 
 from __future__ import annotations

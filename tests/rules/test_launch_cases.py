@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said of the words, programs and starts of a launch, and what is right and stays unsaid.
 
 Sources: tf2_ros jazzy static_transform_broadcaster_program.cpp, nav2_lifecycle_manager, ros2_control
@@ -123,6 +124,13 @@ def test_a_remap_rule_for_a_name_that_is_nearly_there(
     node = started(*STATE, remappings=((rule, "x"),))
     assert said(judged(known, "MR103", node)) == texts
     assert judged(known, "MR103", UNKNOWN._replace(remappings=((rule, "x"),))) == []
+
+
+@pytest.mark.parametrize("rule", ["scan", "/scan", "~/change_state"])
+def test_a_slash_before_a_name_or_a_rule_is_no_slip(rule: str, known: Knowledge) -> None:
+    """slam_toolbox asks for /scan; launch files write both."""
+    names = ("slam_toolbox", "async_slam_toolbox_node", "slam_toolbox")
+    assert judged(known, "MR103", started(*names, remappings=((rule, "x"),))) == []
 
 
 @pytest.mark.parametrize(("namespace", "count"), [("/robot1", 0), ("/robot2", 1)])

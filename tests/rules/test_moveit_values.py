@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small plans beside small graphs: what is said of them, and what is right and stays unsaid."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place."""
 
 from __future__ import annotations
@@ -54,6 +55,21 @@ options = {{
   tracking_frame = "{}",
 }}
 """
+MANAGED = """lifecycle_manager:
+  ros__parameters:
+    node_names: ["amcl", "{}"]
+map_server:
+  ros__parameters: {{yaml_filename: /map.yaml}}
+amcl:
+  ros__parameters: {{alpha1: 0.1}}
+"""
+MPPI = """controller_server:
+  ros__parameters:
+    controller_plugins: ["Mppi"]
+    Mppi:
+      plugin: "nav2_mppi_controller::MPPIController"
+      {}
+"""
 # Kind of a file, its text, and the code, line and column of what is wrong in it. What the nodes make
 # of each: robot_localization ros_filter.cpp (frequency, publish_tf), amcl_node.cpp (max_beams is an
 # integer), rcl_validate_topic_name, tf2 validateFrameId, rcl_yaml_param_parser, bridge_config.cpp.
@@ -63,6 +79,8 @@ BROKEN = {
     "a fraction of a beam": ("params", AMCL.format("max_beams: 60.5"), "MB120:3:16"),
     "a topic with a digit": ("params", AMCL.format("scan_topic: 1scan"), "MB312:3:17"),
     "a misspelt frame": ("params", AMCL.format("base_frame_id: base_lnik"), "MB853:3:20"),
+    "a managed node": ("params", MANAGED.format("map_sever"), "MB894:3:17"),
+    "a batch of none": ("params", MPPI.format("batch_size: -1"), "MB125:6:19"),
     "a frame to itself": ("params", AMCL.format("odom_frame_id: map"), "MB894:3:20"),
     "a misspelt joint": ("params", ARM.format("left_whel_joint"), "MB854:3:14"),
     "a slash": ("params", AMCL.format("odom_frame_id: /odom"), "MB301:3:20"),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that are another one but for a slip: expectations are what a person would call a slip."""
 
 from __future__ import annotations

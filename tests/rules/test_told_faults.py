@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A hundred faults in words, each beside a healthy twin: told, with the words that were asked for."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers that spawners load: their type is a parameter of their manager.
 
 Expected: ros2_control controller_manager.cpp reads ``NAME.type`` of the manager's own node, whatever

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes whose code sets their names: costmaps, and the servers of Nav2 that make them.
 
 Costmap2DROS gives its node ``__ns:=<namespace of the server>/<name>`` and ``<name>:__node:=<name>`` as

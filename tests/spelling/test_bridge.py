@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge of a fleet carries each robot's gz topics once, under the names ROS nodes use."""
 
 from __future__ import annotations

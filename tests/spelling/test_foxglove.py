@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The layout for Foxglove: its keys are those of lichtblick's sources, its topics those of the plan."""
 
 from __future__ import annotations

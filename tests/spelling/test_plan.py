@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan that follows from a table: which nodes and ends it has, and which of them may be missing."""
 
 from __future__ import annotations

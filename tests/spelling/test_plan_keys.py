@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plan as a file: every key is written, comes back, and is refused where it is wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The schema of plans that editors read: it takes what the reader takes, and nothing else."""
 
 from __future__ import annotations

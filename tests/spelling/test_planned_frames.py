@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of a plan that no description declares: what messages, plugins and parameters may name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names module and the real rcl agree: on thousands of names, rules and nodes under rules."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The remap table: which rules a fleet's nodes need, where their names lead, and in what form."""
 
 from __future__ import annotations

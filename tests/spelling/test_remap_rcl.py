@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The real rcl takes every rule of the tables and leads every name where the tables say."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 names and remap rules: what is refused, what is proposed, where the parts stand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is started for the nodes of a table: processes, components, spawners, and their arguments."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names a remap table treats in a way of their own: image transports, names made at run time, kinds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a small table and a small plan look like, to the letter, in every form."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MR105 and MR103 by release: a rule in a plugin's tag that is meant for a controller."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a rule stands and which node has it then, by release, as the programs' sources say.
 
 Controllers: ros2_control 2.54.0 (humble), 4.46.0 (jazzy), 5.16.0 (kilted), 6.5.0 (lyrical),

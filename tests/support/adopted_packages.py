@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Packages that got a prefix by hand, as they were before, under ``multibot adopt``, beside the commit.
 
 ``python tests/support/adopted_packages.py MIRRORS`` prints what docs/measurements.md has a table of;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The packages of fixtures/adopted_packages.tsv under ``multibot adopt``, judged by xacro itself.
 
 ``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
@@ -40,6 +41,7 @@ KINDS = {
     "code": "code names",
     "data": "it names",
     "composed": "put together",
+    "stays": "stays with",
     "unsaid": "where no element says",
     "launch": "by hand",
     "unproved": "not proved",

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults that only messages and answers of nodes show: frames of headers, states."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is found in a file beside a description: by its rewrite, and by the rules for its kind."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults put into the files of a built fleet, and what its read-back says of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fleets of each kind, built: what the tests of ``fleet.launch.py`` share."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Case files: one input, what is to become of it, and why. The format is in ``read_case``."""
 
 from __future__ import annotations

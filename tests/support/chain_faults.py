@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults between a sender and a robot: relays, limits left out, names twice, two senders."""
 
 from __future__ import annotations

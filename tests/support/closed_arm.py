@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of a fleet of two robots that close: an arm on a base, with MoveIt, sensors and filters."""
 
 from __future__ import annotations

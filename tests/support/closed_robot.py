@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of a fleet of two robots that close: controllers, a filter, a bridge, MoveIt, Nav2."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The controller types that the plugin files of packages register.
 
 Source: pluginlib class_loader_imp.hpp (``<class>`` with ``name``, or ``type`` where it has none, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a piece of work costs, without a clock: the lines of Python that it runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Endpoints of nodes as their sources declare them: ``fixtures/interfaces/RELEASE.tsv``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rewrite must make of links, joints and their references.
 
 Computed from the parsed text alone; nothing of it comes from the package.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a seeded fault is, the systems that faults are put into, and what can be done to them."""
 
 from __future__ import annotations

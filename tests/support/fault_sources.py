@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One system as each source has it: what is read of a file, a router, a message, a bag, a launch.
 
 Each function gives the package what the source would hold of the system, spelled here from the source's

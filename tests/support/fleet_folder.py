@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A folder with a fleet: two kinds of robots, companion files, and the fleet file that names them."""
 
 from __future__ import annotations

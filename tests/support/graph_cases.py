@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The graphs in ``fixtures/graphs``: a fleet as planned, and one broken for each rule.
 
 ``python tests/support/graph_cases.py`` writes them anew, the printed lines beside them included.

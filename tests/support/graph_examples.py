@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small plans and graphs as lines of text, in which the examples of graph rules are written.
 
 Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in the graph) or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults put into systems in which nothing was wrong, and what has to be said of each.
 
 They come from thinking about what hurts a fleet, not from the rules. A row has the system, what is done

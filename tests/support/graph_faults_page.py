@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of seeded faults: ``python tests/support/graph_faults_page.py --write``."""
 
 from __future__ import annotations

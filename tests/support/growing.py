@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions that are large in one thing."""
 
 from __future__ import annotations

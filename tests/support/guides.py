@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pages that are followed step by step: their files are written, their commands run and compared.
 
 A block of code is a step, and the end of the paragraph before it says which:

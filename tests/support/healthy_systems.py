@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Systems in which nothing is wrong, as graphs: plans of real stacks, and the tools that people run.
 
 Nodes, names and types are those of the stacks' facts; tools have what their sources give them.

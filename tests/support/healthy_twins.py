@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Healthy systems beside seeded faults: what looks like one and is none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vendors' own descriptions of two arms, against what ``multibot join`` makes of one of them.
 
 ``MULTIBOT_SOURCES=FOLDER python tests/support/joined_duals.py`` prints the table of

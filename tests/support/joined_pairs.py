@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pairs of public parts, what the joined robot of each is, and what other programs make of it.
 
     python tests/support/joined_pairs.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a launch file as ``ros2 launch`` does: file, then name:=value; needs launch."""
 
 from __future__ import annotations

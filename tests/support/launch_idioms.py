@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch authors write, each as a launch file of its own: docs/launch-idioms.md.
 
     python tests/support/launch_idioms.py            try each in the launch that is here, print the page

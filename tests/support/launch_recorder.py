@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which nodes a launch file starts, told by the real ``ros2 launch`` with programs that do nothing.
 
 ``python launch_recorder.py [--xacro] FILE [NAME:=VALUE ...]`` prints them as JSON, with the values of

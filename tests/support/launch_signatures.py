@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch and launch_ros have, and what their classes take: fixtures/launch_signatures.json.
 
     python tests/support/launch_signatures.py > fixtures/launch_signatures.json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The package's stand-in for launch, with what ``multibot_rewrite.launch`` uses of its XML frontend.
 
 It runs no process, and its XML knows attributes and children, no type but bool and lists of elements.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files read by the stand-in in the process of the tests, as the child reads them in its own.
 
 What the child changes for good (its environment, command line, what classes of launch keep) is as it

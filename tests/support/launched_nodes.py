@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes as launch files start them, and the robot that runs them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Launch files in the real launch, with programs that write down what they are told."""
 
 from __future__ import annotations

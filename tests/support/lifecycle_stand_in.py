@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stands for a program with a life cycle: writes each state change that it is asked for into the folder
 TOLD, and ends when it is active and idle, or when nobody asks for anything.
 

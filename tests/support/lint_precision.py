@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often the newest rules of the lint are right, and what they find of planted defects, as a page.
 
 python tests/support/lint_precision.py --write

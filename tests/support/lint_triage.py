@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the lint finds in public files, counted; ``tools/pages/lint_triage.py`` has the judgements.
 
 python tests/support/lint_triage.py > fixtures/lint_triage_counts.tsv

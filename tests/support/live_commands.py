@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What live tests of ``multibot check`` share: robots, their plan, the command."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Live nodes for tests: a process of rclpy nodes that ends cleanly when its standard input closes.
 
 Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A graph of records, played by real nodes: what ``live_fleet`` is told to start for it.
 
 Endpoints whose type is not installed here are left out, and actions: their clients and servers need it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small snapshots, as one machine or another sees them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bags of two robots, made with the writer of rosbags, and plans for them."""
 
 from __future__ import annotations

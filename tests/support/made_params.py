@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files of two robots' fleets, rewritten: what becomes of a section."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults of tf and of commands."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged robot files: mutations, and the mutant of a seed."""
 
 from __future__ import annotations

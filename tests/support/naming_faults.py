@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults of names, data and clocks."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nav2 for two robots in the real launch, and the graph and parameters that come of it.
 
     python tests/support/nav2_cells.py [WORD ...]     the table; only cells that have these words

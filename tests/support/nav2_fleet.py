@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A fleet of two rovers with the files beside it that nav2.launch.py starts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of pictures share: plans of real stacks, graphs as planned, and ways to spoil them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stands for the programs of a launch: nodes with the command lines that launch gave them.
 
 A child process: its order, one line of JSON, are processes (``nav2_cells``). The real rcl reads each

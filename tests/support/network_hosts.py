@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hosts on one machine: network namespaces on one bridge, each with a /dev/shm of its own.
 
 Fast DDS prefers shared memory and finds it across network namespaces; where every host has its own,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lint without workers where something else is tried: each would start a server of xacro of its own."""
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from multibot_rewrite.lint import workers
+from multibot_rewrite.base import workers
 
 
 class Here(NamedTuple):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node answers, in short."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The published schema of NoDL documents, where this machine has it: it is not part of this project."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeded faults of what is waited for in vain, of senders side by side, and of robots that differ.
 
 Most are of one robot without a name: what people ask about most.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is open in the robots of a fleet, by a build and by a plan."""
 
 from __future__ import annotations

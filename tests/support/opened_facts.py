@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A reader of descriptions that knows nothing of the program: what plugins and sensors open, by facts
 that were read in the sources of their consumers (../shared/facts) and by the tables of the drive test.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands that a page shows with what they print: read from it, and run as a reader would.
 
 A block ``console`` has lines ``$ COMMAND``, each with some lines of what it prints, in order; ``...``

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The corpus of parameter files: what becomes of each, and whether that is as it has to be.
 
 ``python tests/support/params_corpus.py`` writes the refusals on record anew.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The syntax trees of the package, read once for all tests that look at its sources."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plans in short: a robot with its nodes, and a system of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults made by chance: one place of a right output, or one edit of a right plan, is wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs ``urdf-postfix`` as a person does, and looks at what one run left behind."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wrong outputs of a rewrite, and the check of the proof that has to refuse each of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random parameter files of known nodes, and fleets that have them."""
 
 from __future__ import annotations

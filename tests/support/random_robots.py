@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random robots, and random ways to write each of them down."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers questions about names with the real rcl: JSON lines in, JSON lines out, ends with stdin.
 
 Run by ``test_rcl_agreement`` in a process of its own; it needs rclpy and an RMW.

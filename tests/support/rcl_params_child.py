@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads parameter files with the real rcl: JSON lines in, JSON lines out, ends with stdin.
 
 Run by ``test_params_rcl`` in a process of its own; it needs rclpy and an RMW.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real robot files: the corpus beside the repository, and installed description packages."""
 
 from __future__ import annotations

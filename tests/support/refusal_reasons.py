@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why a real file is refused, and whether that is true by other means than the package's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every refusal of ``urdf-postfix`` looks like, and small robots to refuse."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes for the tests of the report: one for each state that a reader may meet."""
 
 from __future__ import annotations

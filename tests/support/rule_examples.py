@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples of rules, each in the surroundings that its format needs: what is found in them."""
 
 from __future__ import annotations

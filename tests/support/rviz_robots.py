@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots for RViz configs: a description made up of the names in the file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All that the program says: messages of the code, words of rules, help, notes of data files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two robots of two nodes: their plan, and the graph exactly as planned."""
 
 from __future__ import annotations

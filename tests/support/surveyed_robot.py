@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A small robot, and what is collected and counted of it."""
 
 from __future__ import annotations

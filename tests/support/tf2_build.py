@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds the part of tf2_msgs the tests need, for machines where ROS comes from PyPI without it.
 
 Needs cmake, a C++ compiler and the generator wheels beside rclpy; takes some seconds.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Public calls at once, a thread each, in a process that has made nothing yet: a list of jobs as JSON
 in, what each gives out. Run by ``test_threads``.
 """

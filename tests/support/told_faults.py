@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults of ``fixtures/told_faults.txt``: a graph, its healthy twin, the words to be said of it.
 
 ``python tests/support/told_faults.py`` prints which commands find which.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What programs were told by a launch -> the nodes that they would be, for rcl to name.
 
 The rules, names and namespaces are the words of the command lines. What is in a node's code (its

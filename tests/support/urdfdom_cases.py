@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small descriptions for each version of URDF, with what is at stake; check_urdf judges them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults of values, each planted alone in a healthy robot with its files: which of them are told.
 
 ``fixtures/lint/defects`` has the robot, the faults by class, those that users asked about, and odd

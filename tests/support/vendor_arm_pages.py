@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fleets of the pages of vendors' arms, in their layout and one other, with two arms and three.
 
 What is true of them is on the page: its codes.

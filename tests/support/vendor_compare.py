@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A vendor's robot as its launch files run it, against what is built for it: rows that differ."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two robots of a vendor each, with Nav2 and the nodes that the vendor's own launch files start.
 
 Names and types are those of the sources named beside each; nothing is wrong in any of them.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A healthy system of a vendor: the nodes that its launch files start, with what their sources declare.
 
 Names and namespaces are those of ``launch_recorder.py``, remap rules those and, for what they do not

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rehearsal says of a fleet file, and what check says of the graph that came up.
 
 The rehearsal starts a stand-in for every node, on real DDS; its graph is compared once more with the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of vendors' robots, docs/robots.md.
 
     python tests/support/vendor_pages.py [ROBOT ...]      print the sections of some robots
@@ -90,7 +91,7 @@ def section(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> st
 
 def sources(it: Recipe, revisions: Sequence[str]) -> str:
     """What it was built from, and the shape of the outputs if the vendor has one."""
-    option = f" Build it with `--shape {it.shape}`." if it.shape else ""
+    option = f" Build it with `shape: {it.shape}`." if it.shape else ""
     return f"Sources: {', '.join(revisions)}.{option}"
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recipes for vendors' robots: what is built from their own files, and which difference is right.
 
 ``vendors/recipes/*.yaml`` has them; ``vendor_pages.py`` writes their pages. A difference from what the

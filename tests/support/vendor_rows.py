@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What vendors' and our files say, as rows of data that can be compared: where, and which value.
 
 It knows nothing of the project: parameters are merged as rcl does it, descriptions are read as XML.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A vendor's launch files with the files that a build made for them: what its nodes get then."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checkouts of vendors' repositories as packages that are found as installed ones.
 
 MULTIBOT_SOURCES names a folder with the checkouts.

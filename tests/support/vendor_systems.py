@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What vendors' launch files start, against what a plan has: by their own files, and by launch files.
 
     python tests/support/vendor_systems.py [SYSTEM ...]      print each node

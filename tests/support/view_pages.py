@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pages of ``multibot view``."""
 
 from __future__ import annotations

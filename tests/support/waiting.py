@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Waiting for what another process does: the only place where a test reads a clock."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The way of a new user from one description to robots that run as planned, by ``--help`` alone.
 
 ``python tests/support/walk.py REPOSITORY [DESCRIPTION]`` walks it in a copy of a checkout and prints

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Run a module of Python in a process whose kernel has neither Landlock nor seccomp, as in a container
 that forbids both: ``python tests/support/without_kernel_fences.py MODULE ARGUMENT...``.
 

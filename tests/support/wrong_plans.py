@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plans of a rewrite that are wrong, and the check of the proof that has to refuse each.
 
 A fault puts something in the place of one function of the package; the text, the plan and the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Readings of a source, or of an output, that are wrong, and the check that has to refuse each."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots for a Zenoh router in tests: sessions with tokens as rmw_zenoh writes them.
 
 The tokens are put together here from the source of rmw_zenoh (liveliness_utils.cpp), not by the

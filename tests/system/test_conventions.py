@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is everybody's stands in one table, and every command goes by it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the variables of discovery say, and what a view of the graph may not have seen."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which robots a graph shows, which nodes only copy a tree, what the variables of discovery hide."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What rules look up in a system: ends by name, trees by topic, whose each of them is."""
 
 from __future__ import annotations

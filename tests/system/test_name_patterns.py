@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that are made at run time: a plan has a ``*`` in place of one, which stands for one or more
 characters of a segment."""
 

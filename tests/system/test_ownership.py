@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which robot a name of the graph belongs to, and what it is called without the robot's name."""
 
 from __future__ import annotations

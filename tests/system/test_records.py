@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small questions that are asked of the records of a system."""
 
 from __future__ import annotations

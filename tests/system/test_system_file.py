@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The file of a system: its published schema, and what older versions wrote."""
 
 from __future__ import annotations

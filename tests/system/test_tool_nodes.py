@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which nodes are none of a robot's, by name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a topic is, by its type and its name: does it move a robot, does one device send it?"""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two healthy arms with MoveIt and ros2_control have no finding, in any layout and release.
 
 ``fixtures/arm_systems.yaml`` has what the vendors' launch files start, ``fixtures/interfaces/`` what

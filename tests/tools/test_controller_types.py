@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every controller type that packages register is known, in the releases that have it.
 
 ``fixtures/interfaces/controller_types.tsv`` has the types of their plugin files; the checkouts that it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node declares is found in its sources, however it is written there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``nodes.yaml`` says of each release what its sources say, or an exception says why not.
 
 ``fixtures/interfaces/RELEASE.tsv`` is what ``python -m tools.interfaces`` found in the

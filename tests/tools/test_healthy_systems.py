@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A healthy system of a release has no finding: its endpoints are what the sources declare.
 
 Each node has what ``fixtures/interfaces/RELEASE.tsv`` says of it, in its robot's namespace and with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes of a node, nodes of one name in two packages, and the release that is compared with."""
 
 from __future__ import annotations

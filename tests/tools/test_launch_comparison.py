@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Our stacks are what the launch files of each release start, or an exception says why not.
 
 ``fixtures/interfaces/launch_exceptions.tsv`` has kind, stack, node (and rule) and the reason.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes of launch files in Python, XML and YAML; the files are written here."""
 
 from __future__ import annotations

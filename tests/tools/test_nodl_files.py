@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """NoDL documents written from sources: what they have, and that the published schema takes them."""
 
 from __future__ import annotations

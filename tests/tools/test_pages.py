@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pages that are made with the site: each thing that is known stands on one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Our table of parameters is what the sources of each release say, or an exception says why not.
 
 ``fixtures/interfaces/parameters_RELEASE.tsv`` is made by ``python -m

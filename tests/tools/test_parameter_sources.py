@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters as YAML files, C++ and Python have them; files are written here, not taken from others."""
 
 from __future__ import annotations

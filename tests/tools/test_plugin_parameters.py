@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of plugins and elements of SDF as their sources have them; sources are written here."""
 
 from __future__ import annotations

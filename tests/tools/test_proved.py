@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The survey of public descriptions: kinds of robots, and the verdict of each."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of strangers says of what nobody has read whose it is, and whether the build names it."""
 
 from __future__ import annotations

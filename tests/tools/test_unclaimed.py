@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which mentions a reason explains, and what is left."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of errors in public descriptions: what it says of each is whole, and it is up to date."""
 
 from __future__ import annotations

@@ -180,9 +180,6 @@ LINT = Command(
                         type=values.count,
                     )
                 ),
-                rare(
-                    switch("--no-cache", about="lint what did not change since the last time, too")
-                ),
             ),
         ),
         NAMING,
@@ -301,44 +298,8 @@ JOIN = Command(
             "parts, once for each behind the first, in their order",
             (
                 each("--at", "LINK", "the link that it is fixed to, by its name in the result"),
-                rare(
-                    each(
-                        *("--pose", "POSE"),
-                        '"x y z roll pitch yaw" of its root there; metres, radians',
-                    )
-                ),
+                each("--pose", "POSE", '"x y z roll pitch yaw" of its root there; metres, radians'),
                 each("--prefix", "WORD", "what goes before its names, such as left_"),
-            ),
-        ),
-        OptionGroup(
-            'files beside, once for each part, the first one too; each may be ""',
-            (
-                rare(each("--srdf", "FILE", "the SRDF of the part")),
-                rare(each("--controllers", "A,B", "parameter files of its controllers")),
-                rare(
-                    each("--moveit", "A,B", "MoveIt's files for it: kinematics, joint limits ...")
-                ),
-                rare(each("--rviz", "FILE", "its RViz config")),
-            ),
-        ),
-        OptionGroup(
-            "the whole",
-            (
-                rare(
-                    value(
-                        "--samples",
-                        metavar="COUNT",
-                        about="disable collisions of links of two parts that never or always touch in"
-                        " so many random poses, by pinocchio; MoveIt's Setup Assistant takes 10000",
-                        type=values.count,
-                    )
-                ),
-                rare(
-                    switch(
-                        "--one-system",
-                        about="put joints of parts with the same hardware into one ros2_control",
-                    )
-                ),
             ),
         ),
         OptionGroup(
@@ -353,9 +314,8 @@ JOIN = Command(
     "0 done; 2 wrong use, a file that cannot be read, or parts that cannot be joined",
     more="Each run checks that every part can be taken out of the result as it was, and that no joint"
     " inside a part has changed. Names that two parts have are refused: give one a --prefix."
-    "\n\nA pose is x y z roll pitch yaw. --srdf FILE and --controllers A,B, once for each part and for"
-    " the first one, join these files, too. They become PATH.srdf and PATH_controllers.yaml. A .join"
-    " file has all of it as YAML, and every command that takes a description takes one:"
+    "\n\nA .join file has all of it as YAML, and every command that takes a description takes one. It"
+    " joins files beside, too: a part may have srdf, controllers, moveit and rviz (docs/package.md):"
     "\n\n  join:\n    - {description: arm.urdf}\n"
     "    - {description: hand.urdf, prefix: hand_, at: {parent: tool0, pose: {z: 0.1}}}",
 )

@@ -43,8 +43,6 @@ from multibot_rewrite.cli.options import (
 
 # The plan, and besides those of ``spelling.table_formats``, which a help text does not import.
 PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
-# Those of ``fleet/shapes.yaml``.
-SHAPES = ("clearpath", "husarion", "nav2", "turtlebot4")
 # Those of ``spelling.ways``.
 EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
@@ -96,10 +94,10 @@ _COUNT = value(
     "-n",
     "--count",
     metavar="COUNT",
-    about="how many robots; init makes so many of each description (default: 2); build takes the first"
-    " ones of the file, or adds more like the last one (default: as the file has them)",
+    about="robots of each description (default: 2)",
     type=values.count,
 )
+_FIRST = "the first robots of the file, or more like the last one; default: as the file has them"
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -165,7 +163,7 @@ BUILD = Command(
         Example("multibot build --undo", "remove what a build wrote into out/"),
     ),
     (
-        OptionGroup("input", (_FLEET, _COUNT, DISTRO, TRUST)),
+        OptionGroup("input", (_FLEET, _COUNT._replace(help=_FIRST), DISTRO, TRUST)),
         output_group(
             output("write everything into that folder; default: out/", default="out/"),
             switch(
@@ -174,15 +172,6 @@ BUILD = Command(
             ),
             switch("--check", about="list what is stale, write nothing"),
             switch("--force", about="overwrite files that no build made"),
-            rare(
-                choice(
-                    "--shape",
-                    "VENDOR",
-                    SHAPES,
-                    "write files as the launch files of a vendor take them, and the commands that"
-                    " start these (docs/fleet-file.md); default: that of the fleet file",
-                )
-            ),
         ),
         FINDINGS,
         GENERAL,
@@ -199,7 +188,7 @@ PLAN = Command(
     "Write the ROS graph that a fleet should have, or its rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
-        Example("multibot plan rover.urdf robot1 robot2 --stack nav2 --form table", "the rules"),
+        Example("multibot plan fleet.yaml --form table | grep amcl", "the rules of a node"),
         Example("multibot plan rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
         Example("multibot plan fleet.yaml --form sros2 -o policy.xml", "docs/security.md"),
         Example("multibot plan my_bringup two.launch.py -o plan.yaml", "what a launch file starts"),

@@ -72,6 +72,7 @@ CHECK = Command(
         Example("multibot check plan.yaml", "are they as planned?"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
         Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot check before.json --snapshot after.json", "what is gone or new?"),
         Example("multibot check --domain 11,12", "robots that have a domain each"),
         Example("multibot check --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
         Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
@@ -82,7 +83,7 @@ CHECK = Command(
         OptionGroup(
             "input",
             (
-                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file", "?"),
+                argument("plan", "PLAN", "what plan or snapshot wrote, or a fleet file", "?"),
                 DISTRO,
                 TRUST,
             ),
@@ -123,7 +124,7 @@ CHECK_LAUNCH = Command(
             (
                 argument(
                     "words",
-                    "WORD",
+                    "FILE",
                     "a launch file, or a package and a file in it, and launch arguments; or a"
                     " system_model.yaml. The file is a program, which runs; nothing is started",
                     "+",
@@ -213,9 +214,7 @@ SNAPSHOT = Command(
                 several(
                     "--expect", "NODE", "stop when these nodes are there", [], values.full_names
                 ),
-                several(
-                    "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
-                ),
+                rare(several("--topic", "A,B", "QoS of these topics, too", [], values.full_names)),
                 SAVED,
                 ZENOH,
                 STATE,

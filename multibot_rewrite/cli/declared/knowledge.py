@@ -35,7 +35,7 @@ INSPECT = Command(
             (
                 argument(
                     "words",
-                    "WORD",
+                    "NAME",
                     "a finding's code, its beginning, or its name; a library, class, element or"
                     " sensor type; files, or folders to search for *.urdf and *.sdf; NAME:=VALUE is"
                     " for xacro",

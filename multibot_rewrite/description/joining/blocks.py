@@ -14,7 +14,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.joining.kept import was
+from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.readback.xml import plain, text_of
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.spans import Spans
@@ -54,12 +54,8 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
             notes += _other_settings(first, plugin, part)
         notes += _of_the_whole(block, doubles, part)
         gone = [block] if doubles and len(doubles) == len(_inside(block)) else doubles
-        edits += [_left_out(spans, it) for it in gone]
+        edits += [left_out(spans, it) for it in gone]
     return Once(tuple(edits), tuple(more), tuple(notes))
-
-
-def _left_out(spans: Spans, element: _Element) -> Edit:
-    return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
 def _blocks(inventory: Inventory) -> Iterator[_Element]:

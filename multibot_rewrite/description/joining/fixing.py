@@ -14,7 +14,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Joint, read_robot
 from multibot_rewrite.description.checks.poses import HERE, Pose, placed, pose_of, pose_of_six
 from multibot_rewrite.description.checks.rotation import rpy_of
-from multibot_rewrite.description.joining.kept import was
+from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.joining.part import ZERO, Part, ReadPart
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import tag_end, value_slot
@@ -61,7 +61,7 @@ def _without_world(part: ReadPart, spec: Part, spans: Spans, joints: Sequence[Jo
     if free is not None:
         raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
     blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]
-    gone = [was(spans.start_of(it), spans.end_of(it), spans.text_of(it)) for it in (link, *blocks)]
+    gone = (left_out(spans, it) for it in (link, *blocks))
     notes = (f"{part.file}:{it.sourceline}: left out: it is about {WORLD!r}" for it in blocks)
     moved = (_moved(part, it, spec, spans) for it in joints)
     return Fixed((*gone, *moved), "", tuple(notes))

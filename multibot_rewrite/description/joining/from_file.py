@@ -37,6 +37,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 
 # Files beside a description, of which a part may have several.
 BESIDE = ("controllers", "moveit")
+SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _AT = ("parent", "pose")
@@ -45,13 +46,24 @@ _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent
 
 def parts_of(path: str) -> tuple[Part, ...]:
     """The parts that a file lists; raises InputError with its line."""
+    return listed_in(path)[0]
+
+
+def listed_in(path: str) -> tuple[tuple[Part, ...], int]:
+    """The parts, and in how many random poses their links are tried; raises as ``parts_of``."""
     try:
         text = read_file(path).decode()
-        keys = table(read_yaml_with_lines(text, path), "the file", ("join",))
+        keys = table(read_yaml_with_lines(text, path), "the file", ("join", SAMPLES))
         items = entries_of(keys, "join")
         if not items:
             raise UsageError(f"{path}: there are no parts; write {_EXAMPLE}")
-        return tuple(_part(it, os.path.dirname(path)) for it in items)
+        parts = tuple(_part(it, os.path.dirname(path)) for it in items)
+        samples = word_of(keys, SAMPLES, "0")
+        if not samples.isdecimal():
+            wrong(keys[SAMPLES], f"samples is {samples}; write a number such as 10000")
+        if int(samples) and not any(it.srdf for it in parts):
+            wrong(keys[SAMPLES], "samples is for an SRDF: give a part its srdf, too")
+        return parts, int(samples)
     except (UsageError, UnicodeDecodeError) as error:
         raise InputError(str(error)) from None
 

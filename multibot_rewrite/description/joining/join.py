@@ -125,10 +125,9 @@ def _added(
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
     system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
-    edits = [*mount.edits, *materials.repeated(joined.document.root, spans)]
-    edits += [*once.part, *system.part]
-    edits += own_spaces(joined.document, spans, edits)
-    made = _edited(text, edits)
+    repeated = materials.repeated(joined.document.root, spans)
+    edits = [*mount.edits, *repeated, *once.part, *system.part]
+    made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
     more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)

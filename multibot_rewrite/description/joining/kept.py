@@ -20,6 +20,8 @@ import re
 from collections.abc import Iterator, Mapping
 from urllib.parse import quote, unquote
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -71,6 +73,11 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     """The edit that puts ``new``, an element or nothing, where ``old`` was, and keeps that."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _hidden(old))
     return Edit(start, end, kept + new, None)
+
+
+def left_out(spans: Spans, element: _Element) -> Edit:
+    """The edit that takes an element out, and keeps it."""
+    return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
 def section(it: Section, start: int, end: int) -> bytes:

@@ -13,7 +13,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.numbers import numbers
-from multibot_rewrite.description.joining.kept import was
+from multibot_rewrite.description.joining.kept import left_out
 from multibot_rewrite.description.joining.part import ReadPart
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import Document, read_document, value_slot
@@ -87,4 +87,4 @@ def repeated(joined: _Element, spans: Spans) -> Iterator[Edit]:
     names = {it.get("name") for it in joined.iterchildren(_TAG)}
     for it in spans.document.root.iterchildren(_TAG):
         if it.get("name") in names:
-            yield was(spans.start_of(it), spans.end_of(it), spans.text_of(it))
+            yield left_out(spans, it)

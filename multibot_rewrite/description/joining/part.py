@@ -28,6 +28,7 @@ from multibot_rewrite.description.checks.links_and_joints import (
 )
 from multibot_rewrite.description.joining.kept import is_joined, is_joined_whole
 from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
@@ -165,7 +166,7 @@ def _faults(inventory: Inventory) -> Iterator[str]:
         return
     robot = read_robot(inventory.document.root)
     if not robot.links:
-        yield "it has no link"
+        yield f"it has no link; {robot_instead(inventory.document.file)}"
     yield from _twice(robot)
     for joint in robot.joints:
         yield from _loose_ends(joint, robot)
@@ -216,7 +217,9 @@ def check_meeting(part: ReadPart, known: Mapping[tuple[str, str], str]) -> None:
         other = known.get((kind, name))
         if other is None or (kind, name) == ("link", WORLD):
             continue
-        more = f"another prefix than {part.prefix!r}" if part.prefix else "a prefix of its own"
+        more = (
+            f"another prefix than {part.prefix!r}" if part.prefix else "a prefix (--prefix hand_)"
+        )
         what = {"hardware": "ros2_control"}.get(kind, kind)
         raise InputError(f"{part.file}: {what} {name!r} is in {other}, too; give it {more}")
 

@@ -14,7 +14,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.joining.kept import was
+from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.readback.xml import plain
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.spans import Spans
@@ -45,7 +45,7 @@ def one_system(joined: Inventory, part: Inventory) -> OneSystem:
             what = f"ros2_control {name!r} stays: no part before it has one of its hardware"
             notes += [f"{where}: {what}"] if others else []
             continue
-        gone.append(was(spans.start_of(it), spans.end_of(it), spans.text_of(it)))
+        gone.append(left_out(spans, it))
         end = before.end_of(list(first.iterchildren("*"))[-1])
         texts = (spans.text_of(one) for one in driven(it))
         more += [was(end, end, b"", b"\n    " + text) for text in texts]

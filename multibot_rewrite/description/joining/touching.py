@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
+from itertools import product
 from math import cos, isfinite, pi, sin
 from random import Random
 from typing import Any
@@ -71,7 +72,7 @@ def _pinocchio() -> Any:
         return import_module("pinocchio")
     except ImportError as error:
         what = "random poses are looked at by pinocchio, which is not installed"
-        raise UsageError(f"{what}; pip install pin, or leave out --samples ({error})") from None
+        raise UsageError(f"{what}; pip install pin, or leave out samples ({error})") from None
 
 
 def _scene(
@@ -84,15 +85,7 @@ def _scene(
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"pinocchio does not read the joined description: {reason}") from None
-    own: dict[str, list[int]] = {}
-    for at, it in enumerate(shapes.geometryObjects):
-        own.setdefault(model.frames[it.parentFrame].name, []).append(at)
-    numbers: dict[Pair, list[int]] = {}
-    for one, other in pairs:
-        for first in own.get(one, ()):
-            for second in own.get(other, ()):
-                numbers.setdefault((one, other), []).append(len(shapes.collisionPairs))
-                shapes.addCollisionPair(pin.CollisionPair(first, second))
+    numbers = _numbered(pin, model, shapes, pairs)
     data, placed = model.createData(), shapes.createData()
 
     def touch(random: Random, left: Sequence[Pair]) -> Mapping[Pair, bool]:
@@ -103,6 +96,19 @@ def _scene(
         }
 
     return touch
+
+
+def _numbered(pin: Any, model: Any, shapes: Any, pairs: Iterable[Pair]) -> dict[Pair, list[int]]:
+    """The numbers of the pairs of shapes of each pair of links, which are added to the shapes."""
+    own: dict[str, list[int]] = {}
+    for at, it in enumerate(shapes.geometryObjects):
+        own.setdefault(model.frames[it.parentFrame].name, []).append(at)
+    numbers: dict[Pair, list[int]] = {}
+    for one, other in pairs:
+        for ends in product(own.get(one, ()), own.get(other, ())):
+            numbers.setdefault((one, other), []).append(len(shapes.collisionPairs))
+            shapes.addCollisionPair(pin.CollisionPair(*ends))
+    return numbers
 
 
 def _pose(pin: Any, model: Any, random: Random) -> Any:

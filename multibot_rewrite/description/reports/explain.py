@@ -26,7 +26,8 @@ class Explanation(NamedTuple):
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
     ``source`` is where the vocabulary has it from, empty where it does not say. ``made_of`` are the
-    pieces that a xacro makes the value of, in words.
+    pieces that a xacro makes the value of, in words. ``within`` is the description that includes the
+    file of the line, empty where the file is that itself.
     """
 
     line: int
@@ -39,6 +40,7 @@ class Explanation(NamedTuple):
     inserted: tuple[str, ...] = ()
     source: str = ""
     made_of: tuple[str, ...] = ()
+    within: str = ""
 
 
 def explain_line(

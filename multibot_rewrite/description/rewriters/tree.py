@@ -203,7 +203,7 @@ class Tree:
         def select(element: _Element) -> TreeNode:
             for key in keys(element):
                 found = _flavour(self.vocabulary.find(type_, key), element)
-                if found is not None:
+                if found is not None and not _is_another(element, key, found):
                     return self._node(base, found)
             return base
 
@@ -220,6 +220,13 @@ class Tree:
             self._know(node)
             found = self._chosen.setdefault(key, node)
         return found
+
+
+def _is_another(element: _Element, key: str, section: VocabularySection) -> bool:
+    """Is it a class of gz-sim, by its name, in a library that is called as one of Gazebo Classic, where
+    the name is that of a node?"""
+    of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
+    return of_node and "::" in element.get("name", "") and not key.startswith("gazebo_ros")
 
 
 def _tag(name: str) -> str:

@@ -152,9 +152,10 @@ def entries(folder: str) -> frozenset[str]:
 
 
 def _manifest(folder: str, most: int) -> bytes:
-    """The start of a package.xml; empty where it cannot be read."""
+    """The start of a package.xml; empty where it cannot be read, or is a pipe, which nobody named."""
+    path = os.path.join(folder, MANIFEST)
     try:
-        with open(os.path.join(folder, MANIFEST), "rb") as file:
+        with open(path if os.path.isfile(path) else os.devnull, "rb") as file:
             return file.read(most)
     except OSError:
         return b""

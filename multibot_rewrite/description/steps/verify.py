@@ -8,7 +8,7 @@ made of it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from operator import attrgetter
 
 from lxml import etree
@@ -42,7 +42,7 @@ from multibot_rewrite.description.steps.strip import (
 )
 
 Names = tuple[ResolvedName, ...]
-_KIND = attrgetter("kind")
+_KIND, _STEM = attrgetter("kind"), "stem"
 
 
 class Evidence(NamedTuple):
@@ -97,8 +97,10 @@ def verify(
         inserted = removals(result.document, robot)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
-    pairs = list(zip(result.claims, result.names, strict=True))
     is_inserted = inside_of(inserted)
+    if naming.own:
+        result = result._replace(names=_as_in(inventory, result, is_inserted, naming))
+    pairs = list(zip(result.claims, result.names, strict=True))
     added = [pair for pair in pairs if is_inserted(pair[0])] if inserted else []
     found = [pair for pair in pairs if not is_inserted(pair[0])] if inserted else pairs
     expected = list(_expected(inventory, naming))
@@ -107,6 +109,22 @@ def verify(
     )
     for check in CHECKS:
         check(it)
+
+
+def _as_in(
+    inventory: Inventory, result: Inventory, is_inserted: Callable[[Claim], bool], naming: Naming
+) -> list[Names]:
+    """The names of the output. One that got the robot's name is read as below the name that an
+    argument of the xacro gives the robot, where both are the same word: it is a name of its site."""
+    before = iter(inventory.names)
+    found: list[Names] = []
+    for claim, names in zip(result.claims, result.names, strict=True):
+        old = () if is_inserted(claim) else next(before, ())
+        alone = names[0] if len(names) == 1 and names != old else None
+        below = alone and alone.kind == _STEM and (_STEM, alone.text) in naming.own
+        kinds = claim.site.kinds
+        found.append((ResolvedName(0, claim.value, kinds[0], kinds),) if below else names)
+    return found
 
 
 def _asks_places(plan: Plan, output: bytes, naming: Naming) -> bool:

@@ -238,7 +238,9 @@ def _robot(it: RobotStarts) -> Iterator[str]:
 
 def _description(it: FleetStarts) -> Iterator[str]:
     yield "def generate_launch_description():"
-    yield '    """Start the simulator, then robot by robot, then the windows for all."""'
+    first = "the simulator, then " if it.simulators else ""
+    last = ", then the windows for all" if it.windows else ""
+    yield f'    """Start {first}robot by robot{last}."""'
     yield "    return LaunchDescription("
     yield "        ["
     for name, default, about in launch_arguments(it):

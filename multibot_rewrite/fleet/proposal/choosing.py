@@ -13,10 +13,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, home_of, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, home_of, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(

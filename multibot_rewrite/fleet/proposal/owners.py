@@ -14,8 +14,9 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.proposal.looking import ANY, Looked, filled_for_any
-from multibot_rewrite.fleet.proposal.searching import Found, data_of_file, home_of
+from multibot_rewrite.fleet.proposal.searching import Found, home_of
 
 # Descriptions whose names are looked at.
 MOST = 60

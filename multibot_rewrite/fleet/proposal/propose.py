@@ -14,10 +14,12 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import (
     Chosen,
+    Undecided,
     acts,
     chosen,
     launches_of,
@@ -256,6 +258,11 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     _refuse(
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
+    likeliest = best.order[0]
+    # The name of a model tells what it carries: x500_lidar.
+    if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
+        said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
+        raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
     known = {*_partners(order[0], found)}
     beside = [it for it in usable if it in alike or it.path in known]
@@ -296,8 +303,10 @@ def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
 
 def _refuse(which: Sequence[Looked], more: str) -> None:
     for it in which[:1]:
-        why = "nothing in it moves or senses" if it.links else "it has no link"
-        fault = it.fault or f"{it.path}: {why}; give the file that has the robot"
+        why = f"it has no link; {robot_instead(it.path)}"
+        if it.links:
+            why = "nothing in it moves or senses; give the file that has the robot"
+        fault = it.fault or f"{it.path}: {why}"
         raise UsageError(f"{fault}{more}")
 
 

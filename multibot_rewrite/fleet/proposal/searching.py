@@ -8,20 +8,23 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import lru_cache
 
-from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.sources.included_by import (
+    MOST_FILES,
+    SKIPPED,
+    data_of_file,
+    includers,
+    parts_among,
+)
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
 
-# Files that are looked at; of a larger one nothing is read.
-MOST_FILES, MOST_BYTES = 20_000, 4_000_000
-_SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
 _BUILT = frozenset((MANIFEST, PLAN))
 _ENDS = (
     ".urdf",
@@ -39,8 +42,8 @@ _ENDS = (
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
-_INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
-_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
+# What urdf-postfix has written is made of the robot that is meant.
+_REWRITTEN = re.compile(rb"<!-- multibot \S+ \+\d")
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
 _BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
 # What launch files begin with, in a folder of theirs: many are called up.py.
@@ -135,7 +138,7 @@ def _files(folder: str) -> Iterator[str]:
         if above != folder and _BUILT.issubset(names):
             folders[:] = []
             continue
-        folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
+        folders[:] = sorted(it for it in folders if it[0] != "." and it not in SKIPPED)
         for name in sorted(names):
             seen += 1
             if seen > MOST_FILES:
@@ -148,54 +151,17 @@ def _files(folder: str) -> Iterator[str]:
 def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Each path with its kind; those that others include are none."""
     kinds: dict[str, str] = {}
-    included: dict[str, list[tuple[str, str]]] = {}
-    for path in paths:
-        data = data_of_file(path)
-        kinds[path] = _kind(path, data)
-        for it in _INCLUDED.findall(data) if path.endswith(".xacro") else ():
-            file = it.decode("utf-8", "replace")
-            included.setdefault(os.path.basename(file), []).append((file, path))
-    above = {
-        path: {other for file, other in by if _means(file, path, other)}
-        for path in kinds
-        if (by := included.get(os.path.basename(path)))
-    }
-    parts = _reached(kinds, above)
+
+    def texts() -> Iterator[tuple[str, bytes]]:
+        for path in paths:
+            data = data_of_file(path)
+            kinds[path] = _kind(path, data)
+            yield path, data
+
+    parts = parts_among(kinds, includers(texts()))
     yield from (
         (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
     )
-
-
-def _reached(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
-    """Files that another one includes which nothing includes, at any depth: a loop has no first one,
-    and what expands it says so."""
-    found = {it for it in paths if not above.get(it)}
-    tops = set(found)
-    while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
-        found |= more
-    return found - tops
-
-
-def _means(included: str, path: str, by: str) -> bool:
-    """May the included file be this one? Of a path that a xacro fills in the base name counts."""
-    if path == by:
-        return False
-    package = _FIND.match(included)
-    rest = included[package.end() :] if package else included
-    if "$" in rest or os.path.isabs(rest):
-        return True
-    if not package:
-        return os.path.normpath(os.path.join(os.path.dirname(by), rest)) == path
-    own = package_of(path)
-    return own is not None and package[1] in (own[0], os.path.basename(own[1]))
-
-
-def data_of_file(path: str) -> bytes:
-    """The bytes of a file, none of one that is too large or cannot be read."""
-    try:
-        return read_bytes(path, MOST_BYTES)
-    except OSError:
-        return b""
 
 
 @lru_cache(maxsize=512)
@@ -213,7 +179,8 @@ def _kind(path: str, data: bytes) -> str:
     if end in _BY_NAME:
         return _BY_NAME[end]
     read = _BY_TEXT.get(end)
-    return read(stem, data) if read else ""
+    kind = read(stem, data) if read else ""
+    return "" if kind == "descriptions" and _REWRITTEN.search(data) else kind
 
 
 def _of_urdf(_: str, data: bytes) -> str:

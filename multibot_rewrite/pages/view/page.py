@@ -12,7 +12,7 @@ from typing import Any
 
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.lint.workers import limit_time, worker_pool
+from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.pages.view.heard import DEGREES, METRES
 from multibot_rewrite.pages.view.models import Mesh, Model, Shape, load_mesh, prepare_meshes, three

@@ -6,14 +6,16 @@ A bag may be cut off or made by anybody: whatever its reader raises, the bag is 
 
 from __future__ import annotations
 
+import errno
 import os
 import re
+import tempfile
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import suppress
-from importlib import import_module
+from functools import partial
 from itertools import islice
 from math import inf
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
@@ -21,6 +23,7 @@ from multibot_rewrite.base.file_kinds import BAG, refuse_others
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.workers import limit_files, worker_pool
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED, pose_in
@@ -60,22 +63,47 @@ _NO_LIMIT_SECONDS = 9_223_372_036
 def read_bag(path: str) -> Recording:
     """What a folder, or a file .mcap or .db3, holds; raises InputError, Unusable."""
     try:
-        from rosbags.rosbag2 import Reader
+        import rosbags.rosbag2  # noqa: F401
     except ImportError as error:
         hint = "pip install 'multibot_rewrite[bags]'"
         raise Unusable(f"a bag cannot be read: {error}; {hint}") from None
-    if not os.path.exists(path):
+    files = [os.path.join(path, it) for it in os.listdir(path)] if os.path.isdir(path) else [path]
+    if not all(os.path.isfile(it) or os.path.isdir(it) for it in files):  # a pipe has no end
         raise InputError(f"{path}: there is no such bag; name a folder, or a file .mcap or .db3")
+
+    def lost(_: object, died_of: int) -> InputError:
+        return InputError(f"{path}: the process that read it was ended by signal {died_of}")
+
+    most = max(LEAST_UNPACKED, MOST_PACKED * max(map(os.path.getsize, files), default=0))
+    # What it unpacks is in the folder, and so goes also where that process is killed.
+    with (
+        TemporaryDirectory() as folder,
+        worker_pool(partial(_read, folder, most), [path], lost, 1) as workers,
+    ):
+        found = next(workers.results())
+    if isinstance(found, InputError):
+        raise found
+    return found
+
+
+def _read(folder: str, most: int, path: str) -> Recording | InputError:
+    """What a bag holds, or why not, in a process that has bounds: little may unpack to much."""
+    from rosbags.rosbag2 import Reader
+
+    tempfile.tempdir = folder
     try:
         _check_metadata(path)
+        limit_files(most)
         with Reader(path) as reader:
             return _recording(reader)
-    except InputError:
-        raise
+    except InputError as error:
+        return error
     except Exception as error:  # a damaged bag fails in sqlite3, zstandard, PyYAML or struct
+        if isinstance(error, MemoryError) or getattr(error, "errno", 0) == errno.EFBIG:
+            return InputError(f"{path}: it unpacks to more than a bag may hold; leave it out")
         reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
         hint = "is the recording complete? ros2 bag reindex may mend it"
-        raise InputError(f"{path}: not a readable bag: {reason}; {hint}") from None
+    return InputError(f"{path}: not a readable bag: {reason}; {hint}")
 
 
 def _check_metadata(path: str) -> None:
@@ -86,24 +114,6 @@ def _check_metadata(path: str) -> None:
         return
     if os.path.exists(os.path.join(path, METADATA)):
         load_yaml(read_text(os.path.join(path, METADATA)))
-    for name in sorted(os.listdir(path)):
-        if os.path.isfile(os.path.join(path, name)):
-            _check_packed(os.path.join(path, name))
-
-
-def _check_packed(path: str) -> None:
-    """Raises InputError for a file that its reader would unpack to far more than messages pack to.
-
-    The metadata say which are packed, and not their names: one that is not ends at its first bytes.
-    """
-    most = max(LEAST_UNPACKED, MOST_PACKED * os.path.getsize(path))
-    zstd: Any = import_module("rosbags.rosbag2.reader").zstd
-    with suppress(zstd.ZstdError), zstd.open(path, "rb") as file:
-        size = 0
-        while part := file.read(_PART):
-            size += len(part)
-            if size > most:
-                raise InputError(f"{path}: it unpacks to more than {most:,} bytes; leave it out")
 
 
 def _recording(reader: Reader) -> Recording:

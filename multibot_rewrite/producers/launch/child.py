@@ -34,7 +34,9 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
         return LaunchGraph()
     found = _asked(order)
     if not found.nodes and not found.notes:
-        raise InputError(f"{order.file}: it starts no node with these arguments; correct them")
+        raise InputError(
+            f"{order.file}: this launch file starts no node with these arguments; correct them"
+        )
     return found
 
 

@@ -32,6 +32,7 @@ from multibot_rewrite.producers.launch.kept_paths import (
 )
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchNote,
@@ -54,6 +55,7 @@ _GAZEBO = {
 }
 SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", CLASSIC)
 
+_FLAG = re.compile(r"--?([a-zA-Z]\w*)=(.*)|--?([a-zA-Z]\w*)", re.DOTALL)
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 
 
@@ -122,7 +124,7 @@ def node(action: Any, here: Visit) -> LaunchedNode:
             *_given(given.values, files, here),
         ),
         "",
-        (*lasting(given.own),),
+        _kept_words(package, executable, given.own),
         here.later,
         place_of(action, here.place.file, (package, executable)),
     )
@@ -164,8 +166,21 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     values = tuple(_given(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
-    kept = (*lasting(given.own),)
+    kept = _kept_words(run[0], run[1], given.own)
     yield LaunchedNode(*names, given.rules, values, "", kept, here.later, here.place)
+
+
+def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:
+    """The own words of a program; those of a spawner each by itself, with one dash (gflags takes
+    ``--name=a``, too)."""
+    if f"{package}/{executable}" not in programs().spawners:
+        return (*lasting(words),)
+    return (*lasting(part for it in words for part in _flag(it)),)
+
+
+def _flag(word: str) -> list[str]:
+    found = _FLAG.fullmatch(word)
+    return [f"-{found[1] or found[3]}", *([found[2]] if found[1] else [])] if found else [word]
 
 
 def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
@@ -278,7 +293,7 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
-        return kept_file(value) or value
+        return kept_file(value) or lasting((value,))[0]
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]

@@ -42,6 +42,19 @@ def failure(error: BaseException) -> str:
     name = missing_package(error) or missing_module(error)
     if name:
         return not_installed(name)
+    if known := _known(error):
+        return known
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    if isinstance(error, FileNotFoundError) and error.filename:
+        # The folder with links to sources is gone when this is read.
+        text = text.replace(str(error.filename), os.path.realpath(error.filename))
+    # launch tries its other forms, too, and says what each of them says.
+    text = f"{found[1] if (found := _TRIED.search(text)) else text}{_line(error)}"
+    return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
+
+
+def _known(error: BaseException) -> str:
+    """What is to be done about it; empty where only Python's words say what it is."""
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     if name := _no_value(error):
@@ -49,21 +62,20 @@ def failure(error: BaseException) -> str:
         return f"the launch configuration {name!r} is not set; {hint}"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
+    if is_no_condition(error):
+        return "what is given as its condition is none; write IfCondition(...)"
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
-    text = " ".join(f"{type(error).__name__}: {error}{_line(error)}".split())
-    # launch tries its other forms, too, and says what each of them says.
-    text = found[1] if (found := _TRIED.search(text)) else text
-    return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
+    return ""
 
 
 def _line(error: BaseException) -> str:
     """The line of a launch file in Python that raised it."""
     # launch has an error of its own around it.
-    frames = extract_tb((error.__cause__ or error).__traceback__)
-    name = os.path.basename(frames[-1].filename) if frames else ""
-    return f" ({name}:{frames[-1].lineno})" if name.endswith("launch.py") else ""
+    frames = reversed(extract_tb((error.__cause__ or error).__traceback__))
+    last = next((it for it in frames if it.filename.endswith("launch.py")), None)
+    return f" ({os.path.basename(last.filename)}:{last.lineno})" if last else ""
 
 
 def lost_file(error: BaseException) -> str:
@@ -132,13 +144,23 @@ def is_no_text(error: BaseException) -> bool:
     return isinstance(error, TypeError) and _NO_TEXT in str(error)
 
 
+def is_no_condition(error: BaseException) -> bool:
+    """Is a text or a substitution given where launch takes conditions alone?"""
+    if not isinstance(error, AttributeError) or error.name != "evaluate":
+        return False
+    is_text = hasattr(error.obj, "perform") and not hasattr(error.obj, "visit")
+    return is_text or isinstance(error.obj, str | bool)
+
+
 def is_certain(error: BaseException, launch_file: str) -> bool:
     """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
     or the launch file itself raises what names no file or device of a machine."""
     if isinstance(error, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))
-        return str(error.filename or "").startswith(f"{folder}/")
+        return os.path.realpath(str(error.filename or "")).startswith(f"{folder}/")
     frame = _frame(error)
+    if is_no_condition(error):
+        return True
     own = frame is not None and frame.f_code.co_filename.endswith(".launch.py")
     # What is taken of a module that is not there does not fail where it is.
     known = frame is None or not any(map(is_unknown, (frame.f_globals | frame.f_locals).values()))

@@ -86,9 +86,7 @@ def _in_simulator(it: Model, release: str) -> InSimulator | None:
         inventory = collect(document, builtin_tree((), release))
         topics, _ = bridged_topics({name: inventory}, _NAMING)
         own = tuple(one for one in topics if one.robot)
-        words = {old.partition("=")[0]: old.partition("=")[2] for old in it.words if "=" in old}
-        words |= dict(pairwise(it.words))
-        return InSimulator(name, it.text, document.root, own, words, it.place)
+        return InSimulator(name, it.text, document.root, own, dict(pairwise(it.words)), it.place)
     return None
 
 

@@ -16,10 +16,13 @@ from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
+from multibot_rewrite.producers.launch.unknown_modules import ANY_NAME
 from multibot_rewrite.system.records import Place
 from multibot_rewrite.system.tool_nodes import is_viewer
 
 Rules = tuple[tuple[str, str], ...]
+# What starts a node that another program has ended before.
+AT_AN_END = ("at an event (OnProcessExit)", "at an event (on_exit)")
 
 
 class LaunchOrder(NamedTuple):
@@ -167,6 +170,10 @@ class RunningNode(NamedTuple):
         """What a parameter is set to; None where nothing sets it."""
         given = self.values.get(name)
         return given.value if given else None
+
+    def is_untold(self, name: str) -> bool:
+        """Does only a run tell what a parameter is set to, or if anything sets it?"""
+        return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:

@@ -43,6 +43,7 @@ from multibot_rewrite.producers.launch.models import (
 )
 from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, passes
 from multibot_rewrite.producers.launch.records import (
+    AT_AN_END,
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
@@ -92,7 +93,8 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     found: list[RunningNode] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
-    found = [*_apart(found, {full_name(it, None) for it in started if not it.name})]
+    unsure = (it for it in started if not it.name or it.later in AT_AN_END)
+    found = [*_apart(found, {full_name(it, None) for it in unsure})]
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned} - {it.full_name for it in found}
@@ -119,11 +121,12 @@ def _of_process(manager: LaunchedNode, first: dict[str, Rules]) -> LaunchedNode:
     return manager._replace(remappings=rules)
 
 
-def _apart(found: Sequence[RunningNode], unnamed: Collection[str]) -> Iterator[RunningNode]:
-    """Two of one unknown program whose name only its code has: that they share one is not known."""
+def _apart(found: Sequence[RunningNode], unsure: Collection[str]) -> Iterator[RunningNode]:
+    """Two unknown programs whose name only their code has, or of which one starts when something has
+    ended: that they share it is not known."""
     times = Counter(it.full_name for it in found)
     for it in found:
-        guessed = it.facts is None and it.full_name in unnamed and times[it.full_name] > 1
+        guessed = it.facts is None and it.full_name in unsure and times[it.full_name] > 1
         yield it._replace(name=f"{it.name}_{it.process}") if guessed else it
 
 

@@ -324,7 +324,7 @@ def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterat
         given = it.value(SIM_TIME)
         # An empty text is the output of a program that is not run here.
         untold = (
-            SIM_TIME in it.untold
+            it.is_untold(SIM_TIME)
             or given == ""
             or (given is None and (it.place in unknown or it.place.file in lost))
         )

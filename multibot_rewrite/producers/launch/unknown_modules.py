@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Python packages that are not installed, for launch files that import them: whatever they have and
-make is an empty dictionary, which a node takes as parameters, and nothing is known of it."""
+make is a substitution that has no text, so that launch_ros keeps it wherever it is given."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
+
+from multibot_rewrite.producers.launch.door import of_launch
+
+# For all names that something unknown may have.
+ANY_NAME = "*"
 
 
 def add_unknown(name: str) -> None:
@@ -23,12 +28,17 @@ def is_unknown(value: object) -> bool:
     return isinstance(value, Unknown | _Module)
 
 
-class Unknown(dict[Any, Any]):
-    """What nothing is known of but the module that it is taken from."""
+class Unknown:
+    """What nothing is known of but the module that it is taken from; it has nothing in it."""
 
     def __init__(self, module: str) -> None:
-        super().__init__()
         self._multibot_module = module
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        # launch asks for its own class where it takes texts.
+        found: type = of_launch().Substitution
+        return found
 
     def __getattr__(self, name: str) -> Unknown:
         if name.startswith("__"):
@@ -38,8 +48,18 @@ class Unknown(dict[Any, Any]):
     def __call__(self, *_: object, **__: object) -> Unknown:
         return Unknown(self._multibot_module)
 
-    def __missing__(self, _: object) -> Unknown:
+    def __getitem__(self, _: object) -> Unknown:
         return Unknown(self._multibot_module)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
+
+    def keys(self) -> tuple[str, ...]:
+        """Where it is taken for a dictionary: names that nobody knows."""
+        return (ANY_NAME,)
 
     def __fspath__(self) -> str:
         return "unknown"
@@ -47,11 +67,11 @@ class Unknown(dict[Any, Any]):
     def __add__(self, _: object) -> Unknown:
         return Unknown(self._multibot_module)
 
-    __radd__ = __truediv__ = __add__
+    __radd__ = __truediv__ = __or__ = __ror__ = __add__
 
     def perform(self, _: object) -> str:
-        """As the text of something: raises LookupError."""
-        raise LookupError(f"what is taken of {self._multibot_module!r} is not known")
+        """As the text of something: raises ModuleNotFoundError."""
+        raise ModuleNotFoundError(f"No module named {self._multibot_module!r}")
 
 
 class _Module(ModuleType):

@@ -127,6 +127,9 @@ def _misspelt(
     whole = any(bare in types for types in known.values())
     if whole and gz not in (f"gz.msgs.{bare}", f"ignition.msgs.{bare}"):
         yield remark_at(node, f"there is no gz type {gz!r}", f"write gz.msgs.{bare}")
+    near = "" if whole else nearest(bare, known.get(ros, ()), SLIP)
+    if near:
+        yield remark_at(node, f"there is no gz type {gz!r}", f"did you mean gz.msgs.{near}?")
 
 
 def _of_models(one: str, other: str) -> str:

@@ -31,7 +31,7 @@ from multibot_rewrite.producers.evidence.moveit import (
 )
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.examples import a_controller
-from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in
+from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
@@ -170,7 +170,7 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
         if not declared or not (near or file.is_certain):
             continue
         place = declared[near or next(iter(declared))].place
-        hint = f"declare it as at {place}, or leave it out"
+        hint = f"declare it as at {shown(place)}, or leave it out"
         yield Remark(
             it.place.line, 1, f"{it.name} has parameters of a controller that nothing declares",
             did_you_mean_at(near, place) if near else hint, WARNING if near else NOTE,

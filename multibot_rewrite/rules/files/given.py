@@ -13,6 +13,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.packages import entries
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
@@ -53,7 +54,12 @@ def did_you_mean_at(near: str, place: Place) -> str:
     """The hint: the name that is there, and its place."""
     if place == NOWHERE:
         return f"did you mean {near}?"
-    return f"did you mean {near} ({place})?" if near else f"see {place}"
+    return f"did you mean {near} ({shown(place)})?" if near else f"see {shown(place)}"
+
+
+def shown(place: Place) -> str:
+    """A place of a file below the current folder by its path from there."""
+    return str(place._replace(file=alike(place.file, os.curdir)))
 
 
 def _given(file: NamedFile, documents: Iterable[YamlText]) -> tuple[GivenNode, ...]:

@@ -112,8 +112,8 @@ def slashes(file: NamedFile) -> Iterator[Remark]:
     "frame-with-white-space",
     WARNING,
     what="A file names a frame with white space in it.",
-    why="tf takes any text for a frame, so 'odom ' is another one than 'odom', which nothing sends. It "
-    "is not rewritten: nodes of all robots that send it send one frame.",
+    why="tf takes any text for a frame, so 'odom ' is another one than 'odom', and nothing sends it. "
+    "It is not rewritten: nodes of all robots that send it send one frame.",
     fix="Remove the white space.",
     bad=a_section("amcl", 'odom_frame_id: "odom "'),
     good=a_section("amcl", "odom_frame_id: odom"),

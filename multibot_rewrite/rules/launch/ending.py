@@ -63,7 +63,7 @@ def ends(launched: Launched) -> Iterator[Finding]:
 def _described(it: RunningNode) -> Iterator[Finding]:
     """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
     is_one = it.facts is not None and it.facts.known == STATE_PUBLISHER
-    if not is_one or it.arguments or "robot_description" in it.untold:
+    if not is_one or it.arguments or it.is_untold("robot_description"):
         return
     given = it.value("robot_description")
     text = given.strip() if isinstance(given, str) else given

@@ -201,11 +201,14 @@ def argument_not_read(launched: Launched) -> Iterator[Finding]:
 
 _PATH = "correct the path, or install the file"
 _NAMED = ("config_file", "yaml_filename")
+# Programs write there what others read.
+_TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def _is_ours(path: str) -> bool:
     """May it be judged here? What another machine has, or a program makes, may not."""
-    return os.path.isdir(os.path.dirname(path))
+    folder = os.path.dirname(path)
+    return os.path.isdir(folder) and folder not in _TEMPORARY
 
 
 def _files(it: RunningNode) -> Iterator[str]:

@@ -71,7 +71,7 @@ def _misspelled(robot: Robot, roots: Sequence[str], edges: Sequence[Edge]) -> Ca
         known = {*robot.frames, *robot.other_frames}
         odd = edge.parent in roots and edge.parent not in known
         if near := nearest(edge.parent, sorted(known), MISTYPED) if odd else "":
-            sent = f"{edge.child} is sent below {edge.parent}, which nothing sends"
+            sent = f"{edge.child} is sent below {edge.parent}, but nothing sends that"
             return Cause(f"{sent}: did you mean {near}?")
     return None
 

@@ -94,14 +94,22 @@ running: /rosbag2_player publishes /recorded/clock rosgraph_msgs/msg/Clock
 )
 def two_clocks(seen: Index) -> Iterator[Finding]:
     """Two nodes of one name count as well: a bridge that was started for each robot."""
-    ends = seen.by_name.get((TOPIC, CLOCK))
     nodes = _clocks(seen)
-    times = {node: seen.nodes.get(node, 0) for node in nodes}
-    if ends and sum(max(1, count) for count in times.values()) > 1:
+    times = {node: _times(seen, node) for node in nodes}
+    if sum(max(1, count) for count in times.values()) > 1:
         who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
         cause = "a clock bridge for each robot, two simulators, or a bag with --clock: keep one"
         message = f"{who} publish {CLOCK}"
         yield two_clocks.finding(message, cause, node=nodes[0], names=(CLOCK,))
+
+
+def _times(seen: Index, node: str) -> int:
+    """How many nodes of a name publish the clock; all of them where their processes are not known."""
+    processes = {it.process for it in seen.system.nodes if it.name == node}
+    if "" in processes or len(processes) < seen.nodes.get(node, 0):
+        return seen.nodes.get(node, 0)
+    ends = seen.by_name[TOPIC, CLOCK].publishers
+    return len({it.process for it in ends if it.node == node} & processes)
 
 
 @system_rule(

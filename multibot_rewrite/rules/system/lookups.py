@@ -71,7 +71,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, edges) if usual else None
     if sender is None and usual and edges and not _in_doubt(seen):
-        message = f"reads frame {it.frame}, which no known node sends"
+        message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
         return _unknown(seen, it, edges)
@@ -81,7 +81,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
     level = NOTE if plain == _MAP else WARNING
-    return _finding(seen, it, f"reads frame {it.frame}, which no known node sends", hint, level)
+    return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
 
 
 def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
@@ -90,7 +90,7 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     if not near and (seen.system.environment.settled != QUIET or not edges):
         return None
     hint = f"did you mean {near}?" if near else "send it, or use a frame that is sent"
-    return _finding(seen, it, f"reads frame {it.frame}, which nothing sends", hint, WARNING)
+    return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
 def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
@@ -118,7 +118,9 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
         return _finding(seen, it, message, f"did you mean {near}?", WARNING)
-    message = f"has the transform {it.parent} -> {it.frame} as its state, which no known node sends"
+    message = (
+        f"has the transform {it.parent} -> {it.frame} as its state, but no known node sends it"
+    )
     hint = "name the node that sends it, or make the virtual joint fixed"
     return _finding(seen, it, message, hint, NOTE)
 

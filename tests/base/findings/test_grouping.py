@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is the same for many robots is said once, and names them in every format."""
 
 from __future__ import annotations

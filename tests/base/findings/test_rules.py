@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every rule of every command finds its bad example, once and in its line, and leaves the good one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which findings are on and which make a command fail."""
 
 from __future__ import annotations

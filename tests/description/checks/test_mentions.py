@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in values that no site claims: where they are seen, and what is no name."""
 
 from __future__ import annotations
@@ -85,7 +86,11 @@ def test_a_rewrite_warns_of_it(value: str) -> None:
 
 @pytest.mark.parametrize(
     ("element", "warned"),
-    [("<link name='wr'>wl</link>", False), ("<own><link name='wr'>wl</link></own>", True)],
+    [
+        ("<link name='wr'>wl</link>", False),
+        ("<own><link name='wr'>wl</link></own>", True),
+        ("<link name='wr' like='wl'/>", True),
+    ],
 )
 def test_text_of_a_link_is_read_by_nobody(element: str, warned: bool) -> None:
     found = rewrite(f"<robot name='r'><link name='wl'/>{element}</robot>", "robot1").findings

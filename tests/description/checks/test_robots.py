@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots that are called like frames and topics that all share: the same wherever they are named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file that was rewritten for a robot is refused for it, whatever was done to it since."""
 
 from __future__ import annotations

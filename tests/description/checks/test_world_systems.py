@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the lint says of all copies leaves a rewrite unproved: systems of the world, absolute names."""
 
 from __future__ import annotations

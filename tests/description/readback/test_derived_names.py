@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that a consumer makes of another element, as its source says: a rewrite that loses them, or
 that leaves one for all robots, is not proved."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rewrite misses something wherever it looks, so its own proof holds: the second reading says so.
 
 Each fault is put into the code that both passes of the rewrite share. The second reading shares the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The second reading sees a rule that matched a name and matches none after a rewrite."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that two robots have: which count, which may be shared."""
 
 from __future__ import annotations

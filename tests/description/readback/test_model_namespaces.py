@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Gazebo makes of the namespaces of models, and that two robots of such a model do not meet.
 
 Expected names are those of gz-sim's scopedNamespace (its Util_TEST.cc) and DiffDrive.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that are called proved, judged by a reader that knows neither the vocabulary nor the second
 reading: facts from the consumers' sources say what each plugin opens. No two robots meet."""
 

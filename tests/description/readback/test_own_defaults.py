@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Defaults made of the description's own names (DiffDrive.cc, gazebo_ros_camera.cpp)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """XML as TinyXML-2 and sdformat read it: the expectations are those of their sources."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a description starts, by the names that its consumers' sources give it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Role and type of every topic of a plugin, as ``create_publisher`` and the like have them.
 
 Sources: ros-simulation/gazebo_ros_pkgs ros2 gazebo_plugins/src, unless a line says another one.

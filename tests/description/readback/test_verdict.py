@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a rewrite is called: proved, or not and why."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Outputs in which robots would share something: the second reading names it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``--why FILE:LINE``: which rewriter claims a value, why, and what it becomes."""
 
 from __future__ import annotations
@@ -213,4 +214,34 @@ def test_a_line_of_a_xacro_says_which_pieces_make_its_names(tmp_path: Path) -> N
         f"'_wheel' (literal, {path}:4:28)",
         f"'2' (${{1 + 1}}, {path}:4:34)",
     )
-    assert explain(str(path), 6) == []
+    assert [(it.line, it.column, it.value) for it in explain(str(path), 6)] == [
+        (6, 20, "left_wheel2"),
+        (6, 46, "right_wheel2"),
+    ]
+    assert explain(str(path), 5) == []
+
+
+def test_a_line_of_a_file_that_others_include_is_told_in_one_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head, (part, whole, other) = (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n',
+        (tmp_path / name for name in ("a.xacro", "b.xacro", "c.xacro")),
+    )
+    part.write_text(
+        f'{head}<xacro:property name="end" value="tip"/>\n'
+        '<xacro:macro name="arm" params="p">\n<link name="${p}${end}"/>\n</xacro:macro>\n</robot>'
+    )
+    include = '<xacro:include filename="a.xacro"/>\n'
+    other.write_text(f"{head}{include}<link name='tip'/></robot>")
+    whole.write_text(f'{head}{include}<xacro:arm p="my_"/></robot>')
+    for line, column in ((2, 35), (4, 1)):
+        (it,) = explain(str(part), line)
+        assert (it.line, it.column, it.value, it.within) == (line, column, "my_tip", str(whole))
+    assert explain(str(whole), 3)[0].within == ""
+    assert main(["--why", f"{part}:4"]) == 0
+    assert capsys.readouterr().out.startswith(f"{part}:4:1: robot/link@name, of {whole}\n")
+    assert explain(str(part), 3) == []
+    whole.write_text(f"{head}{include}<xacro:gone/></robot>")
+    other.write_text(f"{head}{include}<xacro:gone/></robot>")
+    assert explain(str(part), 4) == []

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What controllers are spawned with, by ``multibot inspect``: since Jazzy a controller takes no rules
 of the plugin that loads it, on Humble it does."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A suggested vocabulary: what is guessed from what, and that it loads and leaves nothing unknown."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a survey counts, and how surveys add up."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot inspect FILE.xacro``: expanding with another word shows what an argument goes into."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every case file, byte by byte, and what must hold for any rewrite whatever the case."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact sensors name collisions by the names libsdformat makes up; they have to follow the links.
 
 Every name here was measured with libsdformat 12.3, or follows from parser_urdf.cc.

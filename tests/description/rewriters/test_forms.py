@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names inside a value, by the form that its row of the vocabulary says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vocabulary of installed packages: found, used and undone; a broken package stops everything."""
 
 from __future__ import annotations

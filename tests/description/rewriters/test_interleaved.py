@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A tree that one thread is making is whole for every other: the second comes in at each line.
 
 Chance would need many runs for that; here a trace stops the first thread where the second one comes.

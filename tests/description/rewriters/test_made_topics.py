@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A topic that one system of gz-sim makes of names and another one is told as a text is one topic.
 
 What the thruster listens to is said here as gz-sim's Thruster.cc does: ``/model/``, the namespace or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spelling: kinds, layouts, separators, shared names, and the way back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Regular expressions of a file: what std::regex matches, in a time that every name allows."""
 
 from __future__ import annotations

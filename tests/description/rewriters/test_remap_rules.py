@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The left side of a plugin's remap rule names what it named before, whatever its form.
 
 What is expected comes from rcl's own steps (rcl remap.c, expand_topic_name.c; ``rosnames``, which is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Switches of plugins: as sdformat reads booleans (src/Param.cc, ValueFromStringImpl)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text in force, as TinyXML-2's GetText has it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vocabulary: every mistake is refused by file and line, and all that ships is in order."""
 
 from __future__ import annotations

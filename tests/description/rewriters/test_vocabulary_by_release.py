@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows and sections of the vocabulary that hold in some releases only."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an expansion may read and see: near its file, in packages, of ROS's variables."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``[tool.multibot-rewrite]``: found above the input, read by commands only, mistakes named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A child that lies: whatever it answers is one line, and leads to nothing that it was not given."""
 
 from __future__ import annotations

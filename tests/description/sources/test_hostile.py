@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that want more than to be expanded: nothing outside is touched, and each ends in one line."""
 
 from __future__ import annotations

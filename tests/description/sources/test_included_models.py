@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Included models are what libsdformat makes of them, and are renamed with the model around them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments that are given and that no file of a xacro knows: xacro itself says nothing of them."""
 
 from __future__ import annotations

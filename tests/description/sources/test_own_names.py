@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments of a xacro that put a robot's name into names: filled for each robot, never doubled."""
 
 from __future__ import annotations

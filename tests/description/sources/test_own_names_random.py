@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random trees whose xacro prefixes some of the names: the text for a robot is known beforehand."""
 
 from __future__ import annotations

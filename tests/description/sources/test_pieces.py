@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every piece of a value knows where it was written: read off the files by hand, and proved by changing
 them."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which release a description is for: what it loads, the CI and the package of its repository."""
 
 from __future__ import annotations

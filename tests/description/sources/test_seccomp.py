@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The filter of system calls, run here as the kernel runs it: for both processors, on either."""
 
 from __future__ import annotations

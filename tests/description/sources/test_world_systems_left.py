@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Systems of the world that a rewrite leaves to the world, by ``--world-systems leave``.
 
 Expected: gz-sim loads each <plugin> element that it meets and no comment; a strip gives the input.
@@ -88,7 +89,7 @@ def test_the_command_follows_its_hint(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(words) == 0
     assert "--world-systems leave" in capsys.readouterr().err
     assert main([*words, "--world-systems", "leave"]) == 0
-    end = "proved where the world loads gz-sim-imu-system, gz-sim-sensors-system (ROS 2 jazzy: --distro)"
+    end = "the world loads gz-sim-imu-system, gz-sim-sensors-system (ROS 2 jazzy: --distro)"
     assert capsys.readouterr().err.strip().endswith(end)
     again = [str(made), "r1", "--distro", "jazzy", "--strip", "--in-place"]
     assert main([*again, "--world-systems", "leave"]) == 0

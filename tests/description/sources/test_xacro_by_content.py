@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A xacro is one by what is in it: turtlebot3's descriptions end in .urdf and have arguments."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged xacro files: each is expanded or refused in one line; nothing else comes out of xacro."""
 
 from __future__ import annotations

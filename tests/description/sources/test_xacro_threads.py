@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """xacro has one state a process: threads and forks that expand at once get their own results."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reading: what is refused and how it is said; where values stand in the bytes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The marker comment in front of inserted elements."""
 
 from __future__ import annotations

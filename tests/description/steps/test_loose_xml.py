@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What TinyXML-2 reads is read, said, changed in no other byte, and the consumers read it as before."""
 
 from __future__ import annotations

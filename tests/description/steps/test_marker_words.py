@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the comment at inserted rules says follows what these reach in the release."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults planted by chance in the texts and plans of many descriptions: the proof refuses each.
 
 And what holds for further robots, whose texts are not read again.

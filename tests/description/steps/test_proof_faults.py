@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The proof refuses wrong outputs, wrong plans and wrong readings, each by the check that is for it.
 
 The faults are in ``fixtures/proof_faults.txt`` and ``tests/support/wrong_*.py``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SRDF beside its URDF: every link and joint is spelled as there, and nothing else changes."""
 
 from __future__ import annotations

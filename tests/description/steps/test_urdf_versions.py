@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions of URDF 1.1 and 1.2 are rewritten like those of 1.0."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The proof of a rewrite: who calls it, and what it says; what it refuses is in test_proof_faults.
 
 Each wrong text goes in where the robots' texts are made, so that the public calls are what refuses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``multibot init`` makes of answers: each question alone, nothing is built."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders that have no robot that can be told: one line that says what to give, and nothing written."""
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ FILES = {
 SAYS = {
     "no robot": "no description of a robot is there; give a URDF, xacro or SDF",
     "a thing": "nothing in it moves or senses; give the file that has the robot",
-    "macros": "it has no link; give the file that has the robot",
+    "macros": "it has no link; it defines macros; give the file that has the robot",
     "broken": "car.urdf.xacro",
     "not XML": "car.urdf",
     "a package": "package 'wheels' is not found",

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of the files beside a description are taken, and what is said of those that are not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which description ``multibot init`` takes of several, and when it refuses to choose."""
 
 from __future__ import annotations
@@ -61,6 +62,16 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
 
 
 @pytest.mark.more
+def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
+    (two / "a.launch.py").write_text("robot = 'tractor.urdf'")
+    assert taken(two)["description"] == "tractor.urdf"
+    other = f"one of 2 descriptions; for another: multibot init {two}/digger.urdf"
+    assert other in capsys.readouterr().err
+    assert init(two, str(two / "tractor.urdf"), "--force") == 0
+    assert "descriptions" not in capsys.readouterr().err
+
+
+@pytest.mark.more
 def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) -> None:
     """The command that is named is about the same folder, and answers the question."""
     (two / "tractor.urdf").rename(two / "tractor")
@@ -109,6 +120,16 @@ def test_a_part_and_a_prop_are_no_rivals(two: Path) -> None:
         '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
     )
     assert taken(two)["description"] == "digger.urdf"
+
+
+def test_a_part_alone_is_asked_for(tmp_path: Path, capsys: Any) -> None:
+    camera = tmp_path / "camera.urdf"
+    camera.write_text(robot("camera", "eye").replace("continuous", "fixed"))
+    assert init(tmp_path) == 2
+    said = capsys.readouterr().err
+    assert "nothing in it moves" in said and f"multibot init {camera}" in said
+    assert not (tmp_path / "fleet.yaml").exists()
+    assert main(["init", str(camera), "--yes", "-o", str(tmp_path / "fleet.yaml")]) == 0
 
 
 @pytest.mark.more
@@ -335,7 +356,9 @@ def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
     """The folder's name has a word of a part; that of the copy is read in the same way."""
     folder = tmp_path / "x500_lidar_down"
     folder.mkdir()
-    text = '<sdf version="1.9"><model name="x500"><link name="{}"/><link name="b"/></model></sdf>'
+    rotor = '<joint name="rotor" type="revolute"><parent>{0}</parent><child>b</child></joint>'
+    links = f'<link name="{{0}}"/><link name="b"/>{rotor}'
+    text = f'<sdf version="1.9"><model name="x500">{links}</model></sdf>'
     (folder / "model.sdf").write_text(text.format("a"))
     (folder / copy).write_text(text.format("a") + "<!-- old -->")
     assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"

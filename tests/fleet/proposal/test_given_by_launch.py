@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What launch files themselves give to nodes that a fleet starts: init carries what is plain."""
 
 from __future__ import annotations

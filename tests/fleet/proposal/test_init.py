@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot init``: from descriptions and folders to a fleet file that builds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of several descriptions is the robot: what speaks for one, and who may be meant as well."""
 
 from __future__ import annotations

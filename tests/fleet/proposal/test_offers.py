@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``inspect`` offers of a xacro's arguments is what ``init`` writes."""
 
 from __future__ import annotations

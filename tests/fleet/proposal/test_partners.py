@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A URDF and an SDF of one robot are both named, and files of parameters go by the names they have."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot init`` on a terminal: what it asks, and what the answers make of the fleet file."""
 
 from __future__ import annotations

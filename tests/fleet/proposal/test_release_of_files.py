@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The release of parameter files, by what ros2_controllers declares in each.
 
 tricycle_steering_controller has wheel_track, front_wheels_radius and rear_wheels_radius until Jazzy

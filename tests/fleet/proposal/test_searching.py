@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files of folders are robots, and which are beside them: by their names and their texts."""
 
 from __future__ import annotations
@@ -5,7 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import FIXTURES
 
+from multibot_rewrite import rewrite
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.proposal import searching
 from multibot_rewrite.fleet.proposal.searching import Found, search, without
@@ -65,6 +68,9 @@ def put(folder: Path, **files: str) -> None:
 def test_what_a_build_has_written_is_no_other_robot(tmp_path: Path) -> None:
     made = {"fleet__manifest_dot_json": "{}", "fleet__plan_dot_yaml": "robots: {}"}
     put(tmp_path, own_dot_urdf=ROBOT, fleet__robot1__own_dot_urdf=ROBOT, **made)
+    # urdf-postfix alone leaves its mark, as a rewrite of the first robot shows.
+    rover = str(FIXTURES / "robots" / "rover.urdf")
+    put(tmp_path, out__robot1_dot_urdf=rewrite(rover, "robot1").text)
     assert search([str(tmp_path)]).descriptions == (str(tmp_path / "own.urdf"),)
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The argument that switches a xacro between the simulated and the real robot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames in serialized tf: bytes laid out by hand as CDR has them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The configurations of a fleet, loaded by Zenoh itself: what is refused really does not arrive."""
 
 from __future__ import annotations

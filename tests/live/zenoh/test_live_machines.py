@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Routers on machines of their own, each a network namespace: what one router knows of the others."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A real router and sessions of robots on loopback: what is seen through it, and what is said."""
 
 from __future__ import annotations

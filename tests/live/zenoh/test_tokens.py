@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Liveliness tokens as rmw_zenoh writes them, by hand from its source, and what they announce.
 
 The examples of docs/design.md in ros2/rmw_zenoh are among them, word for word.

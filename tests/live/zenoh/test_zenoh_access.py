@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a plan lets each robot say and hear, as key expressions; expectations by hand."""
 
 from __future__ import annotations

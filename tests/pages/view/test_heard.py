@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tf of a snapshot: trees where they were heard, and how far from the description."""
 
 from __future__ import annotations

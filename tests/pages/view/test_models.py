@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the view takes from a URDF and from the files of meshes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The robots in 3D at the head of a report."""
 
 from __future__ import annotations

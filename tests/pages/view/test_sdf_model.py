@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An SDF as the view draws it. Where things are is worked out by hand, from SDFormat."""
 
 from __future__ import annotations

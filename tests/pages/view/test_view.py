@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``multibot view``: models, names before and after, one page that fetches nothing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page in a real browser: it draws, and a click tells what a name was."""
 
 from __future__ import annotations

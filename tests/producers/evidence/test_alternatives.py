@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of which one at a time can be active: a command interface has one owner at a time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What controllers claim, from their parameters. Expectations are from the sources of the controllers:
 command_interface_configuration, state_interface_configuration and the names that on_configure makes."""
 

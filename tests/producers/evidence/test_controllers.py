@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of arms whose code puts a prefix before names, in a fleet of two.
 
 Expected from the sources: ur_controllers (tf_prefix + name), franka_ros2 (arm_prefix + "_" + name),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes with the parameters that they get. What runs then is said here from the nodes' sources:
 robot_localization ros_filter.cpp, nav2_costmap_2d obstacle_layer.cpp, twist_mux.cpp."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A relay between a robot and its computer: what it carries is what its lists of names and types say.
 
 Expected from create3_republisher republisher.cpp: pairs of name and type; the robot has the names below

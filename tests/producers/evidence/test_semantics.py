@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an SRDF says: groups as MoveIt makes them, and the nodes and gaps that follow."""
 
 from __future__ import annotations

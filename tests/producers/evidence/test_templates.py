@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Templates of interfaces, and the parameters that fill them: what each makes is said here by hand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vendors' robots are built from their own files, and equal what the vendors make of two, or better it.
 
 With MULTIBOT_SOURCES=FOLDER and with launch, as ``test_vendor_systems.py``; skipped without. With rclpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vendors' robots as their launch files start them: no node of the plan is wrong, and no finding false.
 
 With MULTIBOT_SOURCES=FOLDER, which holds the checkouts that ``tests/support/vendors/*.yaml`` names, and

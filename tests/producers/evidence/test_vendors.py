@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The controllers.yaml of vendors beside their expanded descriptions, before and after a rewrite.
 
 With MULTIBOT_SOURCES=FOLDER, which holds checkouts of the vendors' repositories under their names;

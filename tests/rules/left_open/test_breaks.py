@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot that closes, and breaks of it: a build and a plan find each, with both lines.
 
 What each break does at run time is said here, from the sources of the nodes.

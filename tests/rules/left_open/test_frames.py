@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trees of transforms: two that nodes of a robot send are apart; a driver may join the description."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is open in a robot, asked of each step alone. What needs and gives what is said here by hand."""
 
 from __future__ import annotations

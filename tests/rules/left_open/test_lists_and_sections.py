@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lists without parameters, sections of no controller: in a file alone."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plan that follows from a robot's own files, on a real graph: nothing is missing or too much."""
 
 from __future__ import annotations

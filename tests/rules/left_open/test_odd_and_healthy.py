@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots that close in an unusual way: nothing is found, neither by a build nor by a plan."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node needs that may not run: nothing is open because of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plugin's topic of one type, and a node that reads it as another one: found before anything runs.
 
 Sources: gazebo_ros_pkgs ros2 gazebo_ros_ray_sensor.cpp (PointCloud2 without <output_type>),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers that claim what another one claims, and names that only a prefix reaches."""
 
 from __future__ import annotations

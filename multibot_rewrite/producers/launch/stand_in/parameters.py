@@ -25,7 +25,6 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
     typed_truth,
 )
-from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 _ITEMS = (bool, int, float, str)
 
@@ -78,7 +77,7 @@ class ParameterFile:
     """A parameter file."""
 
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
-        is_path = isinstance(param_file, os.PathLike)
+        is_path = isinstance(param_file, os.PathLike) and not hasattr(param_file, "perform")
         text = [os.fspath(param_file)] if is_path else param_file
         self.__param_file = normalize_to_list_of_substitutions(text)
         self.allow_substs = allow_substs
@@ -116,10 +115,20 @@ def _flat(
 ) -> Iterator[tuple[tuple[Any, ...], Any]]:
     for key, value in given.items():
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
-        if isinstance(value, Mapping) and not is_unknown(value):
+        if isinstance(value, Mapping):
             yield from _flat(value, (*name, "."))
-        else:
+        elif isinstance(value, (*_PLAIN, list, tuple)) or _is_told_later(value):
             yield name, value
+        else:
+            raise _no_value(value)
+
+
+def _is_told_later(value: Any) -> bool:
+    return hasattr(value, "perform") or hasattr(value, "evaluate")
+
+
+def _no_value(value: Any) -> TypeError:
+    return TypeError(f"Unexpected type for parameter value {value!r}")
 
 
 def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
@@ -130,7 +139,7 @@ def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
     if isinstance(value, list | tuple):
         return _listed(context, value, name)
     if not isinstance(value, _PLAIN):
-        raise TypeError(f"Unexpected type for parameter value {value!r}")
+        raise _no_value(value)
     return value
 
 

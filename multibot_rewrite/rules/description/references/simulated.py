@@ -16,6 +16,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
+from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
@@ -118,7 +119,13 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             if is_here and not is_there(path) and not in_sources(path):
                 # A whole folder may be made by the build.
                 level = "" if is_folder(os.path.dirname(path)) else WARNING
-                yield Problem(it, f"there is no file {path}", "", "correct the path", level=level)
+                yield Problem(
+                    it,
+                    f"there is no file {alike(path, os.curdir)}",
+                    "",
+                    "correct the path",
+                    level=level,
+                )
 
 
 def _is_told(subject: Subject, plugin: _Element) -> bool:

@@ -181,10 +181,14 @@ def _limit_memory() -> None:
             now = int(file.read().split()[0]) * resource.getpagesize()
     except OSError:  # not on Linux: no limit
         return
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    most = now + MOST_MEMORY
-    if hard == resource.RLIM_INFINITY or most < hard:
-        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+    _limit(resource.RLIMIT_AS, now + MOST_MEMORY)
+
+
+def limit_files(most: int) -> None:
+    """Let this process make no file of more bytes: a write beyond raises OSError."""
+    import resource
+
+    _limit(resource.RLIMIT_FSIZE, most)
 
 
 def limit_time(seconds: float) -> None:
@@ -192,8 +196,13 @@ def limit_time(seconds: float) -> None:
     import resource
 
     used = resource.getrusage(resource.RUSAGE_SELF)
-    most = int(used.ru_utime + used.ru_stime + seconds) + 1
-    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-    if hard == resource.RLIM_INFINITY or most < hard:
-        resource.setrlimit(resource.RLIMIT_CPU, (most, hard))
+    _limit(resource.RLIMIT_CPU, int(used.ru_utime + used.ru_stime + seconds) + 1)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _limit(kind: int, most: int) -> None:
+    import resource
+
+    _, hard = resource.getrlimit(kind)
+    if hard == resource.RLIM_INFINITY or most < hard:
+        resource.setrlimit(kind, (most, hard))

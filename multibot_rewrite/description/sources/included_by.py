@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which xacro files include which: one that only defines macros is no robot, what includes it is."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
+
+from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.outside import outside
+from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.description.sources.read import XACRO, has_xacro
+
+# Files that are looked at; of a larger one nothing is read.
+MOST_FILES, MOST_BYTES = 20_000, 4_000_000
+SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
+_INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
+_MACRO = re.compile(rb"<\w+:macro\b")
+_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
+
+
+def whole_robots(file: str) -> list[str]:
+    """The xacros of its package that include a file, at any depth, and that no other one includes."""
+    path = os.path.abspath(file)
+    home = (package_of(path) or ("", os.path.dirname(path)))[1]
+    above = includers((it, data_of_file(it)) for it in _xacros(home))
+    found = [path]
+    for it in found:  # grows
+        found += sorted(above.get(it, set()) - set(found))
+    named = os.path.abspath if os.path.isabs(file) else os.path.relpath
+    return [named(it) for it in found[1:] if not above.get(it)]
+
+
+@outside
+def robot_instead(file: str) -> str:
+    """What to give in place of a description without a link; ``file`` may be its name for messages."""
+    path = file.removesuffix(" (expanded)")
+    data = data_of_file(path)
+    users = whole_robots(path) if has_xacro(data) else []
+    what = "it defines macros; " if _MACRO.search(data) else ""
+    return (
+        f"{what}give {f'{users[0]}, which includes it' if users else 'the file that has the robot'}"
+    )
+
+
+def includers(texts: Iterable[tuple[str, bytes]]) -> dict[str, set[str]]:
+    """For each of some files those of them that include it; their ``texts`` are read one by one."""
+    paths: list[str] = []
+    named: dict[str, list[tuple[str, str]]] = {}
+    for path, data in texts:
+        paths.append(path)
+        for it in _INCLUDED.findall(data) if path.endswith(XACRO) else ():
+            file = it.decode("utf-8", "replace")
+            named.setdefault(os.path.basename(file), []).append((file, path))
+    return {
+        path: {other for file, other in by if _means(file, path, other)}
+        for path in paths
+        if (by := named.get(os.path.basename(path)))
+    }
+
+
+def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
+    """Files that another one includes which nothing includes, at any depth: a loop has no first one,
+    and what expands it says so."""
+    found = {it for it in paths if not above.get(it)}
+    tops = set(found)
+    while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
+        found |= more
+    return found - tops
+
+
+def data_of_file(path: str) -> bytes:
+    """The bytes of a file, none of one that is too large or cannot be read."""
+    with suppress(OSError, ValueError):
+        return read_bytes(path, MOST_BYTES)
+    return b""
+
+
+def _xacros(folder: str) -> Iterator[str]:
+    seen = 0
+    for above, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if it[0] != "." and it not in SKIPPED)
+        seen += len(names)
+        if seen > MOST_FILES:
+            return
+        yield from (os.path.normpath(os.path.join(above, it)) for it in names if it.endswith(XACRO))
+
+
+def _means(included: str, path: str, by: str) -> bool:
+    """May the included file be this one? Of a path that a xacro fills in the base name counts."""
+    if path == by:
+        return False
+    package = _FIND.match(included)
+    rest = included[package.end() :] if package else included
+    if "$" in rest or os.path.isabs(rest):
+        return True
+    if not package:
+        return os.path.normpath(os.path.join(os.path.dirname(by), rest)) == path
+    own = package_of(path)
+    return own is not None and package[1] in (own[0], os.path.basename(own[1]))
