@@ -167,7 +167,7 @@ def test_words_that_stand_for_a_robot() -> None:
             """arguments coverage vocabulary explain learn doctor diagnose lint remap zenoh rewrite
             postfix prefix
             strip undo clean new create generate make launch run start up simulate test
-            verify watch report graph record show visualize rviz""",
+            verify watch why diff compare bag report graph record show visualize rviz""",
         ),
         (
             other_words.OPTIONS,

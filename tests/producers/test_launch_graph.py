@@ -545,7 +545,7 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
 
 
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="it starts no node"):
+    with pytest.raises(InputError, match="starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
 
 

@@ -151,7 +151,10 @@ def test_where_no_router_answers_the_view_is_empty(monkeypatch: pytest.MonkeyPat
             raise NoRouter(words)
 
         monkeypatch.setattr(observe, "opened", refused)
-        for found in (look(Request(1.0), ROUTER), *watch(Request(1.0), ROUTER)):
+        for found in (
+            look(Request(1.0), ROUTER),
+            *(it for _, it in watch(Request(1.0), {2: ROUTER})),
+        ):
             assert codes(found) == [("no-router", True)]
             said = f"no Zenoh router answers at tcp/h:7447{told}; is one running there"
             assert found.environment.caveats[0].message.startswith(said)
@@ -182,27 +185,28 @@ def test_a_watched_router_is_shown_after_each_change(
     monkeypatch.setattr(observe, "SETTLE_SECONDS", 0.01)
     session = Session((DRIVER,))
     own = opens(session)
-    views = watch(Request(5.0), ROUTER)
-    first = next(views)
+    views = watch(Request(5.0), {2: ROUTER})
+    number, first = next(views)
+    assert number == 2
     assert ([it.name for it in first.nodes], first.environment.settled) == (
         ["/robot1/driver"],
         "quiet",
     )
     changed = session.subscribed["@ros2_lv/2/**"]
     changed(SimpleNamespace(kind="put", key_expr=SCAN))
-    assert [it.name for it in next(views).ends] == ["/scan"]
+    assert [it.name for it in next(views)[1].ends] == ["/scan"]
     changed(SimpleNamespace(kind="delete", key_expr=DRIVER))
     changed(SimpleNamespace(kind="delete", key_expr=SCAN))
-    assert next(views).nodes == ()
+    assert next(views)[1].nodes == ()
     session.info = SimpleNamespace(routers_zid=lambda: [], peers_zid=lambda: [])
-    assert codes(next(views)) == [("no-router", True)]
+    assert codes(next(views)[1]) == [("no-router", True)]
     views.close()
     assert own.declared != []
 
 
 def test_a_watch_ends_with_its_time_and_takes_its_subscription_back(opens: Any) -> None:
     own = opens(Session((DRIVER,)))
-    assert list(watch(Request(0.02), ROUTER)) == []
+    assert list(watch(Request(0.02), {2: ROUTER})) == []
     assert own.declared == []
 
 

@@ -126,6 +126,13 @@ def test_a_remap_rule_for_a_name_that_is_nearly_there(
     assert judged(known, "MR103", UNKNOWN._replace(remappings=((rule, "x"),))) == []
 
 
+@pytest.mark.parametrize("rule", ["scan", "/scan", "~/change_state"])
+def test_a_slash_before_a_name_or_a_rule_is_no_slip(rule: str, known: Knowledge) -> None:
+    """slam_toolbox asks for /scan; launch files write both."""
+    names = ("slam_toolbox", "async_slam_toolbox_node", "slam_toolbox")
+    assert judged(known, "MR103", started(*names, remappings=((rule, "x"),))) == []
+
+
 @pytest.mark.parametrize(("namespace", "count"), [("/robot1", 0), ("/robot2", 1)])
 def test_a_rule_for_a_name_that_a_parameter_has_below_the_namespace(
     namespace: str, count: int, known: Knowledge

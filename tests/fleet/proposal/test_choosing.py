@@ -356,7 +356,9 @@ def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
     """The folder's name has a word of a part; that of the copy is read in the same way."""
     folder = tmp_path / "x500_lidar_down"
     folder.mkdir()
-    text = '<sdf version="1.9"><model name="x500"><link name="{}"/><link name="b"/></model></sdf>'
+    rotor = '<joint name="rotor" type="revolute"><parent>{0}</parent><child>b</child></joint>'
+    links = f'<link name="{{0}}"/><link name="b"/>{rotor}'
+    text = f'<sdf version="1.9"><model name="x500">{links}</model></sdf>'
     (folder / "model.sdf").write_text(text.format("a"))
     (folder / copy).write_text(text.format("a") + "<!-- old -->")
     assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"
