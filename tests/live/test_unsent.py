@@ -131,5 +131,9 @@ def test_a_topic_of_another_type() -> None:
 def test_types_that_may_be_the_same() -> None:
     assert differ(CMD._replace(also=("a/msg/B",)), SENDS) == []
     assert differ(CMD, SENDS._replace(also=("a/msg/A",))) == []
-    assert differ(CMD, SENDS, SENDS._replace(node="/k", type="")) == []
-    assert differ(CMD, SENDS, SENDS._replace(node="/k", type="a/msg/A")) == []
+
+
+@pytest.mark.parametrize("type_", ["", "a/msg/A"])
+def test_a_sender_that_nobody_hears_beside_one_that_is_heard(type_: str) -> None:
+    (found,) = differ(CMD, SENDS, SENDS._replace(node="/k", type=type_))
+    assert (found.code, found.node) == ("MG306", "/m")
