@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
     done = _deliver(options, made)
-    if made.others and not seen.named:
+    if made.others:
         note(options, _one_of_several(made))
     return done
 

@@ -186,6 +186,49 @@ def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
     assert python.count("*brought_up(") == 1, "in the one function for both robots"
 
 
+CLASSIC = """\
+<robot name="arm">
+  <link name="base"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="l1"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <ros2_control name="s" type="system">
+    <hardware><plugin>gazebo_ros2_control/GazeboSystem</plugin></hardware>
+    <joint name="j1"><command_interface name="position"/><state_interface name="position"/></joint>
+  </ros2_control>
+  <gazebo><plugin filename="libgazebo_ros2_control.so" name="gazebo_ros2_control">
+    <parameters>c.yaml</parameters></plugin></gazebo>
+</robot>
+"""
+
+
+@pytest.mark.more
+@pytest.mark.parametrize(("simulator", "program"), [("gazebo", False), ("none", True)])
+def test_a_manager_in_a_plugin_is_not_started_besides(
+    simulator: str, program: bool, tmp_path: Path
+) -> None:
+    """Without a stack: gazebo_ros2_control_plugin.cpp makes the manager that the file sets."""
+    hardware = "gazebo_ros2_control/GazeboSystem" if not program else "acme/Arm"
+    (tmp_path / "arm.urdf").write_text(
+        CLASSIC.replace("gazebo_ros2_control/GazeboSystem", hardware)
+    )
+    kind = "joint_trajectory_controller/JointTrajectoryController"
+    (tmp_path / "c.yaml").write_text(
+        f"controller_manager:\n  ros__parameters: {{jtc: {{type: {kind}}}}}\n"
+        "jtc:\n  ros__parameters: {joints: [j1], command_interfaces: [position]}\n"
+    )
+    (tmp_path / "fleet.yaml").write_text(
+        f"layout: tf-per-robot\ndistro: humble\nsimulator: {simulator}\ndescription: arm.urdf\n"
+        f"companions: {{params: c.yaml}}\n{TWO}"
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
+    python = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert ("executable='ros2_control_node'" in python) == program
+    assert "executable='spawner'" in python
+
+
 @pytest.mark.slow
 def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None:
     """Brought up twice, the second fails, and the manager gives all of its nodes up."""

@@ -75,13 +75,7 @@ def test_a_file_that_only_a_launch_names_is_written_for_each_robot(
     assert "base_frame_id: robot2/base_link" in found["robot2/drive.yaml"]
     assert "left_wheel_names: [robot2_wheel_joint]" in found["robot2/drive.yaml"]
     assert "/robot1/drive:" in found["robot1/drive.yaml"]
-
-
-def test_what_a_launch_makes_of_a_file_counts_and_the_file_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "drive.yaml"
-    file.write_text(FILLED)
+    # What a launch makes of a file counts, and the file is written.
     made = ParameterText("", f"# made\n{FILLED}", str(file))
     assert "robot1/drive.yaml" in built(tmp_path, monkeypatch, made)[0]
 

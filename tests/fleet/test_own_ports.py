@@ -8,6 +8,7 @@ Expected: ArduPilot libraries/AP_HAL_SITL/SITL_cmdline.cpp raises its ports by 1
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -128,14 +129,23 @@ def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     assert listed == [[], *([it] for it in numbers[1:])] if numbers else not any(listed)
 
 
-def test_a_number_is_taken_back_only_as_it_was_written() -> None:
-    """A port that is written first in the place where another one's default is put, without a blank."""
-    plugin = MAVLINK.format("<mavlink_udp_port>14560</mavlink_udp_port>")
-    both = plugin.replace("<mav", "<use_tcp>1</use_tcp><mav") + plugin.replace('"m"', '"n"')
-    text = MODEL.format(both)
-    two = [*rewrite_all(text, ["a", "b"], distro="humble")]
-    assert strip(two[1].data, "b", distro="humble") == text.encode()
-    for old, new in (("14561<", "14560<"), ("from 14560 -->", "from 14560 --> ")):
+def test_a_number_is_taken_back_only_as_it_was_written(tmp_path: Path) -> None:
+    """A port that is written where another one's default is put, without a blank."""
+    own, text = tmp_path / "own.vocab", HARDWARE.format("a/B", "")
+    paths = (f"address+1:hardware/param[@name={it}]=59152" for it in ("client_port", "other"))
+    own.write_text(f"[hardware a/B]\nopens: {' '.join(paths)}\n")
+    text = text.replace("<hardware>", f"<hardware>{KUKA_PORT}")
+    two = [*rewrite_all(text, ["a", "b"], distro="jazzy", vocabulary=[str(own)])]
+    back = partial(strip, robot="b", distro="jazzy", vocabulary=[str(own)])
+    assert back(two[1].data) == text.encode()
+    for old, new in (("59153<", "59152<"), ("from 59152 -->", "from 59152 --> ")):
         assert old.encode() in two[1].data
         with pytest.raises(InputError, match="edited by hand"):
-            strip(two[1].data.replace(old.encode(), new.encode()), "b", distro="humble")
+            back(two[1].data.replace(old.encode(), new.encode()))
+
+
+def test_what_is_no_number_is_not_said_to_get_one() -> None:
+    text = MODEL.format(ARDUPILOT.replace("9002", "udp"))
+    *_, last = rewrite_all(text, ["a", "b"], distro="jazzy")
+    (hint,) = (it.hint for it in last.findings if it.code == "MB412")
+    assert "in one call" not in hint

@@ -29,10 +29,9 @@ from node_answers import told
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose, survey
-from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.producers.ros.voices import Voices
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.parameters import with_answers
@@ -189,20 +188,6 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
     assert all("no message of /robot1/rear_lidar ever arrives" in it.hint for it in refused)
 
 
-# ---------------------------------------------------------------- the plan of what is seen
-
-
-@pytest.mark.more
-@pytest.mark.sample(4)
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
-    graph = SYSTEMS[name]()
-    written = to_yaml(seen_plan(diagnose(graph)))
-    read = from_yaml(written.encode(), "plan.yaml")
-    # A frame of a sensor that no description has, and one robot's frames in a plan without.
-    assert [str(it) for it in check(read, graph) if it.level == "error"] == []
-
-
 def test_the_layout_and_tf_topics_are_told() -> None:
     said = list(survey(diagnose(nav2_with_tools("L1"))))
     assert said[0] == "2 robots by their namespaces: robot1, robot2"
@@ -258,14 +243,6 @@ def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
 
 
 @pytest.mark.more
-def test_the_page(tmp_path: Path) -> None:
-    graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
-    given = ["--report", str(page), "-q"]
-    assert multibot.main(["check", "--snapshot", graph, *given]) == 1
-    assert "MG402" in page.read_text()
-
-
-@pytest.mark.more
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_what_is_suggested_is_taken(
@@ -297,14 +274,6 @@ def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -
     assert multibot.main(["plan", str(folder / "fleet.yaml"), "-o", planned]) == 0
     robot, _ = from_yaml(Path(planned).read_bytes(), planned).robots
     assert "robot1_base_link" in robot.frames
-
-
-def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "fleet.yaml").write_text("mine")
-    given = ["--snapshot", saved(tmp_path, nav()), "--suggest", str(tmp_path)]
-    assert multibot.main(["check", *given]) == 2
-    assert "fleet.yaml is there already" in capsys.readouterr().err
-    assert (tmp_path / "fleet.yaml").read_text() == "mine"
 
 
 @pytest.mark.more

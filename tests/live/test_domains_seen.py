@@ -219,15 +219,18 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     for at in healthy:
         one = ["--snapshot", str(tmp_path / f"{at}.json")]
         assert main(["check", str(first / f"domain{at}" / "plan.yaml"), *one]) == 0
+    assert main(["check", *one, "--suggest", str(tmp_path / "one")]) == 0
+    assert (tmp_path / "one" / "plan.yaml").exists()
 
 
 def test_a_robot_without_a_name_that_vanishes_is_called_by_its_domain(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     both = {at: running(at) for at in (11, 12)}
     gone = {**both, 12: both[12]._replace(nodes=(), ends=())}
     monkeypatch.setattr(live, "watched", lambda _, domains: (it for it in (both, gone)))
-    assert main(["check", "--domain", "11,12", "--watch"]) == 1
+    assert main(["check", "--domain", "11,12", "--watch", "--suggest", str(tmp_path)]) == 1
+    assert {it.parent.name for it in tmp_path.rglob("plan.yaml")} == {"domain11", "domain12"}
     assert "domain 12: error: MG109 domain 12 is gone: none" in capsys.readouterr().out
 
 

@@ -81,7 +81,7 @@ def test_each_robot_has_its_frames_and_its_tf() -> None:
 def test_without_a_name_of_a_robot_all_is_of_one() -> None:
     graph = System(
         (Node("/a"), Node("/b")), (end(TOPIC, PUBLISHES, "/x", "/a"),),
-        (Edge("base", "odom", "/tf", False, ()), Edge("odom", "map", "/tf", False, ())),
+        (Edge("/base", "/odom", "/tf", False, ()), Edge("odom", "map", "/tf", False, ())),
     )  # fmt: skip
     assert robots_to_plan(diagnose(graph)) == (NAMELESS,) and NAMELESS.name == "robot1"
     made = planned(graph)

@@ -420,18 +420,23 @@ TOPICS = {
     "/nobody": ["std_msgs/msg/String"],
     "/robot1/tf": ["tf2_msgs/msg/TFMessage"],
     "/robot1/amcl_pose": ["geometry_msgs/msg/PoseWithCovarianceStamped"],
+    "/robot1/map": ["nav_msgs/msg/OccupancyGrid"],
     "/rosout": ["rcl_interfaces/msg/Log"],
 }
 ENDS = [
     end("/a", "/both"),
     end("/b", "/both", "subscribes"),
-    *(end("/a", name) for name in ("/one", "/robot1/tf", "/robot1/amcl_pose", "/rosout")),
+    *(
+        end("/a", name)
+        for name in ("/one", "/robot1/tf", "/robot1/amcl_pose", "/robot1/map", "/rosout")
+    ),
 ]
 
 
 def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
     asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
-    assert asked == ["/both", "/nobody", "/robot1/amcl_pose", "/robot1/tf", "/rosout"]
+    latched = ["/robot1/amcl_pose", "/robot1/map"]
+    assert asked == ["/both", "/nobody", *latched, "/robot1/tf", "/rosout"]
     assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
     assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
 

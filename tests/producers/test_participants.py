@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import socket
 import sys
+import threading
 from collections.abc import Iterator
+from contextlib import nullcontext
 from math import inf
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,11 +19,11 @@ from multibot_rewrite.live.staged import stage
 from multibot_rewrite.producers.ros import assemble, observe
 from multibot_rewrite.producers.ros.participants import (
     lost_here,
-    make_room,
     participants_at,
     participants_here,
     sockets_in,
 )
+from multibot_rewrite.producers.ros.request import Request
 
 TABLE = """\
    sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
@@ -59,16 +61,23 @@ def port_in_use() -> Iterator[None]:
         yield
 
 
-def test_a_socket_gets_room_and_stays_open(tmp_path: Path) -> None:
-    """Of datagrams alone: it is the middleware's, and no file, pipe or stream is touched."""
+def test_a_look_gives_its_sockets_room_and_leaves_them_open(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of datagrams alone: they are the middleware's, and no file, pipe or stream is touched."""
+    context = SimpleNamespace(get_domain_id=lambda: DOMAIN)
+    monkeypatch.setattr(
+        observe.ros, "opened", lambda: nullcontext(SimpleNamespace(context=context))
+    )
+    monkeypatch.setattr(observe.ros, "add_node", lambda *_: None)
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own,
         socket.socket() as stream,
         open(tmp_path / "file", "w") as file,
     ):
         before = [it.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) for it in (own, stream)]
-        make_room()
-        after = [it.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) for it in (own, stream)]
+        with observe._open_session(Request(1.0), threading.Event(), lambda _: None):
+            after = [it.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) for it in (own, stream)]
         own.bind(("127.0.0.1", 0))
         file.write("open")
     if sys.platform.startswith("linux"):

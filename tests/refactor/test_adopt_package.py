@@ -253,6 +253,10 @@ controller_manager:
             ["amcl:\n  ros__parameters: {}\n", MANAGED.format("amcl", "x")],
             ["p0.yaml:1 amcl", "p1.yaml:2 controller_manager"],
         ),
+        (
+            [MANAGED.format("amcl", "amcl").replace("type", "rate")],
+            ["p0.yaml:2 controller_manager"],
+        ),
         (["amcl:\n  ros__parameters: {}\n"], []),
         (["robot_state_publisher:\n  ros__parameters: {}\n"], ["p0.yaml:1 robot_state_publisher"]),
         (["controller_manager:\n  ros__parameters: [\n"], ["p0.yaml:1 controller_manager"]),

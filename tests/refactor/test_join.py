@@ -219,7 +219,7 @@ def test_a_namespace_of_xml_goes_with_the_elements_that_use_it() -> None:
 
 
 REFUSED = {
-    "no link": (robot(""), "it has no link"),
+    "no link": (robot(""), "it has no link; give the file that has the robot"),
     "two roots": (robot(link("a") + link("b")), "2 of its links have no parent ('a' and 'b')"),
     "a joint to itself": (robot(link("a") + fixed("j", "a", "a")), "joins link 'a' to itself"),
     "a loop": (
@@ -272,6 +272,8 @@ def test_a_part_that_cannot_be_joined_is_refused_in_one_line(case: str) -> None:
     [
         ('<xacro:include filename="part.xacro"/>', "give {}/arm.xacro, which includes it"),
         ('<xacro:include filename="middle.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="${1}art.xacro"/>', "give {}/arm.xacro, which includes it"),
+        ('<xacro:include filename="${1}arts.xacro"/>', "give the file that has the robot"),
         ('<xacro:include filename="other/part.xacro"/>', "give the file that has the robot"),
     ],
 )

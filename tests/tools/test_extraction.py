@@ -223,7 +223,9 @@ def test_a_folder_that_is_no_checkout(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "REPOSITORY@VERSION" in capsys.readouterr().err
 
 
-def test_the_command_prints_known_nodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_nodes_and_differences(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "twist_mux@4"
     folder.mkdir()
     (folder / "a.cpp").write_text(
@@ -235,14 +237,6 @@ def test_the_command_prints_known_nodes(tmp_path: Path, capsys: pytest.CaptureFi
     assert row.split("\t")[:9] == [
         *("twist_mux", "4", "a.cpp", "1", "twist_mux", "calls", "c", "a/srv/B", "")
     ]
-
-
-def test_the_command_prints_differences(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = tmp_path / "twist_mux@4"
-    folder.mkdir()
-    (folder / "a.cpp").write_text(
-        'struct TwistMux { void f() { create_client<a::srv::B>("c"); } };'
-    )
     assert main([str(folder), "--compare", "jazzy"]) == 1
     rows = [row.split("\t")[:5] for row in capsys.readouterr().out.splitlines()]
     assert ["twist_mux", "calls", "c", "a/srv/B", "not in ours"] in rows

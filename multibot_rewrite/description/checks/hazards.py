@@ -29,6 +29,8 @@ WITH_WORLD = (WORLD, "gui")
 # What a plugin reads the description from: names that no other robot's plugin may read.
 DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
+# What is left where a name has to stay, and is looked up in the whole world.
+ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION"
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
@@ -162,8 +164,8 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             kind, _, name = entry.partition(":")
             if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
-                hint = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
-                yield _host(host, "MB428", message, hint)
+                bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
+                yield _host(host, "MB428", message, ALONE if kind == section.unique else bare)
 
 
 def _host(host: Host, code: str, message: str, hint: str) -> Problem:

@@ -10,6 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
+from multibot_rewrite.description.checks.hazards import ALONE
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.description.readback.meeting import (
@@ -37,7 +38,7 @@ NAMED = "use a layout that gives each robot names of its own, as --layout both"
 # Names in code stay in every layout: another one that renames links and joints breaks the plugin.
 OWN = (
     "names are fixed in a plugin's code: use --layout frame-prefix where sensors name their frames; "
-    "else run each robot in a Gazebo of its own, by GZ_PARTITION"
+    f"else {ALONE}"
 )
 BY_HAND = "write it for each robot by hand, as by an argument of a xacro"
 # Stands for the name of a robot in a hint.

@@ -59,22 +59,17 @@ def resolved(
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
     """Name and parameter of the topics that are the world's or left as they are, below the namespace
-    that the plugin puts in front. In front of Classic's stands the model's name, also where they have a
-    slash (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's); gz's relative ones are left out."""
-    is_below = "model" in section.opens
-    of_model = is_below or any(it.kinds[:1] == ("stem",) for it in section.sites)
+    that the plugin puts in front. Where that is the model's name it also stands before a slash
+    (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
+    # One without a name gets it from its spawner.
+    model = around(host).get("name") or "~"
+    of_model = any(it.kinds[:1] == ("stem",) for it in section.sites)
     above = None if of_model else _namespace(host, section)
     for site in filter(is_of_others, section.sites):
-        if is_below and not _is_of_gz(host, section):
-            # One without a name gets it from its spawner.
-            model = around(host).get("name") or "~"
+        if "model" in section.opens:
             yield from ((_joined(model, it), site.path) for it in values_of(host, site))
         else:
             yield from ((it, site.path) for it in _full(host, section, site, above))
-
-
-def _is_of_gz(host: _Element, section: VocabularySection) -> bool:
-    return section.names[0].startswith("gz") or host.tag in OF_GZ
 
 
 def _full(
@@ -82,8 +77,9 @@ def _full(
 ) -> Iterator[str]:
     """The full names that a site holds, below what is put in front of relative ones; without those that
     are below a node or model which the simulator names."""
+    of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     names = values_of(host, site)
-    for name in map(as_valid_topic, names) if _is_of_gz(host, section) else names:
+    for name in map(as_valid_topic, names) if of_gz else names:
         if name.startswith("/"):
             yield name
         elif above is not None and not name.startswith("~"):

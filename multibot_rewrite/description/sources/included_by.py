@@ -17,6 +17,7 @@ from multibot_rewrite.description.sources.read import XACRO, has_xacro
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
 _INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
+_FILLED = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 _MACRO = re.compile(rb"<\w+:macro\b")
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 
@@ -25,7 +26,7 @@ def whole_robots(file: str) -> list[str]:
     """The xacros of its package that include a file, at any depth, and that no other one includes."""
     path = os.path.abspath(file)
     home = (package_of(path) or ("", os.path.dirname(path)))[1]
-    above = includers((it, data_of_file(it)) for it in _xacros(home))
+    above = includers(((it, data_of_file(it)) for it in _xacros(home)), composed=True)
     found = [path]
     for it in found:  # grows
         found += sorted(above.get(it, set()) - set(found))
@@ -45,8 +46,9 @@ def robot_instead(file: str) -> str:
     )
 
 
-def includers(texts: Iterable[tuple[str, bytes]]) -> dict[str, set[str]]:
-    """For each of some files those of them that include it; their ``texts`` are read one by one."""
+def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> dict[str, set[str]]:
+    """For each of some files those of them that include it; their ``texts`` are read one by one. A name
+    that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files."""
     paths: list[str] = []
     named: dict[str, list[tuple[str, str]]] = {}
     for path, data in texts:
@@ -54,11 +56,20 @@ def includers(texts: Iterable[tuple[str, bytes]]) -> dict[str, set[str]]:
         for it in _INCLUDED.findall(data) if path.endswith(XACRO) else ():
             file = it.decode("utf-8", "replace")
             named.setdefault(os.path.basename(file), []).append((file, path))
-    return {
-        path: {other for file, other in by if _means(file, path, other)}
-        for path in paths
-        if (by := named.get(os.path.basename(path)))
-    }
+    filled = [it for it in named if composed and "$" in it]
+    found: dict[str, set[str]] = {}
+    for path in paths:
+        own = os.path.basename(path)
+        for name in (own, *(it for it in filled if _like(it).fullmatch(own))):
+            for file, other in named.get(name, ()):
+                if _means(file, path, other):
+                    found.setdefault(path, set()).add(other)
+    return found
+
+
+def _like(name: str) -> re.Pattern[str]:
+    """What a name may be that has expressions of xacro in it."""
+    return re.compile(".+".join(map(re.escape, _FILLED.split(name))))
 
 
 def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:

@@ -125,7 +125,7 @@ def nodl_files(nodl: Sequence[str], places: Places) -> list[str]:
 SCHEMA = "fleet.schema.json"
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 # What a dict is called where a file would be named.
-DICT = "the fleet's dict"
+DICT = "the fleet's dict as YAML"
 
 
 class FleetData(NamedTuple):

@@ -259,7 +259,8 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
         _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
     )
     likeliest = best.order[0]
-    if likeliest.part and not likeliest.moving:
+    # The name of a model tells what it carries: x500_lidar.
+    if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
         said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
         raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)

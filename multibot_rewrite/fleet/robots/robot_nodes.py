@@ -27,6 +27,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import (
     KnownNodes,
@@ -36,6 +37,7 @@ from multibot_rewrite.knowledge.parameters import (
     load_known_nodes,
 )
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
@@ -79,6 +81,7 @@ def robot_nodes(
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
+    stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
@@ -162,6 +165,20 @@ def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
     """The nodes of a robot's stacks, as their usual files have them."""
     return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
+
+
+def _manager_in_plugin(
+    stack: Iterable[NodeFacts], own: Iterable[GivenNode], member: Member, release: str
+) -> Iterator[NodeFacts]:
+    """The controller manager that a file of the robot sets and a plugin of its description makes, as
+    the stack of the plugin's name has it; none where a stack says who makes it."""
+    there = any(it.name == MANAGER for it in stack)
+    if there or all(it.known != MANAGER for it in own):
+        return
+    library = built_in(release)
+    wide = (it.section for it in member.reading.nodes if it.section.process_wide)
+    for name in {name for it in wide for name in it.names} & library.stacks.keys():
+        yield from (it for it in stack_of(library, name) if it.name == MANAGER)
 
 
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:

@@ -49,7 +49,7 @@ def _subscribe(
     """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
     class_, reason = ros.raw_message_class(type_)
     if not class_:
-        return reason
+        return f"{reason}; install tf2_msgs or source ROS 2"
     read = read_tf if type_ == assemble.TF_TYPES[0] else read_transform
 
     def received(data: bytes, mark: Mark) -> None:
@@ -57,7 +57,8 @@ def _subscribe(
         if message:
             callback(message, mark)
 
-    return ros.subscribe(session.node, class_, topic, latched, received)
+    end = ros.subscribe(session.node, class_, topic, latched, received)
+    return end or "they have two types, and the other is read already"
 
 
 def _subscribe_to_headers(

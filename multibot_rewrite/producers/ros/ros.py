@@ -217,12 +217,15 @@ def subscribe(
     latched: bool,
     callback: Callable[[bytes, int | None], None],
     depth: int = 0,
-) -> Callable[[], None]:
+) -> Callable[[], None] | None:
     """Subscribe to serialized messages, the last ``depth`` of which wait to be received, else as many
-    as a listener to tf keeps; returns what ends it. With ``latched`` earlier messages are received too.
+    as a listener to tf keeps; returns what ends it, None where this process reads the topic as another
+    type already. With ``latched`` earlier messages are received too.
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
+
+    from rclpy.impl.implementation_singleton import rclpy_implementation
 
     def numbered(message: bytes, info: Any) -> None:
         name = "publication_sequence_number"
@@ -233,8 +236,10 @@ def subscribe(
     # Best effort works with reliable publishers too, but latched samples need a reliable reader.
     qos = _qos(latched, latched)
     qos.depth = depth or qos.depth
-    subscription = node.create_subscription(type_, topic, numbered, qos, raw=True)
-    return lambda: node.destroy_subscription(subscription)
+    with suppress(rclpy_implementation.RCLError):
+        subscription = node.create_subscription(type_, topic, numbered, qos, raw=True)
+        return lambda: node.destroy_subscription(subscription)
+    return None
 
 
 def receive(node: Node) -> None:

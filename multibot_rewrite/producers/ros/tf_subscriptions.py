@@ -111,6 +111,5 @@ class TfSubscriptions:
         if self._failed:
             topics = shorten(sorted(self._failed), SEVERAL)
             reason = next(iter(self._failed.values()))
-            remedy = "install tf2_msgs or source ROS 2"
-            text = f"the frames on {topics} were not read: {reason}; {remedy}"
+            text = f"the frames on {topics} were not read: {reason}"
             yield Caveat("frames-not-read", False, text)

@@ -221,3 +221,15 @@ def test_what_the_hint_says_ends_in_proved(row: Followed, tmp_path: Path) -> Non
         file.write_text(options["vocabulary"])
         options["vocabulary"] = [str(file)]
     assert rewrite(ROVER.format(row.after), "robot1", **options).not_proved == ()
+
+
+def test_a_name_that_stays_and_is_looked_up_in_the_world_has_no_layout() -> None:
+    """legubiao/quadruped_ros2_control gz_system.cpp fills foot_force from every force sensor there is:
+    one layout hides the name, the others leave it to all robots."""
+    class_ = "gz_quadruped_hardware/GazeboSimSystem"
+    system = f"<hardware><plugin>{class_}</plugin></hardware><sensor name='foot_force'/>"
+    control = f"<ros2_control name='c' type='system'>{system}</ros2_control>"
+    text = f"<robot name='r'><link name='a'/>{control}</robot>"
+    found = rewrite(text, "robot1", distro="jazzy").findings
+    (hint,) = (it.hint for it in found if it.code == "MB428")
+    assert "Gazebo of its own" in hint and "--layout" not in hint

@@ -86,7 +86,11 @@ def test_a_rewrite_warns_of_it(value: str) -> None:
 
 @pytest.mark.parametrize(
     ("element", "warned"),
-    [("<link name='wr'>wl</link>", False), ("<own><link name='wr'>wl</link></own>", True)],
+    [
+        ("<link name='wr'>wl</link>", False),
+        ("<own><link name='wr'>wl</link></own>", True),
+        ("<link name='wr' like='wl'/>", True),
+    ],
 )
 def test_text_of_a_link_is_read_by_nobody(element: str, warned: bool) -> None:
     found = rewrite(f"<robot name='r'><link name='wl'/>{element}</robot>", "robot1").findings
