@@ -47,9 +47,10 @@ def failure(error: BaseException) -> str:
     if known := _known(error):
         return known
     text = " ".join(f"{type(error).__name__}: {error}".split())
-    if isinstance(error, FileNotFoundError) and error.filename:
+    inner = error.__cause__ or error
+    if isinstance(inner, FileNotFoundError) and inner.filename:
         # The folder with links to sources is gone when this is read.
-        text = text.replace(str(error.filename), os.path.realpath(error.filename))
+        text = text.replace(str(inner.filename), os.path.realpath(inner.filename))
     # launch tries its other forms, too, and says what each of them says.
     text = f"{found[1] if (found := _TRIED.search(text)) else text}{_line(error)}"
     return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
@@ -157,9 +158,10 @@ def is_no_condition(error: BaseException) -> bool:
 def is_certain(error: BaseException, launch_file: str) -> bool:
     """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
     or the launch file itself raises what names no file or device of a machine."""
-    if isinstance(error, FileNotFoundError):
+    inner = error.__cause__ or error
+    if isinstance(inner, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))
-        return os.path.realpath(str(error.filename or "")).startswith(f"{folder}/")
+        return os.path.realpath(str(inner.filename or "")).startswith(f"{folder}/")
     frame = _frame(error)
     if is_no_condition(error) or isinstance(error, RecursionError):
         return True
