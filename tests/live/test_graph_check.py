@@ -410,6 +410,13 @@ def test_another_type_than_planned() -> None:
     assert "as std_msgs/msg/String, but the plan has it as geometry_msgs/msg/Twist" in found.message
 
 
+def test_a_sender_of_a_type_that_no_reader_takes() -> None:
+    """Beside one that all of them hear."""
+    topic, odd = "/robot1/joint_states", (PUBLISHES, "/robot1/joint_states", SCAN)
+    (found,) = [it for it in check(plan(), with_node(healthy(), "/odd", odd)) if it.code == "MG306"]
+    assert (found.node, found.names) == ("/odd", (topic,))
+
+
 def test_a_type_that_it_may_have_as_well() -> None:
     stamped = "geometry_msgs/msg/TwistStamped"
     ends = tuple(

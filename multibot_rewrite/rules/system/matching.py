@@ -60,7 +60,11 @@ def types_differ(seen: Index) -> Iterator[Finding]:
             continue
         # Of a side alone the first one counts.
         others = givers if takers else givers[:1]
-        for node, own in _apart(takers or givers, others).items():
+        apart = _apart(takers or givers, others)
+        if takers and not apart:
+            # Every reader hears somebody; a sender may be heard by nobody.
+            others, apart = takers, _apart(givers, takers)
+        for node, own in apart.items():
             given = {it for end in others for it in _types(end)}
             asked = {it for end in own for it in _types(end)}
             message, cause = _difference(ends.name, others[0].node, dict(asked), dict(given))
