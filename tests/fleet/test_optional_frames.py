@@ -121,3 +121,16 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
         plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
         lines = [it for it in make_outputs(plan).findings if it.code == "MG413"]
         assert {it.level for it in lines if "frame odom," in it.message} == codes
+
+
+def test_a_frame_of_a_node_that_hears_no_transforms_is_not_missed(tmp_path: Path) -> None:
+    """imu_filter_madgwick sends fixed_frame, or writes it into nothing: it has no buffer of tf2."""
+    filter_ = "imu_filter_madgwick: {ros__parameters: {fixed_frame: odom, publish_tf: false}}\n"
+    (tmp_path / "imu.yaml").write_text(filter_)
+    (tmp_path / "dog.urdf").write_text(SEEN.format("<gz_frame_id>head</gz_frame_id>"))
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\nsimulator: gazebo\ndescription: dog.urdf\n"
+        "companions: {params: imu.yaml}\nrobots: [{name: r1}]\n"
+    )
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
+    assert [it for it in make_outputs(plan).findings if it.code == "MG413"] == []

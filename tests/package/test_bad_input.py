@@ -72,7 +72,7 @@ UNREADABLE = {
     ),
     "mjcf": (
         '<mujoco model="m">\n<worldbody/>\n</mujoco>',
-        ("in.urdf:1:", "<mujoco>", "<robot> or <sdf>"),
+        ("in.urdf:1:", "a model of MuJoCo", "give the robot's URDF or SDF"),
     ),
     "other-root": ("<html/>", ("in.urdf:1:", "<html>", "<robot>")),
 }

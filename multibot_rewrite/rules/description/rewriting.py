@@ -83,7 +83,8 @@ unknown_plugin = rule(
     fix="Add a section for it to a vocabulary file, with a line for each topic and service; where it "
     "opens none, `opens: nothing`.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
-    good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
+    good='<gazebo><plugin name="gz::sim::systems::OdometryPublisher" '
+    'filename="gz-sim-odometry-publisher-system"/></gazebo>',
 )(partial(_unknown, "MB902"))
 
 unknown_hardware_class = rule(

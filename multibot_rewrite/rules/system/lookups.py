@@ -16,8 +16,8 @@ from multibot_rewrite.rules.system.tf_pieces import (
     publishes_description,
     root_of,
 )
-from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import NOWHERE, QUIET, UNKNOWN_NODES, Edge, Lookup
+from multibot_rewrite.system.index import TF, Index
+from multibot_rewrite.system.records import NOWHERE, QUIET, SUBSCRIBES, UNKNOWN_NODES, Edge, Lookup
 
 _MAP = "map"
 _ODOM = "odom"
@@ -70,7 +70,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, edges) if usual else None
-    if sender is None and usual and edges and not _in_doubt(seen):
+    if sender is None and usual and edges and not _in_doubt(seen) and _listens(seen, it.node):
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
@@ -99,6 +99,11 @@ def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
     own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
     placed = [it for it in own if it.place != NOWHERE]
     return next(iter(placed if placed or _in_doubt(seen) else own), None)
+
+
+def _listens(seen: Index, node: str) -> bool:
+    """Does it hear transforms? Another one writes the frame into messages, or into what it sends."""
+    return any(it.type == TF and it.role == SUBSCRIBES for it in seen.by_node.get(node, ()))
 
 
 def _in_doubt(seen: Index) -> bool:
