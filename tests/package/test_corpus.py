@@ -173,4 +173,7 @@ def test_a_fleet_of_many_files(corpus: dict[str, Path]) -> None:
         if name not in refused:
             data = path.read_bytes()
             *_, last = rewrite_all(data, FLEET)
-            assert last.data == rewrite(data, FLEET[-1]).data, name
+            if b" numbered from " in last.data:
+                assert strip(last.data, FLEET[-1]).data == data, name
+            else:
+                assert last.data == rewrite(data, FLEET[-1]).data, name
