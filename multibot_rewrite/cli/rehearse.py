@@ -73,10 +73,11 @@ def _played(
     }
     where = ", ".join(it["ROS_DOMAIN_ID"] for it in environs)
     count = plural(sum(map(len, casts.values())), "node")
+    started = f"{count} in domain{'s' * (len(environs) > 1)} {where}"
     play = partial(staged, seconds=options.timeout or live.LOOK_SECONDS)
-    with shown("they start, and are looked for"), ThreadPoolExecutor(len(parts)) as pool:
+    with shown(f"{started} are looked for"), ThreadPoolExecutor(len(parts)) as pool:
         played = dict(zip(parts, pool.map(play, casts.values(), environs), strict=True))
-    note(options, f"{count} in domain{'s' * (len(environs) > 1)} {where}")
+    note(options, started)
     replaced = {old: new for _, own in played.values() for old, new in own.items()}
     return {it: _without_places(seen) for it, (seen, _) in played.items()}, replaced
 

@@ -151,8 +151,6 @@ def test_no_node_is_left(number: signal.Signals) -> None:
     env = live_fleet.environ(domain(9))
     play = subprocess.Popen(command, env=env, stderr=subprocess.PIPE, text=True)
     try:
-        assert play.stderr is not None
-        assert " nodes in domain" in play.stderr.readline()
         wait_until(lambda: len(list(children(play.pid))) >= 2)
         there = list(children(play.pid))
         play.send_signal(number)

@@ -8,7 +8,6 @@ actions/load_composable_nodes.py.
 from __future__ import annotations
 
 import sys
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ import yaml
 from launched_here import read_here
 from launched_programs import launched
 from paths import ROOT
+from waiting import wait_until
 
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
@@ -981,10 +981,7 @@ def test_nothing_of_a_launch_file_stays(
     with pytest.raises(InputError, match="took more than 3 s" if waits else "cannot be read"):
         launch_graph(LaunchOrder(str(file), (), (), True))
     assert not [*made.iterdir()]
-    until = time.monotonic() + 10
-    while runs(number.read_text()) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not runs(number.read_text())
+    wait_until(lambda: not runs(number.read_text()))
 
 
 def runs(process: str) -> bool:

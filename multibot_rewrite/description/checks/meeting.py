@@ -26,7 +26,6 @@ from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
 from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
 from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
-from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
 
@@ -102,6 +101,8 @@ def shared_with(
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, vocabulary)
     if next(document.root.iter("link"), None) is None:
+        from multibot_rewrite.description.sources.included_by import robot_instead  # few ask for it
+
         hint = robot_instead(document.file)
         yield Problem(document.root, "the robot has no link", None, hint, (), NO_LINK)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 
 from multibot_rewrite.base.bounded import read_bytes
@@ -89,14 +89,18 @@ def data_of_file(path: str) -> bytes:
     return b""
 
 
-def _xacros(folder: str) -> Iterator[str]:
+@outside
+def _xacros(folder: str) -> list[str]:
+    found: list[str] = []
     seen = 0
     for above, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in SKIPPED)
         seen += len(names)
         if seen > MOST_FILES:
-            return
-        yield from (os.path.normpath(os.path.join(above, it)) for it in names if it.endswith(XACRO))
+            break
+        paths = (os.path.join(above, it) for it in names if it.endswith(XACRO))
+        found += map(os.path.normpath, paths)
+    return found
 
 
 def _means(included: str, path: str, by: str) -> bool:
