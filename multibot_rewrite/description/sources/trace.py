@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.sources.conversation import Result, Sources
 from multibot_rewrite.description.steps.document import start_offsets
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.sources.conversation import Result, Sources
 
 NOWHERE = -1
 # No macro is called from so deep: Python's recursion ends before.
