@@ -23,6 +23,8 @@ _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
 # Beyond what a worker has when it starts: a file that needs more would stop the machine.
 MOST_MEMORY = 4 * 2**30
+# What a container may use in a period: cgroup v2, as Docker, Podman and Kubernetes mount it.
+QUOTA = "/sys/fs/cgroup/cpu.max"
 # So many objects may wait for the garbage collector.
 MOST_LEFT = 500_000
 
@@ -142,6 +144,20 @@ class WorkerPool(Generic[_Item, _Made]):
             os.kill(worker.pid, signal.SIGKILL)
         for fd in tuple(self.workers):
             self._stop(fd)
+
+
+def processors() -> int:
+    """How many processors this process may use: those of its affinity (``taskset``), and of them as
+    much as the quota of its container."""
+    if not hasattr(os, "sched_getaffinity"):  # not on Linux
+        return os.cpu_count() or 1
+    try:
+        with open(QUOTA) as file:
+            quota, period = map(int, file.read().split())
+    except (OSError, ValueError):  # "max 100000" is no quota
+        quota, period = 0, 1
+    allowed = len(os.sched_getaffinity(0))
+    return min(allowed, -(-quota // period)) if quota else allowed
 
 
 @contextmanager

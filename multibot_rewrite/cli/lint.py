@@ -122,11 +122,11 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
         return lint_data("<stdin>", standard_input(), settings)
     watch = partial(watched, total=len(paths), doing="linting")
     with cached(options, settings) as cache:
-        findings = lint_files(paths, settings, jobs=options.jobs or 0, watch=watch, cache=cache)
+        findings = lint_files(paths, settings, watch=watch, cache=cache)
     if not options.fix or not _fixed(options, among(paths, settings), findings):
         return findings
     # Anew, and all: what is written in one file is found through others.
-    return lint_files(paths, settings, jobs=options.jobs or 0)
+    return lint_files(paths, settings)
 
 
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:

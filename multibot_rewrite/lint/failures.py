@@ -111,7 +111,7 @@ def breakdown(path: str, error: Exception) -> Finding:
 def lost(path: str, died_of: int) -> Finding:
     """The finding for a file whose process was ended by a signal, or by itself for 0."""
     how = f"by {signal.Signals(died_of).name}" if died_of else "before it was done"
-    hint = "too little memory may be the reason: try fewer --jobs"
+    hint = "too little memory may be the reason: lint fewer files at a time"
     return _crashed(path, f"the process that linted it ended {how}", hint)
 
 

@@ -36,7 +36,7 @@ def lint_files(
 ) -> list[Finding]:
     """Every finding of the files, each once, in the order of files and lines.
 
-    ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` wraps the
+    ``jobs`` is the number of processes, 0 for one on each processor that may be used; ``watch`` wraps the
     iteration over the files' findings, for a progress bar. With a ``cache`` only files are linted
     for which something changed; the caller saves it.
     """
@@ -48,7 +48,7 @@ def lint_files(
         from multibot_rewrite.description.rewriters.builtin import builtin_tree
 
         builtin_tree(settings.vocabulary, settings.distro)
-        linted = _linted(unknown, settings, jobs or os.cpu_count() or 1, watch)
+        linted = _linted(unknown, settings, jobs, watch)
         for path, (its, asked) in zip(unknown, linted, strict=True):
             found[path] = its
             if cache:
@@ -124,7 +124,7 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
     in_this_process = not any(path.endswith(".xacro") for path in paths)
     if in_this_process and (jobs == 1 or len(paths) <= FEW):
         return list(watch(recorded(partial(lint_file, path, settings)) for path in paths))
-    from multibot_rewrite.base.workers import limit_time, worker_pool
+    from multibot_rewrite.base.workers import limit_time, processors, worker_pool
     from multibot_rewrite.lint.failures import lost, too_long
 
     def lint(path: str) -> Linted:
@@ -136,7 +136,8 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
             return [too_long(path, settings.seconds)], None
         return [lost(path, died_of)], None
 
-    with worker_pool(lint, paths, unfinished, min(jobs, -(-len(paths) // EACH))) as workers:
+    many = min(jobs or processors(), -(-len(paths) // EACH))
+    with worker_pool(lint, paths, unfinished, many) as workers:
         return list(watch(workers.results()))
 
 

@@ -116,8 +116,6 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "--select", ","], "',' has an empty part"),
     (["good.urdf", "--format", "xml"], "argument --format: 'xml' is not known, use one of text"),
     (["good.urdf", "--fail-on", "never"], "use one of error, warning, note"),
-    (["good.urdf", "--jobs", "-1"], "argument --jobs: '-1' is not a number, give 0 or more"),
-    (["good.urdf", "--jobs", "two"], "argument --jobs: 'two' is not a number"),
     (["good.urdf", "--robots", "1a"], "robot name '1a'"),
     (["good.urdf", "--robots", "a,a"], "'a' is given twice"),
     (["good.urdf", "--layout", "L9"], "'L9' is not known, use one of tf-per-robot"),

@@ -20,6 +20,7 @@ from paths import FIXTURES
 from real_robots import spread
 from waiting import wait_until
 
+from multibot_rewrite.base import workers
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.base.naming import make_naming
@@ -253,7 +254,7 @@ def several(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.mark.sample(4)
-@pytest.mark.parametrize("jobs", ["1", "2", "4"])
+@pytest.mark.parametrize("jobs", [1, 2, 4])
 @pytest.mark.parametrize(
     ("how", "said"),
     [
@@ -267,15 +268,16 @@ def several(tmp_path: Path) -> Iterator[Path]:
 def test_a_killed_worker_is_an_error_and_no_pass(
     how: Callable[[], object],
     said: str,
-    jobs: str,
+    jobs: int,
     several: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     fallen(how, monkeypatch)
+    monkeypatch.setattr(workers, "processors", lambda: jobs)
     # A xacro file among them: it is never linted in the process that has to go on.
     (several / "10.xacro").write_bytes(xacro('<link name="a"/>'))
-    assert main([str(several), "--jobs", jobs, "--select", "MB501", "--quiet"]) == 2
+    assert main([str(several), "--select", "MB501", "--quiet"]) == 2
     lines = capsys.readouterr().out.splitlines()
     assert [line for line in lines if "MB001" in line and said in line] == [
         line for line in lines if "fallen" in line
@@ -311,9 +313,9 @@ def started(folder: Path) -> subprocess.Popen[str]:
     """A lint in a session of its own, with its workers at work."""
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     lint = subprocess.Popen(
-        [*COMMAND, ".", "--jobs", "2"], cwd=folder, start_new_session=True, **streams
+        [*COMMAND, "."], cwd=folder, start_new_session=True, **streams
     )
-    wait_until(lambda: len(members(lint.pid)) >= 3)
+    wait_until(lambda: len(members(lint.pid)) >= 2)
     time.sleep(0.2)
     return lint
 
@@ -438,6 +440,27 @@ def by_jobs() -> list[list[Finding]]:
     return [lint_files(paths, settings, jobs=jobs) for jobs in (1, 2, 4)]
 
 
+@pytest.mark.parametrize(
+    ("quota", "many"),
+    [
+        ("max 100000", 8),
+        ("200000 100000", 2),
+        ("150000 100000", 2),
+        ("50000 100000", 1),
+        ("9900000 100000", 8),
+        (None, 8),
+    ],
+)
+def test_a_container_has_as_many_workers_as_its_quota(
+    quota: str | None, many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if quota is not None:
+        (tmp_path / "cpu.max").write_text(f"{quota}\n")
+    monkeypatch.setattr(workers, "QUOTA", str(tmp_path / "cpu.max"))
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)))
+    assert workers.processors() == many
+
+
 @pytest.mark.parametrize("form", FORMATS)
 def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Finding]]) -> None:
     report = Report("urdf-lint", ["a.urdf"], RULES)
@@ -447,10 +470,13 @@ def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Fin
 
 
 @pytest.mark.deep
-def test_of_the_corpus_neither(corpus: dict[str, Path], tmp_path: Path) -> None:
+def test_of_the_corpus_neither(
+    corpus: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     home = str(next(iter(corpus.values())).parents[1])
-    for jobs in ("1", "4"):
-        target = str(tmp_path / jobs)
-        assert main([home, "--jobs", jobs, "--format", "json", "--output", target]) == 1
+    for jobs in (1, 4):
+        monkeypatch.setattr(workers, "processors", lambda jobs=jobs: jobs)
+        target = str(tmp_path / str(jobs))
+        assert main([home, "--format", "json", "--output", target]) == 1
     one, four = ((tmp_path / jobs).read_bytes() for jobs in ("1", "4"))
     assert one == four

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.naming import KEEP, WORLD_SYSTEMS
-from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
     FINDINGS,
@@ -27,7 +26,6 @@ from multibot_rewrite.cli.options import (
     each,
     output,
     path_option,
-    rare,
     several,
     switch,
     value,
@@ -172,14 +170,6 @@ LINT = Command(
                 several("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
                 value("--baseline", metavar="FILE", about="report only findings not in FILE"),
                 path_option("--write-baseline", "write today's findings, for --baseline"),
-                rare(
-                    value(
-                        "--jobs",
-                        metavar="N",
-                        about="processes; default: one for each processor",
-                        type=values.count,
-                    )
-                ),
             ),
         ),
         NAMING,
