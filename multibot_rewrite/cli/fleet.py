@@ -27,13 +27,10 @@ WRITTEN = ("output", "sros2", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 _OF_FLEET_FILE = (
-    *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared_frames"),
-    *("shared_topics", "groups", "vocabulary", "launch", "roots"),
+    *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared"),
+    *("vocabulary", "launch", "roots"),
 )
-OF_FLEET_FILE = {
-    "words": "ROBOT",
-    **{it: f"--{it.replace('_', '-')}" for it in _OF_FLEET_FILE},
-}
+OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
 
 
 def check_use(options: argparse.Namespace, printed: bool) -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)
-_AS_THEY_ARE = ("layout", "affix", "topics", "shared_frames", "shared_topics", "groups")
+_AS_THEY_ARE = ("layout", "affix", "topics")
 
 
 def policy(options: argparse.Namespace) -> Policy:
@@ -25,7 +25,12 @@ def policy(options: argparse.Namespace) -> Policy:
     words: Policy = {name: value for name, value in given.items() if value is not None}  # type: ignore[assignment]
     if options.separator:
         words["separators"] = separators(options)
-    return words
+    if any(it.startswith("group=") for it in options.separator):
+        words["groups"] = "rename"
+    topics = [it for it in options.shared if it.startswith("/")]
+    if frames := [it for it in options.shared if it not in topics]:
+        words["shared_frames"] = frames
+    return {**words, "shared_topics": topics} if topics else words
 
 
 def rewriting(options: argparse.Namespace) -> dict[str, Any]:

@@ -39,7 +39,7 @@ OPTIONS = (
     ("--layout", "L2", "--topics", "prefix"),
     ("--layout", "both"),
     ("--affix", "prefix", "--layout", "frames-per-robot", "--separator", "link=_"),
-    ("--separator", "link=_,joint=/", "--shared-frames", "odom"),
+    ("--separator", "link=_,joint=/", "--shared", "odom"),
 )
 
 

@@ -281,8 +281,7 @@ def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
 def test_options_that_a_plan_of_a_launch_file_has_not() -> None:
     assert plan.NOT_OF_LAUNCH == {
         "robots": "--robots", "stack": "--stack", "launch": "--launch", "layout": "--layout",
-        "affix": "--affix", "topics": "--topics", "shared_frames": "--shared-frames",
-        "shared_topics": "--shared-topics",
+        "affix": "--affix", "topics": "--topics", "separator": "--separator", "shared": "--shared",
     }  # fmt: skip
 
 

@@ -40,9 +40,7 @@ NAMING = {
     "--affix",
     "--topics",
     "--separator",
-    "--shared-frames",
-    "--shared-topics",
-    "--groups",
+    "--shared",
 }
 FINDINGS = {"--select", "--ignore", "--fail-on", "--format"}
 DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "rehearse")
@@ -115,12 +113,13 @@ def test_robots_are_words_or_a_list(name: str, words: Sequence[str]) -> None:
 @pytest.mark.parametrize("name", DESCRIPTION)
 def test_the_naming_options_mean_the_same_everywhere(name: str) -> None:
     words = ["--layout", "L2", "--affix", "prefix", "--separator", "link=_,joint=/"]
-    words += ["--shared-frames", "world", "--shared-frames", "odom", "--groups", "rename"]
+    words += ["--shared", "world,/clock", "--shared", "odom", "--separator", "group=-"]
     assert policy(given(name, ROVER, *words)) == {
         "layout": "L2",
         "affix": "prefix",
-        "separators": {"link": "_", "joint": "/"},
+        "separators": {"link": "_", "joint": "/", "group": "-"},
         "shared_frames": ["world", "odom"],
+        "shared_topics": ["/clock"],
         "groups": "rename",
     }
     assert policy(given(name, ROVER)) == {}
@@ -243,7 +242,7 @@ def test_a_folder_is_not_left_behind_where_nothing_is_written(
 def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    options = ["--affix", "prefix", "--separator", "_", "--shared-frames", "base_footprint"]
+    options = ["--affix", "prefix", "--separator", "_", "--shared", "base_footprint"]
     assert said(capsys, "urdf-postfix", ROVER, "left", *options, "-o", str(tmp_path / "a"))[0] == 0
     assert 'name="left_base_link"' in (tmp_path / "a").read_text()
     code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--stack", "nav2")

@@ -184,13 +184,13 @@ def test_the_last_line_of_a_lint() -> None:
 
 PLAN = {
     **dict.fromkeys(("robots", "stack", "launch", "layout", "affix", "topics")), "form": "plan",
-    "shared_frames": None, "shared_topics": None, "input": "a.launch.py", "words": [], "output": None,
+    "separator": [], "shared": [], "input": "a.launch.py", "words": [], "output": None,
 }  # fmt: skip
 
 
 def test_a_launch_file_says_what_runs() -> None:
     for given, what in (
-        ({"stack": ["nav2"]}, "--stack"), ({"shared_frames": ["x"]}, "--shared-frames"),
+        ({"stack": ["nav2"]}, "--stack"), ({"shared": ["x"]}, "--shared"),
         ({"form": "table"}, "--form"), ({"robots": ["a"], "layout": "both"}, "--robots"),
     ):  # fmt: skip
         assert said(plan._of_launch, options(**{**PLAN, **given})) == (

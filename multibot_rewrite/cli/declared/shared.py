@@ -14,7 +14,6 @@ from multibot_rewrite.cli.options import (
     choice,
     output,
     path_option,
-    rare,
     repeated,
     several,
     switch,
@@ -45,30 +44,16 @@ NAMING = OptionGroup(
             "--separator",
             "KIND=SEP",
             "what stands between a name and the robot's; SEP alone is for all names of the"
-            f" description, not for ROS nodes and topics; defaults: {_SEPARATORS}",
+            " description, not for ROS nodes and topics; groups of an SRDF are renamed with"
+            f" group=SEP alone; defaults: {_SEPARATORS}",
             [],
         ),
-        rare(
-            several(
-                "--shared-frames",
-                "A,B",
-                f"frames that all robots share; default: {','.join(WORLD_FRAMES)}",
-            )
-        ),
-        rare(
-            several(
-                "--shared-topics",
-                "A,B",
-                f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
-            )
-        ),
-        rare(
-            choice(
-                "--groups",
-                "HOW",
-                ("keep", "rename"),
-                "groups and end effectors of an SRDF: keep (default) or rename",
-            )
+        several(
+            "--shared",
+            "FRAME,/TOPIC",
+            "frames, and topics with a slash in front, that all robots share; default:"
+            f" {','.join((*WORLD_FRAMES, *(f'/{it}' for it in SHARED_TOPICS)))}",
+            [],
         ),
     ),
 )

@@ -193,7 +193,7 @@ def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem
                 message = (
                     f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
                 )
-                hint = f"--shared-frames world,map,{claim.value} keeps it"
+                hint = f"--shared world,map,{claim.value} keeps it"
                 yield about(claim, "MB427", message, hint)
 
 

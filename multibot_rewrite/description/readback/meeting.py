@@ -42,7 +42,8 @@ SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP,
 # The type of a topic called as one that moves a robot, where it is not known.
 _USUAL = "geometry_msgs/msg/Twist"
 _FIXED = "it is in the code of the plugin, so no description moves it"
-_ALLOWED = "allow it with --shared-topics"
+_ALLOWED = "allow it with --shared /TOPIC (shared_topics in a fleet file)"
+_OF_FRAME = "allow it with --shared FRAME (shared_frames in a fleet file)"
 _ALLOW = f"rename it for each robot, or {_ALLOWED}"
 _ADVICE = {
     TWO_NODES: "give each robot's node a name or namespace of its own",
@@ -50,7 +51,7 @@ _ADVICE = {
     COMMAND: _ALLOW,
     DATA: _ALLOW,
     OPENED: "write another for each robot, or give it by `arguments` of a fleet file",
-    FRAMES: "set the frame for each robot, or allow it with --shared-frames",
+    FRAMES: f"set the frame for each robot, or {_OF_FRAME}",
 }
 # The rule that is about a kind of shared name.
 _CODES = {
@@ -151,7 +152,7 @@ def advice(name: RuntimeName, together: bool = False) -> str:
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
     if name.path == IN_CODE:
-        return f"{_FIXED}: use --layout tf-per-robot, or allow it with --shared-frames"
+        return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
     if name.path.startswith("/") and code_of(name) in _ADVICE:
         return f"{_FIXED}: {_ALLOWED}"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"

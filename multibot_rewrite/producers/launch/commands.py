@@ -30,9 +30,7 @@ from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 _POSTFIX = "multibot_rewrite.cli.urdf_postfix"
 _FAULTS = "multibot_command_faults"
 # Its options that write no other file; each has a value.
-_OPTIONS = frozenset(
-    ("--layout", "--affix", "--separator", "--topics", "--shared-frames", "--distro")
-)
+_OPTIONS = frozenset(("--layout", "--affix", "--separator", "--topics", "--shared", "--distro"))
 
 
 class Output(NamedTuple):

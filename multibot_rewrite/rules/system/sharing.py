@@ -35,7 +35,7 @@ def own_namespace(seen: Index, name: str, robot: str) -> str:
     why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
     " follows two plans.",
     fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own. If"
-    " all robots are to share the topic, add it to `shared_topics` of the plan (`--shared-topics`).",
+    " all robots are to share the topic, add it to `shared_topics` of the plan (`--shared /TOPIC`).",
     bad="""\
 running: /robot1/lidar publishes /scan sensor_msgs/msg/LaserScan
 running: /robot2/lidar publishes /scan sensor_msgs/msg/LaserScan

@@ -338,7 +338,7 @@ def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_several_robots_get_a_file_each(folder: Path) -> None:
-    words = ("arm.srdf", "r1", "r2", "--urdf", "arm.urdf", "--groups", "rename")
+    words = ("arm.srdf", "r1", "r2", "--urdf", "arm.urdf", "--separator", "group=_")
     assert run(folder, *words, "-o", "{robot}.srdf").code == 0
     for robot in ("r1", "r2"):
         wanted = rewrite(SRDF, robot, urdf=ARM, groups="rename").data
@@ -387,9 +387,9 @@ BAD = {
         ("xacro", "arm.srdf"),
     ),
     "groups": (
-        ("arm.srdf", "--urdf", "arm.urdf", "--groups", "renmae"),
+        ("arm.srdf", "--urdf", "arm.urdf", "--separator", "group=renmae"),
         UNUSABLE,
-        ("groups", "'rename'"),
+        ("group='renmae'", "use one of / _"),
     ),
 }
 
