@@ -50,9 +50,7 @@ COLUMNS = (
 def run(options: argparse.Namespace) -> int:
     """Look, write what is seen and what may be missing; returns the exit code."""
     describes = _check_use(options)
-    request = Request(
-        options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
-    )
+    request = Request(options.timeout or live.LOOK_SECONDS, tuple(options.expect))
     snapshot = live.with_states(options, live.graph(options, request))
     if describes:
         return learn.write(options, snapshot)
@@ -69,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
 def _check_use(options: argparse.Namespace) -> bool:
     """Are nodes to be described? Raises UsageError."""
     live.check_source(options)
-    for name in ("expect", "topic", "timeout", "domain"):
+    for name in ("expect", "timeout", "domain"):
         if options.snapshot and getattr(options, name) not in (None, []):
             raise UsageError(f"--{name} is for the live graph, leave out --snapshot")
     if options.output not in (None, STANDARD):

@@ -152,10 +152,10 @@ def view_caveats(
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
         yield Caveat("nothing-seen", True, _nothing(asked))
-    absent = sorted(set(expected) - set(names))
+    absent = sorted({*expected} - {*names, *(it.name for it in endpoints)})
     if nodes and absent:
         missing = shorten(absent, SEVERAL)
-        text = f"expected nodes not in the graph: {missing}; are they started, are the names right?"
+        text = f"expected names not in the graph: {missing}; is all started, are the names right?"
         yield Caveat("expected-not-seen", True, text)
     yield from _cut_off(endpoints, asked)
     yield from unfinished(nodes, endpoints, asked.discovery_server)

@@ -62,12 +62,15 @@ def test_separators_of_a_kind_count_more_than_one_for_all() -> None:
 
 
 def test_a_policy_has_what_is_given() -> None:
-    none = dict.fromkeys(("layout", "affix", "topics", "shared_frames", "shared_topics", "groups"))
+    none: dict[str, object] = {"layout": None, "affix": None, "topics": None, "shared": []}
     assert usage.policy(options(**none, separator=[])) == {}
-    given = {**none, "layout": "both", "groups": []}
+    given = {**none, "layout": "both", "shared": ["/t/of", "map", "/clock"]}
     assert usage.policy(options(**given, separator=["link=_"])) == {
-        "layout": "both", "groups": [], "separators": {"link": "_"},
+        "layout": "both", "separators": {"link": "_"}, "shared_frames": ["map"],
+        "shared_topics": ["/t/of", "/clock"],
     }  # fmt: skip
+    assert "groups" not in usage.policy(options(**none, separator=["_"]))
+    assert usage.policy(options(**none, separator=["group=-"]))["groups"] == "rename"
     more = {"urdf": None, "words": ["a:=b"], "vocabulary": ["v"], "trust": True, "distro": None}
     assert usage.rewriting(options(**none, separator=[], **more)) == {
         "urdf": None, "xacro_args": {"a": "b"}, "vocabulary": ["v"], "trust": True, "distro": "",
@@ -250,10 +253,10 @@ def test_the_name_or_the_form_says_that_it_is_nodl(
 def test_what_a_snapshot_does_not_take_together() -> None:
     names = {"node": [], "namespace": None, "stack": None, "distro": None}
     usual = {**USUAL, **names, "timeout": None, "domain": None, "output": None, "form": "nodes"}
-    usual |= {"expect": [], "topic": []}
+    usual |= {"expect": []}
     assert snapshot._check_use(options(**usual))
     assert snapshot._check_use(options(**{**usual, "expect": ["/a"], "timeout": 0.0}))
-    for name, given in (("timeout", 0.0), ("domain", 0), ("expect", ["/a"]), ("topic", ["/a"])):
+    for name, given in (("timeout", 0.0), ("domain", 0), ("expect", ["/a"])):
         saved = options(**{**usual, "snapshot": ["g.json"], name: given})
         hint = f"--{name} is for the live graph, leave out --snapshot"
         assert said(snapshot._check_use, saved) == hint

@@ -187,7 +187,7 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
     # On a busy machine the expected nodes are there before all of their topics.
-    words = ("--expect", "/robot1/state,/robot2/state", "--topic", "/tf_static")
+    words = ("--expect", "/robot1/state,/robot2/state,/tf_static")
     result = multibot(0, *words, *PATIENTLY)
     assert re.search(
         r"the frames on (/robot1/tf, )?(/robot2/tf, )?/tf_static were not read: No module",
@@ -201,7 +201,7 @@ def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build)
     names = ["/robot1/drive", "/robot2/drive"]
 
     def deadlines() -> list[float]:
-        words = ("-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat")
+        words = ("-o", "-", "--expect", ",".join([*names, "/heartbeat"]))
         result = multibot(0, *words, *PATIENTLY, **fleet)
         assert result.returncode == 0, result.stderr
         view = from_json(result.stdout.encode(), "stdout")

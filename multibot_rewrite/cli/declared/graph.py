@@ -212,9 +212,12 @@ SNAPSHOT = Command(
         SOURCE._replace(
             options=(
                 several(
-                    "--expect", "NODE", "stop when these nodes are there", [], values.full_names
+                    "--expect",
+                    "A,B",
+                    "stop when these nodes and topics (full names) are there; QoS of these topics, too",
+                    [],
+                    values.full_names,
                 ),
-                rare(several("--topic", "A,B", "QoS of these topics, too", [], values.full_names)),
                 SAVED,
                 ZENOH,
                 STATE,

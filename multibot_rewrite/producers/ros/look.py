@@ -81,7 +81,7 @@ def view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], l
     names = queries.node_names(node)
     all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
     found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
-    details = queries.TopicQueries(session.request.topics, cache, session.over)
+    details = queries.TopicQueries(session.request.expected, cache, session.over)
     return names, queries.with_topic_details(node, names, found, details)
 
 

@@ -21,9 +21,8 @@ _LINE = b"\n"
 class Request(NamedTuple):
     """What a snapshot is asked for.
 
-    The observation ends when the nodes of ``expected`` (full names) are in the graph and with them
-    ``topics``, and after ``timeout`` seconds at the latest. The snapshot has QoS and process of
-    ``topics``. With
+    The observation ends when the nodes and topics of ``expected`` (full names) are in the graph, and
+    after ``timeout`` seconds at the latest. The snapshot has QoS and process of these topics. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
     transforms are also read from the messages that a rehearsal has without tf2_msgs. With
     ``headers`` one message a sensor topic is received, for its frame; not when watching. With
@@ -33,7 +32,6 @@ class Request(NamedTuple):
 
     timeout: float
     expected: tuple[str, ...] = ()
-    topics: tuple[str, ...] = ()
     watch: bool = False
     substitutes: bool = False
     headers: bool = False
@@ -42,12 +40,12 @@ class Request(NamedTuple):
 
     def expects(self, end: End) -> bool:
         """Whether an end is of what is waited for."""
-        return end.node in self.expected or end.name in self.topics
+        return not {end.node, end.name}.isdisjoint(self.expected)
 
     def is_met(self, ends: Collection[End]) -> bool:
-        """Whether nodes are expected, and all of them and the topics have ends."""
-        nodes, names = {it.node for it in ends}, {it.name for it in ends}
-        return bool(self.expected) and nodes >= {*self.expected} and names >= {*self.topics}
+        """Whether something is expected, and all of it has ends."""
+        there = {name for it in ends for name in (it.node, it.name)}
+        return bool(self.expected) and there.issuperset(self.expected)
 
 
 def to_text(order: tuple[Any, ...]) -> str:
@@ -57,8 +55,8 @@ def to_text(order: tuple[Any, ...]) -> str:
 
 def from_text(text: str) -> Request:
     """Read what ``to_text`` made of a Request."""
-    timeout, expected, topics, *others = json.loads(text)
-    return Request(float(timeout), tuple(expected), tuple(topics), *others)
+    timeout, expected, *others = json.loads(text)
+    return Request(float(timeout), tuple(expected), *others)
 
 
 def framed(data: bytes) -> bytes:

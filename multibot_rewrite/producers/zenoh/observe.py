@@ -49,7 +49,7 @@ class Router(NamedTuple):
 
 
 def look(request: Request, router: Router) -> System:
-    """A snapshot of what the router knows now, or once the nodes of ``request.expected`` are there.
+    """A snapshot of what the router knows now, or once all of ``request.expected`` is there.
 
     Raises Unusable without zenoh, InputError for a bad configuration. Where no router answers the
     snapshot is empty and says so.
@@ -114,8 +114,13 @@ def _read(keys: Iterable[str]) -> _Seen:
     return _Seen(found, tuple(key for key, token in read.items() if token is None))
 
 
+def _names(found: Iterable[Token]) -> set[str]:
+    """The nodes, and what they have ends of."""
+    return {name for it in found for name in (it.node, it.end.name if it.end else it.node)}
+
+
 def _all_there(keys: Iterable[str], expected: Iterable[str]) -> bool:
-    return set(expected) <= {token.node for token in _read(keys).tokens}
+    return _names(_read(keys).tokens).issuperset(expected)
 
 
 def _settled(keys: Iterable[str], expected: tuple[str, ...]) -> str:
@@ -125,10 +130,10 @@ def _settled(keys: Iterable[str], expected: tuple[str, ...]) -> str:
 
 
 def _absent(seen: _Seen, request: Request) -> Iterator[Caveat]:
-    absent = sorted(set(request.expected) - {token.node for token in seen.tokens})
+    absent = sorted({*request.expected} - _names(seen.tokens))
     if absent and seen.tokens:
-        text = f"expected nodes not in the graph: {shorten(absent, SEVERAL)}"
-        yield Caveat("expected-not-seen", True, f"{text}; are they started, are the names right?")
+        text = f"expected names not in the graph: {shorten(absent, SEVERAL)}"
+        yield Caveat("expected-not-seen", True, f"{text}; is all started, are the names right?")
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:
