@@ -77,7 +77,7 @@ class Edit(NamedTuple):
 
 
 class Change(NamedTuple):
-    """One renamed or inserted value, as listed by ``--changes``."""
+    """One renamed or inserted value, as listed by ``--form changes``."""
 
     line: int
     column: int

@@ -25,7 +25,7 @@ _OF_PARTS = ("at", "pose", "prefix")
 def run(options: argparse.Namespace) -> int:
     """Write the joined description, or its parts; returns the exit code."""
     options.vocabulary = [*configured_vocabulary(options.words[0]), *options.vocabulary]
-    return (_split if options.split else _join)(options)
+    return (_split if options.undo else _join)(options)
 
 
 def _join(options: argparse.Namespace) -> int:
@@ -67,21 +67,23 @@ def _write(
 ) -> None:
     """Write all or none, and nothing over a file that is read."""
     for path, _ in items:
-        check_target(path, read, "--split" if options.split else "--output")
+        check_target(path, read)
         check_link(path)
     write_files(options, items)
 
 
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
-        raise UsageError("--split takes one file, which multibot join made")
-    given = next((it for it in ("output", *_OF_PARTS) if getattr(options, it)), None)
+        raise UsageError("--undo takes one file, which multibot join made")
+    given = next((it for it in _OF_PARTS if getattr(options, it)), None)
     if given:
-        raise UsageError(f"--{given} is for joining, it cannot go with --split")
+        raise UsageError(f"--{given} is for joining, it cannot go with --undo")
+    if not goes_to_file(options):
+        raise UsageError("several files are made: name a folder for them with -o parts/")
     made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
-    items = [(os.path.join(options.split, f"{name}.urdf"), data) for name, data in made.items()]
+    items = [(os.path.join(options.output, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
-    note(options, f"{options.split}: {', '.join(os.path.basename(path) for path, _ in items)}")
+    note(options, f"{options.output}: {', '.join(os.path.basename(path) for path, _ in items)}")
     return DONE
 
 

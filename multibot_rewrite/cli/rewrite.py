@@ -16,9 +16,11 @@ from multibot_rewrite.base.releases import (
     why_here,
 )
 from multibot_rewrite.base.wording import plural
+from multibot_rewrite.cli import output
 from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
+    CHANGES,
     below,
     check_unread,
     check_use,
@@ -46,8 +48,8 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import why
 
         return why.run(options)
-    output = None if options.output == STANDARD else options.output
-    options.output = below(output, options.input or "")
+    target = None if options.output == STANDARD else options.output
+    options.output = target if options.form == CHANGES else below(target, options.input or "")
     options.silent = serves_a_program(options)
     names = robots(options)
     check_use(options, names)
@@ -57,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import rewrite_file  # a description needs none of it
 
         return rewrite_file.run(options, source, names)
-    return (_undo if options.strip else _rewrite)(options, source, names)
+    return (_undo if options.undo else _rewrite)(options, source, names)
 
 
 def _is_beside(source: Source) -> bool:
@@ -77,7 +79,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
     stripped = _strip(options, read.data, robot)
     check_unread(options, [robot], (*read.read, *beside))
-    deliver(options, [(robot, read.data, stripped)], [], 1)
+    deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
@@ -97,11 +99,13 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     found = (finding for it in (first, *others) for finding in it.findings)
     if is_stopped(options, found, names, first.distro):
         return STOPPED
+    if options.form == CHANGES:
+        own = {it.robot: it for it in others}
+        every = [own.get(robot, first._replace(robot=robot)) for robot in names]
+        output.deliver(options, changes_json(every))
+        return DONE
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
-    own = {it.robot: it for it in others}
-    every = [own.get(robot, first._replace(robot=robot)) for robot in names]
-    changes = [(options.changes, changes_json(every))] if options.changes else []
-    deliver(options, results, changes, len(names))
+    deliver(options, results, len(names))
     why = first.prepared.job.why or why_here(options.distro)
     tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
@@ -115,7 +119,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
 
 
 def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
-    """Every change for every robot, as ``--changes`` writes it."""
+    """Every change for every robot, as ``--form changes`` writes it."""
     import json
 
     table = {

@@ -9,7 +9,14 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here, why_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.process import DONE, STOPPED
-from multibot_rewrite.cli.rewrite_use import check_unread, deliver, input_name, is_stopped, tell
+from multibot_rewrite.cli.rewrite_use import (
+    CHANGES,
+    check_unread,
+    deliver,
+    input_name,
+    is_stopped,
+    tell,
+)
 from multibot_rewrite.cli.usage import rewriting
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.description.sources.read import Source
@@ -28,9 +35,9 @@ WORDS = {
 
 def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     """Rewrite it for each robot; returns the exit code."""
-    for option in ("strip", "changes"):
-        if getattr(options, option):
-            raise UsageError(f"--{option} is for descriptions, {input_name(options)} is none")
+    if options.undo or options.form == CHANGES:
+        what = "--undo" if options.undo else "--form changes"
+        raise UsageError(f"{what} is for descriptions, {input_name(options)} is none")
     before = read_whole(source, {}, options.trust)
     every = list(rewrite_files(before.data, names, file=input_name(options), **rewriting(options)))
     check_unread(options, names, before.read)
@@ -38,7 +45,7 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     if is_stopped(options, (finding for it in every for finding in it.findings), names, release):
         return STOPPED
     results = ((it.robot, before.data, it.data) for it in every)
-    deliver(options, results, [], len(names))
+    deliver(options, results, len(names))
     tell(options, summary(every, names, release, why_here(options.distro)))
     return DONE
 

@@ -7,7 +7,6 @@ import argparse
 import os
 import re
 from collections.abc import Iterable, Sequence
-from itertools import chain
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import fails
@@ -27,6 +26,7 @@ from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.description.sources.read import is_xacro
 
 PLACEHOLDER = "{robot}"
+CHANGES = "changes"
 
 
 def check_use(options: argparse.Namespace, names: list[str]) -> None:
@@ -41,12 +41,12 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):
         raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is no xacro")
-    if len(names) > 1 and (options.strip or options.in_place):
-        raise UsageError("--strip and --in-place take one robot at a time")
+    if len(names) > 1 and (options.undo or options.in_place):
+        raise UsageError("--undo and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))
-    _check_path("--output", options.output, PLACEHOLDER)
-    _check_path("--changes", options.changes, "")
-    if len(names) > 1 and not options.diff and PLACEHOLDER not in (options.output or ""):
+    is_one = options.form == CHANGES
+    _check_path(options.output, "" if is_one else PLACEHOLDER)
+    if len(names) > 1 and not (is_one or options.diff or PLACEHOLDER in (options.output or "")):
         ending = os.path.splitext(options.input)[1] or ".urdf"
         hint = f"-o out/, or -o 'out/{{robot}}{ending}'"
         raise UsageError(f"several robots need one file each: {hint}")
@@ -61,25 +61,27 @@ def _check_together(options: argparse.Namespace) -> None:
         raise UsageError("--output and --in-place exclude each other")
     if options.diff and (options.output is not None or options.in_place):
         raise UsageError("--diff prints to standard output: leave out --output and --in-place")
-    if options.xacro and not options.strip:
-        raise UsageError("--xacro goes with --strip; to rewrite a xacro, name it as the INPUT")
-    if options.strip and options.changes is not None:
-        raise UsageError("--changes lists what a rewrite changes, it cannot go with --strip")
+    if options.xacro and not options.undo:
+        raise UsageError("--xacro goes with --undo; to rewrite a xacro, name it as the INPUT")
+    others = (it for it in ("undo", "in_place", "diff") if getattr(options, it))
+    if options.form == CHANGES and (other := next(others, "")):
+        raise UsageError(
+            f"--form changes lists what a rewrite changes: leave out --{other.replace('_', '-')}"
+        )
     if options.in_place and (options.input == "-" or is_xacro(options.input)):
         raise UsageError("--in-place needs a URDF file, not standard input or xacro")
 
 
-def _check_path(option: str, path: str | None, known: str) -> None:
+def _check_path(path: str | None, known: str) -> None:
     unknown = [word for word in re.findall(r"\{.*?\}", path or "") if word != known]
     if unknown:
         hint = f"only {known} is filled in" if known else "one file serves all robots"
-        raise UsageError(f"{option} {path}: unknown placeholder {unknown[0]}, {hint}")
+        raise UsageError(f"--output {path}: unknown placeholder {unknown[0]}, {hint}")
 
 
 def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
-    """No result may land on the input, nor the list of changes on a result."""
-    changes = [options.changes] if options.changes else []
-    for path in [*targets, *changes]:
+    """No result may land on the input, nor on a file that is read for it."""
+    for path in targets:
         if os.path.isfile(path) and _same_file(path, options.input):
             raise UsageError(f"{path} is the input file; choose another name, or --in-place")
         for option in ("urdf", "xacro", "vocabulary"):
@@ -87,8 +89,6 @@ def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
             for it in [given] if isinstance(given, str) else given:
                 if os.path.isfile(path) and _same_file(path, it):
                     raise UsageError(f"{path} is the file of --{option}; choose another name")
-    if changes and os.path.realpath(changes[0]) in {os.path.realpath(path) for path in targets}:
-        raise UsageError(f"{changes[0]}: the result and --changes need a file each")
 
 
 def check_unread(options: argparse.Namespace, names: Iterable[str], read: Iterable[str]) -> None:
@@ -96,8 +96,6 @@ def check_unread(options: argparse.Namespace, names: Iterable[str], read: Iterab
     files = list(read)
     for robot in names if options.output else ():
         check_target(target_path(options.output, robot), files)
-    if options.changes:
-        check_target(options.changes, files, "--changes")
 
 
 def _same_file(path: str, other: str) -> bool:
@@ -148,18 +146,15 @@ def tell(options: argparse.Namespace, text: str) -> None:
 def deliver(
     options: argparse.Namespace,
     results: Iterable[tuple[str, bytes, bytes]],
-    more: list[tuple[str, bytes]],
     total: int,
 ) -> None:
-    """Print or write the results (robot, before, after) as they are made, and ``more`` files."""
+    """Print or write the results (robot, before, after) as they are made."""
     target = options.input if options.in_place else options.output
     if target:
         files = ((target_path(target, robot), data) for robot, _, data in results)
-        every = chain(more, files if options.in_place else map(_no_link, files))
+        every = files if options.in_place else map(_no_link, files)
         write_files(options, watched(every, total, "writing"))
         return
-    if more:
-        write_files(options, more)
     colour = prints_colour(options)
     for robot, before, data in results:
         name = input_name(options)

@@ -2,7 +2,7 @@
 """Ports such as the one at which an autopilot is met: each further robot that has the number of an
 earlier one gets the next that is free.
 
-A comment in front of what is changed says what was there, so that ``--strip`` can give it back:
+A comment in front of what is changed says what was there, so that ``--undo`` can give it back:
 
     <!-- multibot robot2 numbered from 9002 -->
 

@@ -36,7 +36,7 @@ def lint_files(
 ) -> list[Finding]:
     """Every finding of the files, each once, in the order of files and lines.
 
-    ``jobs`` is the number of processes, 0 for one on each processor that may be used; ``watch`` wraps the
+    ``jobs`` is the number of processes, 0 for one on each processor it may use; ``watch`` wraps the
     iteration over the files' findings, for a progress bar. With a ``cache`` only files are linted
     for which something changed; the caller saves it.
     """

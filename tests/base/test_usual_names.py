@@ -166,12 +166,13 @@ def test_words_that_stand_for_a_robot() -> None:
             other_words.COMMANDS,
             """arguments coverage vocabulary explain learn doctor diagnose lint remap zenoh rewrite
             postfix prefix
-            strip undo clean new create generate make launch run start up simulate test
+            strip undo split clean new create generate make launch run start up simulate test
             verify watch why diff compare bag report graph record show visualize rviz""",
         ),
         (
             other_words.OPTIONS,
-            """--again --undo --revert --strip --lint --prefix --postfix --suffix --frame-prefix
+            """--again --undo --revert --strip --split --changes --jobs --groups
+            --shared-frames --shared-topics --topic --lint --prefix --postfix --suffix --frame-prefix
             --namespace --out --out-dir --dry-run --overwrite --inplace --description --fleet
             --plan --number --ros-distro --release --fail --no-color --json --sarif --sros2""",
         ),

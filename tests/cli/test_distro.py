@@ -44,7 +44,7 @@ def test_the_option_comes_before_the_variable(
 def test_a_rewrite_is_taken_back_for_its_release(folder: Path) -> None:
     made = rewritten(folder, "--distro", "rolling")
     (folder / "made.sdf").write_text(made)
-    words = ["made.sdf", "robot1", "--strip", "-q", "-o", "back.sdf", "--distro", "rolling"]
+    words = ["made.sdf", "robot1", "--undo", "-q", "-o", "back.sdf", "--distro", "rolling"]
     assert urdf_postfix.main(words) == 0
     assert (folder / "back.sdf").read_text() == MODEL
 
@@ -146,7 +146,7 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
     said = capsys.readouterr().err
     assert "warning: ROS_DISTRO is 'noetic', which is not known" in said
     assert "(ROS 2 humble: it loads" in said
-    assert urdf_postfix.main(["o.urdf", "robot1", "--strip", "-o", "back.urdf"]) == 0
+    assert urdf_postfix.main(["o.urdf", "robot1", "--undo", "-o", "back.urdf"]) == 0
     assert (folder / "back.urdf").read_text() == CLASSIC
     monkeypatch.setenv("ROS_DISTRO", "iron")
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])

@@ -37,8 +37,8 @@ POSTFIX, MULTIBOT, LINT = urdf_postfix.main, multibot.main, urdf_lint.main
 WRITERS: dict[str, Command] = {
     "postfix": (POSTFIX, "r.urdf.xacro robot1 -o"),
     "own arguments": (POSTFIX, "r.urdf.xacro robot1 tf_prefix:={robot}_ -o"),
-    "changes": (POSTFIX, "r.urdf.xacro robot1 -o out.urdf --changes"),
-    "strip": (POSTFIX, "made.urdf robot1 --strip --xacro r.urdf.xacro tf_prefix:={robot}_ -o"),
+    "changes": (POSTFIX, "r.urdf.xacro robot1 --form changes -o"),
+    "strip": (POSTFIX, "made.urdf robot1 --undo --xacro r.urdf.xacro tf_prefix:={robot}_ -o"),
     "plan": (MULTIBOT, "plan r.urdf.xacro robot1 robot2 -o"),
     "plan of a fleet": (MULTIBOT, "plan fleet.yaml -o"),
     "remap": (MULTIBOT, "plan --form table r.urdf.xacro robot1 robot2 -o"),

@@ -152,7 +152,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot plan --layuot L1",
             "unknown option --layuot; did you mean '--layout'?",
         ),
-        ("urdf-postfix a b --stripp", "unknown option --stripp; did you mean '--strip'?"),
+        ("urdf-postfix a b --stripp", "unknown option --stripp; did you mean '--undo'?"),
         ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),
         ("multibot check p --format jsno", "'jsno' is not known"),
         ("multibot check p --format jsno", "did you mean 'json'?"),
@@ -233,8 +233,8 @@ def test_a_folder_is_not_left_behind_where_nothing_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("")
-    words = ("urdf-postfix", ROVER, "r1", "--changes", str(tmp_path / "file" / "c.json"))
-    assert said(capsys, *words, "-o", str(tmp_path / "new" / "x.urdf"))[0] == 2
+    words = ("urdf-postfix", ROVER, "new/r1", "file", "-o", str(tmp_path / "{robot}/x.urdf"))
+    assert said(capsys, *words)[0] == 2
     assert [it.name for it in tmp_path.iterdir()] == ["file"]
 
 
@@ -477,13 +477,13 @@ def test_all_programs_together_have_few_options() -> None:
 @pytest.mark.parametrize(
     ("words", "answer"),
     [
-        (("multibot", "strip"), "use urdf-postfix FILE ROBOT --strip"),
+        (("multibot", "strip"), "use urdf-postfix FILE ROBOT --undo"),
         (("multibot", "postfix", "r.urdf"), "use urdf-postfix INPUT ROBOT..."),
         (("multibot", "lint"), "use urdf-lint"),
         (("multibot", "doctor"), "use multibot check"),
         (("multibot", "init", "--undo"), "multibot build FLEET --undo"),
         (("multibot", "check", "--fleeet", "f"), "unknown option --fleeet; see"),
-        (("urdf-postfix", "r.urdf", "a", "--stripp"), "did you mean '--strip'?"),
+        (("urdf-postfix", "r.urdf", "a", "--stripp"), "did you mean '--undo'?"),
     ],
 )
 def test_wrong_words_are_answered_by_the_right_ones(

@@ -92,7 +92,7 @@ LINES = (
     *(["urdf-postfix", FILE, "robot1", "robot2", "-o", f"{EVIL}/{{robot}}"],),
     *(["urdf-postfix", FILE, "robot1", "--force", "--fail-on", "warning"],),
     *(["urdf-postfix", FILE, EVIL],),
-    *(["urdf-postfix", "--strip", FILE, "robot1"],),
+    *(["urdf-postfix", "--undo", FILE, "robot1"],),
     *(["urdf-postfix", f"{EVIL}.xml", "robot1"], ["urdf-postfix", "cut.urdf", "robot1"]),
     *(["urdf-postfix", f"{EVIL}.none", "robot1"], ["urdf-postfix", FILE, "r", f"--{EVIL}"]),
     *(["urdf-postfix", "--why", f"{FILE}:{line}"] for line in range(2, 22)),

@@ -52,8 +52,8 @@ def test_a_file_for_each_robot_and_a_summary(
 @pytest.mark.more
 def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
     changes = tmp_path / "changes.json"
-    words = [ARM, "left", "right", PREFIX, "-o", str(tmp_path / "{robot}.urdf")]
-    assert urdf_postfix.main([*words, "--changes", str(changes)]) == 0
+    words = [ARM, "left", "right", PREFIX, "--form", "changes"]
+    assert urdf_postfix.main([*words, "-o", str(changes)]) == 0
     made = json.loads(changes.read_text())["robots"]
     for robot in ("left", "right"):
         renamed = {(it["old"], it["new"]) for it in made[robot] if it["kind"] == "link"}
@@ -91,7 +91,7 @@ def test_findings_of_every_robot_are_reported(
 def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     made, back, plain = (str(tmp_path / name) for name in ("left.urdf", "back.urdf", "plain.urdf"))
     assert urdf_postfix.main([ARM, "left", PREFIX, "-o", made, *options]) == 0
-    undo = ["left", "--strip", "--xacro", ARM, PREFIX, *options]
+    undo = ["left", "--undo", "--xacro", ARM, PREFIX, *options]
     assert urdf_postfix.main([made, *undo, "-o", back]) == 0
     names = ["left_base_link", "left_tool0", "left_gripper", "camera_link"]
     assert links(Path(back)) == names
@@ -103,7 +103,7 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     ("run", "words", "said"),
     [
         (urdf_postfix.main, [ARM, "left", "tf_prefix:={tf}_"], "unknown placeholder {tf}, only"),
-        (urdf_postfix.main, [ARM, "left", "--xacro", ARM], "--xacro goes with --strip"),
+        (urdf_postfix.main, [ARM, "left", "--xacro", ARM], "--xacro goes with --undo"),
         (
             urdf_postfix.main,
             [ARM, "left", "right", "tf_prefix:=left_", "-o", "{robot}.urdf"],

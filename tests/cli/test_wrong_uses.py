@@ -27,8 +27,8 @@ def options(**given: Any) -> argparse.Namespace:
 
 
 REWRITE = {
-    "input": "r.urdf", "words": [], "urdf": None, "xacro": None, "vocabulary": [], "strip": False,
-    "in_place": False, "output": None, "changes": None, "diff": False, "select": [], "ignore": [],
+    "input": "r.urdf", "words": [], "urdf": None, "xacro": None, "vocabulary": [], "undo": False,
+    "in_place": False, "output": None, "form": "description", "diff": False, "select": [], "ignore": [],
     "format": "text",
 }  # fmt: skip
 
@@ -41,8 +41,8 @@ REWRITE = {
         ({}, "", "no robot name given; for example: urdf-postfix rover.urdf robot1"),
         ({"words": ["a:=b"]}, "a", "NAME:=VALUE is for xacro, r.urdf is no xacro"),
         ({"words": ["a:=b"], "input": "-"}, "a", "NAME:=VALUE is for xacro, <stdin> is no xacro"),
-        ({"strip": True}, "ab", "--strip and --in-place take one robot at a time"),
-        ({"in_place": True}, "ab", "--strip and --in-place take one robot at a time"),
+        ({"undo": True}, "ab", "--undo and --in-place take one robot at a time"),
+        ({"in_place": True}, "ab", "--undo and --in-place take one robot at a time"),
         ({"format": "json"}, "a",
          "--format json prints the findings; name a file for the result with -o"),
         ({"output": "x", "in_place": True}, "a", "--output and --in-place exclude each other"),
@@ -52,9 +52,12 @@ REWRITE = {
             for it in ({"output": "x"}, {"in_place": True})
         ),
         ({"xacro": "a.xacro"}, "a",
-         "--xacro goes with --strip; to rewrite a xacro, name it as the INPUT"),
-        ({"strip": True, "changes": "c"}, "a",
-         "--changes lists what a rewrite changes, it cannot go with --strip"),
+         "--xacro goes with --undo; to rewrite a xacro, name it as the INPUT"),
+        *(
+            ({it: True, "form": "changes"}, "a",
+             f"--form changes lists what a rewrite changes: leave out --{written}")
+            for it, written in (("undo", "undo"), ("in_place", "in-place"), ("diff", "diff"))
+        ),
         *(
             ({"in_place": True, "input": it}, "a",
              "--in-place needs a URDF file, not standard input or xacro")
@@ -62,15 +65,14 @@ REWRITE = {
         ),
         ({"output": "{rob}"}, "a",
          "--output {rob}: unknown placeholder {rob}, only {robot} is filled in"),
-        ({"changes": "{robot}"}, "a",
-         "--changes {robot}: unknown placeholder {robot}, one file serves all robots"),
+        ({"form": "changes", "output": "{robot}"}, "a",
+         "--output {robot}: unknown placeholder {robot}, one file serves all robots"),
         ({}, "ab",
          "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
         ({"input": "r.sdf"}, "ab",
          "several robots need one file each: -o out/, or -o 'out/{robot}.sdf'"),
         ({"input": "-"}, "ab",
          "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
-        ({"output": "x", "changes": "./x"}, "a", "./x: the result and --changes need a file each"),
     ],
 )  # fmt: skip
 def test_a_rewrite_that_cannot_be_meant(
@@ -83,9 +85,9 @@ def test_a_rewrite_that_cannot_be_meant(
     ("given", "robots"),
     [
         ({}, "a"), ({"output": "{robot}.urdf"}, "ab"), ({"diff": True}, "ab"),
-        ({"strip": True, "xacro": "a.xacro"}, "a"), ({"words": ["a:=b"], "input": "r.xacro"}, "a"),
-        ({"words": ["a:=b"], "strip": True, "xacro": "a.xacro"}, "a"), ({"in_place": True}, "a"),
-        ({"output": "x", "changes": "y", "format": "json"}, "a"),
+        ({"undo": True, "xacro": "a.xacro"}, "a"), ({"words": ["a:=b"], "input": "r.xacro"}, "a"),
+        ({"words": ["a:=b"], "undo": True, "xacro": "a.xacro"}, "a"), ({"in_place": True}, "a"),
+        ({"output": "x", "form": "changes", "format": "json"}, "a"), ({"form": "changes"}, "ab"),
         ({"in_place": True, "format": "json"}, "a"),
     ],
 )  # fmt: skip
@@ -99,21 +101,20 @@ def test_a_rewrite_does_not_land_on_what_it_reads(tmp_path: Path) -> None:
         Path(path).write_text("")
     use = {**REWRITE, "input": files["r.urdf"]}
     told = f"{files['r.urdf']} is the input file; choose another name, or --in-place"
-    for more in ({"output": files["r.urdf"]}, {"changes": files["r.urdf"]}):
-        assert said(rewrite_use.check_use, options(**{**use, **more}), ["a"]) == told
+    onto = options(**{**use, "output": files["r.urdf"]})
+    assert said(rewrite_use.check_use, onto, ["a"]) == told
     for more, option in (
         ({"urdf": files["u"], "output": files["u"]}, "urdf"),
-        ({"vocabulary": [files["v"]], "changes": files["v"]}, "vocabulary"),
-        ({"xacro": files["x.xacro"], "strip": True, "output": files["x.xacro"]}, "xacro"),
+        ({"vocabulary": [files["v"]], "form": "changes", "output": files["v"]}, "vocabulary"),
+        ({"xacro": files["x.xacro"], "undo": True, "output": files["x.xacro"]}, "xacro"),
     ):
         message = said(rewrite_use.check_use, options(**{**use, **more}), ["a"])
         assert message.endswith(f"is the file of --{option}; choose another name")
-    read = options(output="out/{robot}", changes="c")
+    read = options(output="out/{robot}")
     told = said(rewrite_use.check_unread, read, ["a", "b"], ["out/b"])
     assert told.startswith("out/b is a file that")
-    assert said(rewrite_use.check_unread, read, ["a"], ["c"]).endswith("another one for --changes")
     rewrite_use.check_unread(read, ["a"], ["out/b"])
-    rewrite_use.check_unread(options(output=None, changes=None), ["a"], ["x"])
+    rewrite_use.check_unread(options(output=None), ["a"], ["x"])
 
 
 def test_the_input_as_messages_call_it() -> None:

@@ -312,9 +312,7 @@ def endless(folder: Path, count: int = 8) -> Path:
 def started(folder: Path) -> subprocess.Popen[str]:
     """A lint in a session of its own, with its workers at work."""
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    lint = subprocess.Popen(
-        [*COMMAND, "."], cwd=folder, start_new_session=True, **streams
-    )
+    lint = subprocess.Popen([*COMMAND, "."], cwd=folder, start_new_session=True, **streams)
     wait_until(lambda: len(members(lint.pid)) >= 2)
     time.sleep(0.2)
     return lint

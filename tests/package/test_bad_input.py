@@ -85,7 +85,7 @@ UNREADABLE = {
 def test_unreadable_input(tmp_path: Path, data: str | bytes, words: tuple[str, ...]) -> None:
     content = data.encode() if isinstance(data, str) else data
     (tmp_path / "in.urdf").write_bytes(content)
-    result = run(tmp_path, "in.urdf", "robot1", "-o", "out.urdf", "--changes", "changes.json")
+    result = run(tmp_path, "in.urdf", "robot1", "-o", "out.urdf")
     check_refusal(tmp_path, result, UNUSABLE, words)
     assert contents(tmp_path) == {"in.urdf": content}
 
@@ -232,7 +232,7 @@ REFUSED = {
 )
 def test_refused_content(tmp_path: Path, text: str, words: tuple[str, ...]) -> None:
     (tmp_path / "in.urdf").write_text(text)
-    words_given = ("in.urdf", *TEN, "-o", "{robot}.urdf", "--changes", "changes.json")
+    words_given = ("in.urdf", *TEN, "-o", "{robot}.urdf")
     check_refusal(tmp_path, run(tmp_path, *words_given), STOPPED, words)
     assert contents(tmp_path) == {"in.urdf": text.encode()}
 
@@ -250,7 +250,7 @@ def test_already_rewritten(tmp_path: Path) -> None:
     for robots in (["robot1"], ["robot2", "robot1"]):
         run(tmp_path, "-", "robot1", "-o", "in.urdf", stdin=ROVER.encode())
         result = run(tmp_path, "in.urdf", *robots, "-o", "{robot}.urdf")
-        words = ("in.urdf:", "MB106", "already rewritten for robot1", "link 'base", "--strip")
+        words = ("in.urdf:", "MB106", "already rewritten for robot1", "link 'base", "--undo")
         check_refusal(tmp_path, result, STOPPED, words)
         assert list(contents(tmp_path)) == ["in.urdf"]
 
@@ -265,7 +265,7 @@ def test_already_rewritten(tmp_path: Path) -> None:
 )
 def test_strip_with_other_options(tmp_path: Path, words: tuple[str, ...]) -> None:
     run(tmp_path, "-", "robot1", "-o", "in.urdf", stdin=ROVER.encode())
-    result = run(tmp_path, "in.urdf", *words, "--strip", "-o", "out.urdf")
+    result = run(tmp_path, "in.urdf", *words, "--undo", "-o", "out.urdf")
     check_refusal(tmp_path, result, STOPPED, ("in.urdf:", "MB107", words[0], "options"))
 
 
@@ -299,29 +299,28 @@ WRONG_USE = {
     "several-to-one": (("in.urdf", "a", "b", "-o", "o"), ("one file each", "{robot}")),
     "several-in-place": (("in.urdf", "a", "b", "--in-place"), ("one robot at a time",)),
     "several-to-strip": (
-        ("in.urdf", "a", "b", "--strip", "-o", "{robot}"),
+        ("in.urdf", "a", "b", "--undo", "-o", "{robot}"),
         ("one robot at a time",),
     ),
     "placeholder": (("in.urdf", "a", "-o", "{name}.urdf"), ("{name}", "only {robot}")),
     "second-placeholder": (("in.urdf", "a", "b", "-o", "{robot}/{n}"), ("{n}", "only {robot}")),
     "changes-placeholder": (
-        ("in.urdf", "a", "--changes", "{robot}.json"),
-        ("--changes", "{robot}", "all robots"),
+        ("in.urdf", "a", "--form", "changes", "-o", "{robot}.json"),
+        ("--output", "{robot}", "all robots"),
     ),
     "output-empty": (("in.urdf", "a", "-o", ""), ("-o/--output: the name is empty",)),
-    "changes-empty": (("in.urdf", "a", "--changes", ""), ("--changes: the name is empty",)),
     "output-and-in-place": (
         ("in.urdf", "a", "-o", "x", "--in-place"),
         ("--output", "--in-place", "exclude"),
     ),
     "diff-and-output": (("in.urdf", "a", "--diff", "-o", "x"), ("--diff", "leave out")),
     "diff-and-in-place": (("in.urdf", "a", "--diff", "--in-place"), ("--diff", "leave out")),
-    "strip-and-changes": (("in.urdf", "a", "--strip", "--changes", "x"), ("--changes",)),
+    "strip-and-changes": (("in.urdf", "a", "--undo", "--form", "changes"), ("--form changes",)),
     "in-place-of-stdin": (("-", "a", "--in-place"), ("--in-place needs a URDF file",)),
     "in-place-of-xacro": (("in.xacro", "a", "--in-place"), ("--in-place needs a URDF file",)),
     "argument-for-urdf": (("in.urdf", "a", "x:=1"), ("in.urdf", "NAME:=VALUE", "is no xacro")),
     "argument-for-stdin": (("-", "a", "x:=1"), ("<stdin>", "NAME:=VALUE", "is no xacro")),
-    "argument-for-strip": (("in.urdf", "a", "--strip", "x:=1"), ("in.urdf", "NAME:=VALUE")),
+    "argument-for-strip": (("in.urdf", "a", "--undo", "x:=1"), ("in.urdf", "NAME:=VALUE")),
     "vocabulary-missing": (("in.urdf", "a", "--vocabulary", "my.vocab"), ("my.vocab", "read")),
     "vocabulary-folder": (("in.urdf", "a", "--vocabulary", "."), (".", "cannot be read")),
     "vocabulary-text": (("in.urdf", "a", "--vocabulary", "in.urdf"), ("in.urdf:1:", "[section]")),
@@ -386,19 +385,19 @@ def _read_only(folder: Path) -> str:
     ],
 )
 @pytest.mark.parametrize("robots", [("robot1",), ("robot1", *TEN)], ids=["one", "many"])
-@pytest.mark.parametrize("option", ["-o", "--changes"])
+@pytest.mark.parametrize("form", ["description", "changes"])
 def test_output_that_cannot_be_written(
     tmp_path: Path,
-    option: str,
+    form: str,
     robots: tuple[str, ...],
     target: Callable[[Path], str],
     said: tuple[str, ...],
 ) -> None:
     path = target(tmp_path)
     before = contents(tmp_path)
-    words = (option, path)
-    if option == "--changes":
-        words = (option, path.replace("{robot}", "robot1"), "-o", "{robot}.urdf")
+    if form == "changes":
+        path = path.replace("{robot}", "robot1")
+    words = ("--form", form, "-o", path)
     result = run(tmp_path, "-", *robots, *words, stdin=ROVER.encode())
     place = path.replace("{robot}", "robot1")
     check_refusal(tmp_path, result, UNUSABLE, (f"{place}: cannot be written", *said))

@@ -348,9 +348,9 @@ def test_the_command_joins_and_splits(
         "hand_mount", "h_mount"
     )
     Path("arm.urdf").write_bytes(Path("out/r.urdf").read_bytes())
-    assert main(["join", "arm.urdf", "--split", "."]) == 2
+    assert main(["join", "arm.urdf", "--undo", "-o", "."]) == 2
     assert "arm.urdf is a file that is read" in capsys.readouterr().err
-    assert main(["join", "out/r.urdf", "--split", "parts"]) == 0
+    assert main(["join", "out/r.urdf", "--undo", "-o", "parts"]) == 0
     assert Path("parts/arm.urdf").read_text() == ARM
     assert Path("parts/h.urdf").read_text() == HAND
 
@@ -378,9 +378,9 @@ def test_arguments_go_to_the_xacro_before_them(
         (["x:=1", "a.urdf"], "write it behind the xacro"),
         (["a.urdf", "b.urdf", "--at", "x", "--at", "y"], "--at is there 2 times for 1 part"),
         (["a.urdf", "b.urdf", "--at", "x", "--pose", "1 2 x"], "write six numbers"),
-        (["a.urdf", "b.urdf", "--split", "out"], "--split takes one file"),
-        (["a.urdf", "--split", "out", "-o", "x"], "--output is for joining"),
-        (["a.urdf", "--split", "out", "--at", "x"], "--at is for joining"),
+        (["a.urdf", "b.urdf", "--undo", "-o", "out"], "--undo takes one file"),
+        (["a.urdf", "--undo"], "name a folder for them with -o parts/"),
+        (["a.urdf", "--undo", "-o", "out", "--at", "x"], "--at is for joining"),
         (["a.urdf", "b.urdf", "--at", "x"], "a.urdf: cannot be read"),
     ],
 )

@@ -79,7 +79,7 @@ def test_the_lint_reads_it_and_its_parts_again(
 def test_join_joins_it(write: Write, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["join", write(LIST), "-o", "robot.urdf"]) == 0
     assert links(Path("robot.urdf").read_bytes()) == LINKS
-    assert main(["join", "robot.urdf", "--split", "again"]) == 0
+    assert main(["join", "robot.urdf", "--undo", "-o", "again"]) == 0
     assert Path("again/arm.urdf").read_text() == ARM
     capsys.readouterr()
     assert main(["join", "robot.urdf.join", "--at", "tool"]) == 2

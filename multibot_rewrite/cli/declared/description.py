@@ -24,6 +24,7 @@ from multibot_rewrite.cli.options import (
     argument,
     choice,
     each,
+    form,
     output,
     path_option,
     several,
@@ -31,6 +32,7 @@ from multibot_rewrite.cli.options import (
     value,
 )
 
+POSTFIX_FORMS = ("description", "changes")
 IN_PLACE = switch("--in-place", about="write the result over the input")
 POSTFIX = Command(
     "urdf-postfix",
@@ -49,7 +51,7 @@ POSTFIX = Command(
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
         Example("urdf-postfix nav2_params.yaml robot1 --urdf rover.urdf", "or RViz, MoveIt"),
-        Example("urdf-postfix robot1.urdf robot1 --strip", "undo it"),
+        Example("urdf-postfix robot1.urdf robot1 --undo", "undo it"),
         Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
     ),
@@ -90,16 +92,16 @@ POSTFIX = Command(
                     default=KEEP,
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
-                path_option("--changes", "write every change as JSON"),
+                form(POSTFIX_FORMS, "the result, or every change for every robot as JSON"),
             ),
         ),
         OptionGroup(
             "other jobs",
             (
-                switch("--strip", about="undo a rewrite; give the options it was made with"),
+                switch("--undo", about="take a rewrite back; give the options it was made with"),
                 path_option(
                     "--xacro",
-                    "with --strip: the xacro whose arguments (NAME:=VALUE) put the robot's name"
+                    "with --undo: the xacro whose arguments (NAME:=VALUE) put the robot's name"
                     " into names; these stay",
                 ),
                 switch("--force", about="rewrite although it was rewritten for this robot"),
@@ -266,7 +268,7 @@ JOIN = Command(
             " --at left_plate --at right_plate --prefix left_ --prefix right_",
             "two arms on a base",
         ),
-        Example("multibot join robot.urdf --split parts/", "the parts again, byte by byte"),
+        Example("multibot join robot.urdf --undo -o parts/", "the parts again, byte by byte"),
     ),
     (
         OptionGroup(
@@ -295,8 +297,8 @@ JOIN = Command(
         OptionGroup(
             "output",
             (
-                output("write the result there"),
-                path_option("--split", "write the parts of a joined FILE into a folder", "FOLDER"),
+                output("write the result there; with --undo a folder"),
+                switch("--undo", about="write the parts of a joined FILE again"),
             ),
         ),
         GENERAL,

@@ -20,7 +20,7 @@ strip_other_robot = declare(
     "MB107",
     "strip-other-robot",
     ERROR,
-    what="`--strip` should remove a robot's name, but a name in the file, or in the URDF of an "
+    what="`--undo` should remove a robot's name, but a name in the file, or in the URDF of an "
     "SRDF, does not have it.",
     why="The file was made for another robot or with other options. Removing the name from some "
     "names only would leave a description that is neither the source nor the robot's.",
@@ -37,7 +37,7 @@ strip_other_options = declare(
     "MB108",
     "strip-other-options",
     ERROR,
-    what="`--strip` removed the robot's name, but rewriting the result does not give the file again.",
+    what="`--undo` removed the robot's name, but rewriting the result does not give the file again.",
     why="The file was made with other options, or was edited after it: the result would not be its "
     "source.",
     fix="Use the options with which the file was made, and undo edits that were made after it.",
@@ -150,11 +150,11 @@ def meeting_descriptions(made: Iterable[tuple[str, Inventory, RenameMap]]) -> It
 
 
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
-    """Links and joints without the affix that ``--strip`` is to take off."""
+    """Links and joints without the affix that ``--undo`` is to take off."""
     for kind, name, claim, changes in _declarations(inventory, renames):
         if changes and removal(renames.naming, robot, kind, name) is None:
             message = f"{kind} {name!r} does not have the name of {robot}"
-            hint = "give --strip the robot and the options that the file was made with"
+            hint = "give --undo the robot and the options that the file was made with"
             if robot in name:
                 hint += ", and --xacro if an argument of it made the name"
             return [_other_robot(inventory, claim.start, message, hint)]
@@ -183,5 +183,5 @@ def _other_robot(inventory: Inventory, offset: int, message: str, hint: str) -> 
 def other_options(inventory: Inventory, robot: str) -> Finding:
     """The stripped text, rewritten again, is not the file."""
     message = f"a rewrite for {robot} with these options does not give this file"
-    hint = "give --strip the options the file was made with"
+    hint = "give --undo the options the file was made with"
     return finding(inventory.document, 0, strip_other_options.code, ERROR, message, hint)

@@ -128,7 +128,7 @@ def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bo
     message = f"the description is already rewritten for {robot}: {why}"
     # Two layers of added elements could not be told apart.
     again = "" if marked else ", or add its name once more with urdf-postfix --force"
-    way = "undo the rewrite with urdf-postfix --strip and the options it was made with"
+    way = "undo the rewrite with urdf-postfix --undo and the options it was made with"
     hint = f"{way}, or name the robot otherwise{again}"
     if found:
         return about(found[0].claim, "MB106", message, hint)

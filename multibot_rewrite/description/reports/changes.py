@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plan -> the list of what changed, as ``--changes`` writes it."""
+"""Plan -> the list of what changed, as ``--form changes`` writes it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inserted elements in the bytes: how they are written, and how ``--strip`` finds them again.
+"""Inserted elements in the bytes: how they are written, and how ``--undo`` finds them again.
 
 They come first in their parent element, after a marker comment:
 

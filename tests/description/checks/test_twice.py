@@ -225,7 +225,7 @@ def test_the_message_names_the_names_with_their_lines() -> None:
         "the description is already rewritten for robot1: its name is in link 'base_link/robot1' "
         "(line 2), joint 'left_wheel_joint_robot1' (line 5) and 3 more names"
     )
-    for way in ("--strip", "name the robot otherwise", "--force"):
+    for way in ("--undo", "name the robot otherwise", "--force"):
         assert way in finding.hint
 
 

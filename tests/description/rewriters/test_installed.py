@@ -137,7 +137,7 @@ def test_what_is_installed_is_known_renamed_and_undone(acme: Path) -> None:
     assert (rewritten.returncode, rewritten.stdout) == (0, CASE.output), rewritten.stderr
     # The port is written in the description: all robots have it, and that is all there is to say.
     assert re.findall(rb"warning: (\w+)", rewritten.stderr) == [b"MB412"]
-    stripped = run(acme, "robot1", "--strip", stdin=rewritten.stdout)
+    stripped = run(acme, "robot1", "--undo", stdin=rewritten.stdout)
     assert (stripped.returncode, stripped.stdout) == (0, CASE.source)
 
 

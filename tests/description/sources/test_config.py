@@ -143,7 +143,7 @@ def test_the_command_uses_it_and_the_library_does_not(
     assert "<my_frame>base</my_frame>" in rewrite(path, "robot1").text
     out = project / "robots" / "out.urdf"
     out.write_bytes(rewritten)
-    assert main([str(out), "robot1", "--strip"]) == 0
+    assert main([str(out), "robot1", "--undo"]) == 0
     assert capsysbinary.readouterr().out.decode() == ROBOT
 
 

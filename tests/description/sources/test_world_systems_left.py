@@ -91,6 +91,6 @@ def test_the_command_follows_its_hint(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main([*words, "--world-systems", "leave"]) == 0
     end = "the world loads gz-sim-imu-system, gz-sim-sensors-system (ROS 2 jazzy: --distro)"
     assert capsys.readouterr().err.strip().endswith(end)
-    again = [str(made), "r1", "--distro", "jazzy", "--strip", "--in-place"]
+    again = [str(made), "r1", "--distro", "jazzy", "--undo", "--in-place"]
     assert main([*again, "--world-systems", "leave"]) == 0
     assert made.read_text() == file.read_text()

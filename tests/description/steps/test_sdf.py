@@ -470,7 +470,7 @@ def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
     assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}.sdf").code == 0
     for robot in ("r1", "r2"):
         assert (tmp_path / f"{robot}.sdf").read_bytes() == rewrite(NESTED, robot).data
-        back = run(tmp_path, f"{robot}.sdf", robot, "--strip")
+        back = run(tmp_path, f"{robot}.sdf", robot, "--undo")
         assert (back.code, back.out) == (0, NESTED)
 
 

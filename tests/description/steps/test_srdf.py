@@ -332,7 +332,7 @@ def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
     assert "MB807" in done.err
     assert (folder / "out.srdf").read_bytes() == rewrite(SRDF, ROBOT, urdf=ARM).data
     assert run(folder, "arm.urdf", ROBOT, "-o", "out.urdf").code == 0
-    back = run(folder, "out.srdf", ROBOT, "--strip", "--urdf", "out.urdf")
+    back = run(folder, "out.srdf", ROBOT, "--undo", "--urdf", "out.urdf")
     assert (back.code, back.out) == (0, SRDF)
 
 
@@ -373,7 +373,7 @@ SDF = '<sdf version="1.9"><model name="m"><link name="a"/></model></sdf>'
 # Words of the call, the exit code, and what the one line has to say.
 BAD = {
     "no-urdf": (("arm.srdf",), UNUSABLE, ("arm.srdf", "--urdf")),
-    "strip-without-urdf": (("arm.srdf", "--strip"), UNUSABLE, ("arm.srdf", "--urdf")),
+    "strip-without-urdf": (("arm.srdf", "--undo"), UNUSABLE, ("arm.srdf", "--urdf")),
     "urdf-with-urdf": (("arm.urdf", "--urdf", "arm.urdf"), UNUSABLE, ("arm.urdf", "only an SRDF")),
     "sdf-with-urdf": (("arm.sdf", "--urdf", "arm.urdf"), UNUSABLE, ("arm.sdf", "only an SRDF")),
     "missing": (("arm.srdf", "--urdf", "no.urdf"), UNUSABLE, ("no.urdf", "No such file")),

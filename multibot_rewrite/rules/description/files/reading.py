@@ -133,7 +133,7 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     why="urdf-postfix rejects it: a second rewrite would make base_link/robot1/robot1. If several "
     "robots use it, all of them have the frames and topics of that one robot.",
     fix="Lint and rewrite the source file, or give the robot another name; undo the rewrite with "
-    "urdf-postfix --strip, insist with --force, or exclude generated files.",
+    "urdf-postfix --undo, insist with --force, or exclude generated files.",
     bad='<robot name="r_robot1"><link name="base/robot1"/></robot>',
     good='<robot name="r"><link name="base"/></robot>',
     options={"robots": ("robot1", "robot2")},
