@@ -265,7 +265,7 @@ def through_router() -> Iterator[Row]:
         zenoh_robots.robot(address, domain) as there,
     ):
         hold(there)
-        command = [*COMMAND, plan, "--zenoh", address, "--domain", str(domain)]
+        command = [*COMMAND, plan, "--from", address, "--domain", str(domain)]
         results = [_as_planned(command) for _ in range(LIVE_RUNS + 2)]
     took = [it.seconds for it in results]
     yield waited("fresh check through a Zenoh router: verdict", LARGE, took, "s", "0.5")
@@ -326,11 +326,11 @@ def by_command() -> Iterator[Row]:
         results = saved(size)
         least[size] = min(it.cpu for it in results)
         goals = ("10", "1000") if robots == 10_000 else ("", "")
-        yield computed("check --snapshot", size, [it.cpu for it in results], "s", goals[0])
+        yield computed("check --from", size, [it.cpu for it in results], "s", goals[0])
         yield waited("its peak memory", size, [it.peak for it in results], "MiB", goals[1])
     half, whole, _ = least.values()
     yield computed(
-        "10,000 robots against 5,000", "check --snapshot", [whole / half], "x", "2 is linear"
+        "10,000 robots against 5,000", "check --from", [whole / half], "x", "2 is linear"
     )
 
 
@@ -341,7 +341,7 @@ def saved(size: Size) -> list[Ended]:
         files[0].write_text(plan_to_json(plan))
         files[1].write_bytes(to_json(graph_of(plan)))
         del plan
-        command = [*COMMAND, str(files[0]), "--snapshot", str(files[1])]
+        command = [*COMMAND, str(files[0]), "--from", str(files[1])]
         return [_as_planned(command) for _ in range(3)]
 
 

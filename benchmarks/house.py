@@ -37,7 +37,7 @@ ROVER, GRAPHS = "fixtures/robots/rover.urdf", "fixtures/graphs"
 COMMANDS = {
     "rewrite": ("urdf_postfix", ROVER, "robot1", "robot2", "-o", "{}/{{robot}}.urdf"),
     "lint": ("urdf_lint", ROVER),
-    "check": ("multibot", "check", f"{GRAPHS}/plan.yaml", "--snapshot", f"{GRAPHS}/healthy.json"),
+    "check": ("multibot", "check", f"{GRAPHS}/plan.yaml", "--from", f"{GRAPHS}/healthy.json"),
     "build": ("multibot", "build", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/fleet"),
 }
 BESIDE = "the public names (`__init__.py`), the version"

@@ -26,7 +26,7 @@ PAGES = {
     ),
     "report.png": (
         (1200, 900),
-        f"check {GRAPHS}/plan.yaml --snapshot {GRAPHS}/MG402.json --report report.png.html",
+        f"check {GRAPHS}/plan.yaml --from {GRAPHS}/MG402.json --report report.png.html",
     ),
     "report-20.png": (
         (1200, 900),

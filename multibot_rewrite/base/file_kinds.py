@@ -16,7 +16,7 @@ URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"
 FLEET, PLAN, SNAPSHOT, LAUNCH, BAG, MAP = "fleet", "plan", "snapshot", "launch", "bag", "map"
 STAGE, WEBOTS, MUJOCO, USD, MESH = "stage", "webots", "mujoco", "usd", "mesh"
 MANIFEST, CONFIG = "manifest", "config"
-BUILT, RULES = "built", "rules"
+BUILT, RULES, SESSION = "built", "rules", "session"
 DESCRIPTIONS = (URDF, XACRO, SDF)
 _LOOKED_AT = 200_000
 
@@ -45,9 +45,10 @@ KINDS: Mapping[str, FileKind] = {
     LUA: FileKind("a Lua file of Cartographer", _IN_FLEET.format("companions: {lua: FILE}")),
     FLEET: FileKind("a fleet file", "use multibot build, plan or view"),
     PLAN: FileKind("a plan", "use multibot check"),
-    SNAPSHOT: FileKind("a snapshot", "use multibot check --snapshot"),
+    SNAPSHOT: FileKind("a snapshot", "use multibot check --from"),
     LAUNCH: FileKind("a launch file", "use multibot check-launch, or multibot plan"),
-    BAG: FileKind("a recording", "use multibot check --bag"),
+    BAG: FileKind("a recording", "use multibot check --from with its folder or .mcap or .db3"),
+    SESSION: FileKind("a session of Zenoh", "call it .json5 and use multibot check --from"),
     MAP: FileKind("a map for map_server", "it holds no robot's name, leave it out"),
     STAGE: FileKind("a world of Stage", _OTHER_SIMULATOR),
     WEBOTS: FileKind("a file of Webots", _OTHER_SIMULATOR),
@@ -114,6 +115,7 @@ _OTHERS = (
     (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
 )
 _BUILT = b'"format": "multibot build'
+_SESSION = lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{", 0)
 _SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
@@ -146,7 +148,9 @@ def recognised(data: bytes) -> str:
         ends = _SNAPSHOT.search(text)
         if b'"ways"' in text or (ends and b'"layout"' in text):
             return PLAN
-        return SNAPSHOT if ends else FLEET if b'"robots"' in text else ""
+        if ends:
+            return SNAPSHOT
+        return SESSION if _SESSION.search(text) else FLEET if b'"robots"' in text else ""
     return _first((*BESIDE, *_OTHERS), text)
 
 

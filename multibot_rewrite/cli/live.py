@@ -40,21 +40,19 @@ LOOK_SECONDS = 15.0
 
 
 def check_source(options: argparse.Namespace) -> None:
-    """Raises UsageError where options name two sources, or a saved one is to be watched."""
+    """Raises UsageError for what a saved source or a router has not."""
     saved, watching = bool(options.snapshot), getattr(options, "watch", False)
     if getattr(options, "bag", None):
         given = vars(options)
-        for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report"):
+        for name in ("watch", "state", "suggest", "report"):
             if given.get(name):
-                raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
+                raise UsageError(f"{given['bag']} is a recording, no nodes: leave out --{name}")
     if saved and watching:
-        raise UsageError("--watch is for the live graph, leave out --snapshot")
+        raise UsageError("--watch is for the live graph, leave out --from")
     if watching and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     if getattr(options, "state", False) and (saved or options.zenoh):
-        raise UsageError("--state asks nodes of the live graph: leave out --snapshot and --zenoh")
-    if saved and options.zenoh:
-        raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
+        raise UsageError("--state asks nodes of the live graph: leave out --from")
 
 
 # What is wrong with a view.

@@ -17,13 +17,11 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 class Option(NamedTuple):
-    """An option or argument; ``keywords`` are those of argparse's ``add_argument``. One that few need
-    is not ``shown`` by ``--help``; the page of commands has it."""
+    """An option or argument; ``keywords`` are those of argparse's ``add_argument``."""
 
     names: tuple[str, ...]
     help: str
     keywords: Mapping[str, Any] = NOTHING
-    shown: bool = True
 
 
 class OptionGroup(NamedTuple):
@@ -111,11 +109,6 @@ def repeated(name: str, metavar: str, about: str) -> Option:
 def each(name: str, metavar: str, about: str) -> Option:
     """An option that is written once for each of several things, in their order; it may be empty."""
     return Option((name,), about, {"metavar": metavar, "action": "append", "default": []})
-
-
-def rare(option: Option) -> Option:
-    """An option that ``--help`` does not show."""
-    return option._replace(shown=False)
 
 
 def output(about: str, **more: Any) -> Option:

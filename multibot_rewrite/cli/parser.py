@@ -17,6 +17,7 @@ from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.output import AUTO, is_coloured
+from multibot_rewrite.cli.values import SOURCES
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
@@ -136,10 +137,7 @@ def _names(group: OptionGroup) -> list[str]:
     words = [
         it.names[-1] if it.names[0].startswith("-") else it.keywords["metavar"]
         for it in group.options
-        if it.shown
     ]
-    if not words:
-        return []
     lines = wrapped(f"{title}: {' '.join(words)}", COLUMNS - 2).split("\n")
     return [lines[0], *(f"  {it}" for it in lines[1:])]
 
@@ -175,7 +173,7 @@ def wrapped(text: str, width: int = 80) -> str:
 def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
     section = parser.add_argument_group(group.title)
     for option in group.options:
-        text = option.help.replace("%", "%%") if option.shown else argparse.SUPPRESS
+        text = option.help.replace("%", "%%")
         made = section.add_argument(*option.names, help=text, **option.keywords)
         if made.nargs == argparse.ZERO_OR_MORE:
             made.required = False  # else a message about another one asks for it, too
@@ -192,7 +190,19 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}; a list is written A,B"
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
+    if "sources" in options:
+        _tell_sources(parser, options)
     return options
+
+
+def _tell_sources(parser: Parser, options: argparse.Namespace) -> None:
+    """The sources of a graph by their kind; only saved ones may be several."""
+    saved, *others = ([it for of, it in options.sources if of == kind] for kind in SOURCES)
+    single = [it for its in others for it in its]
+    if len(single) + bool(saved) > 1:
+        two = " and ".join([*saved[:1], *single][:2])
+        parser.error(f"--from: {two} are two sources; give one of them")
+    options.snapshot, options.bag, options.zenoh = saved, *((its or [None])[0] for its in others)
 
 
 def _kind_of(word: str, program: str) -> str:

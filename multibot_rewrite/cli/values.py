@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Callable, Collection
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -15,6 +16,9 @@ MAX_SECONDS = 3600
 MAX_DOMAIN = 232
 # zenoh-protocol endpoint.rs: PROTOCOL/ADDRESS, then metadata behind ? and configuration behind #.
 _ENDPOINT = lazy_compile(r"(tcp|udp|tls|quic|ws)/[^\s/?#]+:\d{1,5}([?#]\S*)?|unixsock-stream/\S+")
+# What is meant as one: a protocol in front, or a port behind.
+_ADDRESS = lazy_compile(r"(?:tcp|udp|tls|quic|ws|unixsock-stream)/.*|[^/]*:\d+")
+SOURCES = SAVED, RECORDING, ROUTER = ("snapshot", "bag", "zenoh")
 _WORD = lazy_compile(r"[A-Za-z0-9_.-]+")
 
 
@@ -43,6 +47,15 @@ def path(text: str) -> str:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty, give the name of a file")
     return text
+
+
+def source(text: str) -> tuple[str, str]:
+    """What a graph is read from, behind the kind of it: one of ``SOURCES``."""
+    if text.endswith(".json5") or (_ADDRESS.fullmatch(text) and not os.path.exists(text)):
+        return ROUTER, zenoh_router(text)
+    if text.endswith((".mcap", ".db3", "/")) or os.path.isdir(text):
+        return RECORDING, text
+    return SAVED, path(text)
 
 
 def zenoh_router(text: str) -> str:

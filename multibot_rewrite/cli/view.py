@@ -54,8 +54,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _graph(options: argparse.Namespace) -> System | None:
     """What was seen or recorded of tf, if that is asked for."""
-    if options.bag and options.snapshot:
-        raise UsageError("--bag is a recording: leave out --snapshot")
+    if options.zenoh:
+        raise UsageError("view shows what was saved or recorded: save it with multibot snapshot")
     if options.bag:
         return as_snapshot(read_bag(options.bag))
     return read_snapshots(options.snapshot) if options.snapshot else None

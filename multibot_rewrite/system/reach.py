@@ -51,7 +51,7 @@ def why_not_seen(graph: System, robot: str) -> str:
         return (
             f"all that is seen runs on one machine ({shorten(names)}). If {robot} is on another,"
             " multicast may be lost, or it is on range LOCALHOST. Set ROS_STATIC_PEERS to its"
-            " address, or take a snapshot there and join them (multibot snapshot --snapshot). If all"
+            " address, or take a snapshot there and join them (multibot snapshot --from). If all"
             " robots are to be on this machine set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"
         )
     started = "is the robot started, and with this ROS_DOMAIN_ID?"

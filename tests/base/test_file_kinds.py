@@ -39,6 +39,7 @@ TEXTS = {
     "rules": "layout: postfix\ndistro: jazzy\nrobots:\n  robot1:\n    amcl: []\n",
     "snapshot": '{"schema": 2, "nodes": []}',
     "bag": "rosbag2_bagfile_information:\n  version: 5\n",
+    "session": '{"mode": "client", "connect": {"endpoints": ["tcp/a:1"]}}',
     "stage": 'include "robots.inc"\n# the hall\nfloorplan\n(\n  name "hall"\n)\n',
     "webots": "#VRML_SIM R2023b utf8\nWorldInfo {\n}\n",
     "mujoco": '<?xml version="1.0"?><!-- <a> -->\n<mujoco model="r"><worldbody/></mujoco>',

@@ -171,9 +171,10 @@ def test_words_that_stand_for_a_robot() -> None:
         ),
         (
             other_words.OPTIONS,
-            """--again --undo --revert --strip --split --changes --jobs --groups
-            --shared-frames --shared-topics --topic --lint --prefix --postfix --suffix --frame-prefix
-            --namespace --out --out-dir --dry-run --overwrite --inplace --description --fleet
+            """--again --undo --revert --strip --split --changes --snapshot --bag --zenoh --jobs
+            --groups --shared-frames --shared-topics --topic --lint --prefix --postfix --suffix
+            --frame-prefix --namespace --out --out-dir --dry-run --overwrite --inplace --description
+            --fleet
             --plan --number --ros-distro --release --fail --no-color --json --sarif --sros2""",
         ),
         (

@@ -26,7 +26,7 @@ HERE = ("trimesh", "rosbags", "rosbags.rosbag2", "zenoh")
 IN_CHILDREN = ("rclpy", "zenoh")
 FLEET = str(ROOT / "examples" / "namespace_and_prefix" / "fleet.yaml")
 PLAN = str(FIXTURES / "graphs" / "plan.yaml")
-ROUTER = ("--zenoh", "tcp/localhost:7447")
+ROUTER = ("--from", "tcp/localhost:7447")
 NEEDS = [
     (("rehearse", FLEET), "ros"),
     (("rehearse", FLEET, "--report", "r.html"), "ros"),
@@ -39,8 +39,8 @@ NEEDS = [
     (("check", *ROUTER), "zenoh"),
     (("snapshot", *ROUTER), "zenoh"),
     (("snapshot", "--form", "nodes", *ROUTER), "zenoh"),
-    (("check", PLAN, "--bag", "."), "bags"),
-    (("check", "--bag", "."), "bags"),
+    (("check", PLAN, "--from", "."), "bags"),
+    (("check", "--from", "."), "bags"),
     (("view", FLEET, "-o", "view.html"), "view"),
 ]
 LARGEST, LARGEST_VIEW = 70_000_000, 110_000_000

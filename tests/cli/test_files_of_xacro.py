@@ -42,7 +42,7 @@ WRITERS: dict[str, Command] = {
     "plan": (MULTIBOT, "plan r.urdf.xacro robot1 robot2 -o"),
     "plan of a fleet": (MULTIBOT, "plan fleet.yaml -o"),
     "remap": (MULTIBOT, "plan --form table r.urdf.xacro robot1 robot2 -o"),
-    "check": (MULTIBOT, "check fleet.yaml --snapshot graph.json -o"),
+    "check": (MULTIBOT, "check fleet.yaml --from graph.json -o"),
     "rehearse": (MULTIBOT, "rehearse fleet.yaml --save-snapshot"),
     "inspect": (MULTIBOT, "inspect r.urdf.xacro -o"),
     "inspect --suggest": (MULTIBOT, "inspect --suggest r.urdf.xacro -o"),

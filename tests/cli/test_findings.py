@@ -68,7 +68,7 @@ def check(tmp_path: Path, said: Said) -> list[str]:
     for robot in TWENTY:
         found = without_node(found, f"/{robot}/robot_state_publisher")
     graph.write_bytes(to_json(found))
-    return ["multibot", "check", str(plan), "--snapshot", str(graph)]
+    return ["multibot", "check", str(plan), "--from", str(graph)]
 
 
 def codes(text: str) -> list[str]:

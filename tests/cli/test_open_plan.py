@@ -39,7 +39,7 @@ class Folder:
         Path(self.graph).write_bytes(to_json(as_planned(plan)))
 
     def check(self, plan: str, *words: str) -> int:
-        return main(["check", plan, "--snapshot", self.graph, *words])
+        return main(["check", plan, "--from", self.graph, *words])
 
 
 @pytest.fixture
@@ -192,8 +192,8 @@ def test_each_command_says_the_same_of_a_parameter_file(
     commands = [
         ["build", "fleet.yaml", "-o", "out"],
         ["plan", "fleet.yaml", "-o", "plan.yaml"],
-        ["check", "plan.yaml", "--snapshot", "graph.json"],
-        ["check", "out/plan.yaml", "--snapshot", "graph.json"],
+        ["check", "plan.yaml", "--from", "graph.json"],
+        ["check", "out/plan.yaml", "--from", "graph.json"],
     ]
     said = []
     for words in commands:

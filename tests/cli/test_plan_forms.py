@@ -133,7 +133,7 @@ def test_a_robot_without_a_name_has_a_plan(
         seen = tmp_path / "graph.json"
         seen.write_bytes(to_json(without_node(graph, lost)))
         capsys.readouterr()
-        assert main(["check", str(file), "--snapshot", str(seen)]) == code
+        assert main(["check", str(file), "--from", str(seen)]) == code
         out = capsys.readouterr().out
         assert ("/amcl: error: MG101" in out) is bool(lost)
         assert "MG320" not in out and "MG305" not in out

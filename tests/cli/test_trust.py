@@ -28,7 +28,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "urdf-lint": (urdf_lint.main, [PATH, "--select", "MB103"], 1),
     "inspect": (multibot.main, ["inspect", PATH], 2),
     "build": (multibot.main, ["build", "fleet.yaml", "-o", "out"], 2),
-    "check": (multibot.main, ["check", "fleet.yaml", "--snapshot", "graph.json"], 2),
+    "check": (multibot.main, ["check", "fleet.yaml", "--from", "graph.json"], 2),
     "check-launch": (multibot.main, ["check-launch", "r.launch.py", "--plan", "fleet.yaml"], 2),
     "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
     "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),

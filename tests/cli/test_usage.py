@@ -104,20 +104,16 @@ USUAL = {"snapshot": [], "zenoh": None, "watch": False, "state": False, "bag": N
     ("given", "message"),
     [
         *(
-            ({"bag": "b", it: "x"}, f"--bag is a recording, which has no nodes: leave out --{it}")
-            for it in ("snapshot", "zenoh", "watch", "state", "suggest", "report")
+            ({"bag": "b", it: "x"}, f"b is a recording, no nodes: leave out --{it}")
+            for it in ("watch", "state", "suggest", "report")
         ),
-        ({"snapshot": ["g"], "watch": True}, "--watch is for the live graph, leave out --snapshot"),
+        ({"snapshot": ["g"], "watch": True}, "--watch is for the live graph, leave out --from"),
         *(
             (
                 {it: "x", "state": True},
-                "--state asks nodes of the live graph: leave out --snapshot and --zenoh",
+                "--state asks nodes of the live graph: leave out --from",
             )
             for it in ("snapshot", "zenoh")
-        ),
-        (
-            {"snapshot": ["g"], "zenoh": "tcp/a:1"},
-            "saved snapshots and --zenoh are two sources: give one of them",
         ),
     ],
 )
@@ -258,7 +254,7 @@ def test_what_a_snapshot_does_not_take_together() -> None:
     assert snapshot._check_use(options(**{**usual, "expect": ["/a"], "timeout": 0.0}))
     for name, given in (("timeout", 0.0), ("domain", 0), ("expect", ["/a"])):
         saved = options(**{**usual, "snapshot": ["g.json"], name: given})
-        hint = f"--{name} is for the live graph, leave out --snapshot"
+        hint = f"--{name} is for the live graph, leave out --from"
         assert said(snapshot._check_use, saved) == hint
     same = options(**{**usual, "snapshot": ["g.json"], "output": "./g.json"})
     assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")

@@ -31,6 +31,14 @@ KNOWN = ("text", "json", "sarif")
                 "unixsock-stream//tmp/z",
             )
         ),
+        *(
+            (values.source, it, (kind, it))
+            for kind, it in (
+                ("snapshot", "graph.json"), ("snapshot", "a/graph.yaml"), ("snapshot", "tcp.json"),
+                ("snapshot", "/dev/fd/63"), ("bag", "a.mcap"), ("bag", "a.db3"), ("bag", "bag/"),
+                ("bag", "."), ("zenoh", "tcp/localhost:7447"), ("zenoh", "operator.json5"),
+            )
+        ),
         (values.one_of(KNOWN), "json", "json"),
         (values.some_of(KNOWN), "json,text", ["json", "text"]),
         (values.word, "my.stack_2-a", "my.stack_2-a"),
@@ -53,6 +61,14 @@ def test_a_value_is_read(read: Callable[[str], object], text: str, value: object
         (values.names, ",", "',' has an empty part, write A,B"),
         (values.full_names, "/a,b", "'b' is not a full name, give for example /b"),
         (values.path, "", "the name is empty, give the name of a file"),
+        (values.source, "", "the name is empty, give the name of a file"),
+        *(
+            (
+                values.source, it,
+                f"'{it}' is no Zenoh router; write PROTOCOL/HOST:PORT, such as tcp/localhost:7447",
+            )
+            for it in ("host:7447", "tcp/host", "udp/host:x")
+        ),
         *(
             (
                 values.zenoh_router, it,

@@ -65,7 +65,7 @@ def test_a_collision_is_found_without_any_stack(
 ) -> None:
     plan = str(tmp_path / "plan.yaml")
     assert main(["plan", rover, "robot1", "robot2", "--layout", layout, "-o", plan]) == 0
-    code, out, err = run(capsys, "check", plan, "--snapshot", str(COLLISION))
+    code, out, err = run(capsys, "check", plan, "--from", str(COLLISION))
     assert code == 1
     assert all(it in out for it in ("MG402 robot1 and robot2 send", "base_link"))
     assert err.endswith("not as planned (ROS 2 lyrical)\n")
@@ -78,7 +78,7 @@ def test_the_frames_of_another_robot_are_not_missed_but_its_node_is(
     (tmp_path / "arm.urdf").write_text('<robot name="arm"><link name="foot"/></robot>')
     plan = str(tmp_path / "plan.yaml")
     assert main(["plan", str(tmp_path / "arm.urdf"), "robot1", "robot2", "-o", plan]) == 0
-    code, out, _ = run(capsys, "check", plan, "--snapshot", str(COLLISION))
+    code, out, _ = run(capsys, "check", plan, "--from", str(COLLISION))
     assert (code, "MG109" in out) == (1, True)
 
 
@@ -106,7 +106,7 @@ def test_all_commands_have_the_same_robots(
     assert all(f'"{node}"' in table or PUBLISHER in table for node in wanted)
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(as_planned(from_yaml(planned.encode(), "plan"))))
-    assert run(capsys, "check", file, "--snapshot", str(graph))[0] == 0
+    assert run(capsys, "check", file, "--from", str(graph))[0] == 0
 
 
 def test_a_state_publisher_of_the_users_own_is_the_only_one(tmp_path: Path, rover: str) -> None:
@@ -167,7 +167,7 @@ def test_one_such_robot_among_others_is_an_error_of_every_command(
     text = NO_PLUGIN.replace("{name: b}", f"{{name: b, stack: {NO_STATE_PUBLISHER}}}")
     file = str(fleet_folder(tmp_path, text))
     for words in (["plan", file], ["check", file], ["build", file, "-o", str(tmp_path / "out")]):
-        more = ["--snapshot", str(COLLISION)] if words[0] == "check" else []
+        more = ["--from", str(COLLISION)] if words[0] == "check" else []
         code, out, err = run(capsys, *words, *more)
         assert (code, out, err.count("\n")) == (2, "", 1), words
         assert "b has no node that must run" in err
@@ -199,7 +199,7 @@ def checked(plan: object, folder: Path, capture: pytest.CaptureFixture[str]) -> 
     path.write_text(yaml.safe_dump(plan))
     with pytest.raises(InputError):
         from_yaml(path.read_bytes(), "edited.yaml")
-    code, out, err = run(capture, "check", str(path), "--snapshot", str(COLLISION))
+    code, out, err = run(capture, "check", str(path), "--from", str(COLLISION))
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert NOTHING in err and str(path) in err
     return err

@@ -76,10 +76,10 @@ def test_nodes_of_a_graph_are_asked_only_if_that_is_wanted(
 def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[str]) -> None:
     broken = GRAPHS / "MG320.json"
     plan = GRAPHS / "plan.yaml"
-    assert main(["check", str(plan), "--snapshot", str(broken)]) == 1
+    assert main(["check", str(plan), "--from", str(broken)]) == 1
     said = capsys.readouterr().out.splitlines()
     assert [str(it) for it in compare(system_of_files(plan), system_of_files(broken))] == said
-    main(["check", "--snapshot", str(broken)])
+    main(["check", "--from", str(broken)])
     said = capsys.readouterr().out.splitlines()
     assert [str(it) for it in judge(system_of_files(broken))] == said
 

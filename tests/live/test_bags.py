@@ -195,7 +195,7 @@ def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, str, s
 
 @pytest.mark.slow
 def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    check_ = ("check", made / "plan.yaml", "--bag")
+    check_ = ("check", made / "plan.yaml", "--from")
     assert run(capsys, *check_, made / "healthy")[:2] == (0, "")
     (file,) = (made / "healthy").glob("*.mcap")
     assert run(capsys, *check_, file)[:2] == (0, "")
@@ -208,8 +208,8 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.slow
 def test_the_doctor(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(capsys, "check", "--bag", made / "healthy")[0] == 0
-    code, out, _ = run(capsys, "check", "--bag", made / "collision")
+    assert run(capsys, "check", "--from", made / "healthy")[0] == 0
+    code, out, _ = run(capsys, "check", "--from", made / "collision")
     assert (code, "MG401" in out) == (1, True)
 
 
@@ -223,7 +223,7 @@ def test_the_doctor_finds_what_needs_no_plan(
     change, (wanted,), _ = FAULTS[fault]
     topics = healthy()
     change(topics)
-    _, out, _ = run(capsys, "check", "--bag", write(tmp_path / "bag", topics.values()))
+    _, out, _ = run(capsys, "check", "--from", write(tmp_path / "bag", topics.values()))
     assert wanted in out
 
 
@@ -231,12 +231,14 @@ def test_the_doctor_finds_what_needs_no_plan(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--bag", "{}/nowhere"), "there is no such bag"),
-        (("--bag", "{}/plan.yaml"), "a plan; use multibot check"),
-        (("--bag", "{}"), "not a readable bag"),
-        (("--bag", "{}/healthy", "--watch"), "leave out --watch"),
-        (("--bag", "{}/healthy", "--report", "{}/page.html"), "leave out --report"),
-        (("--bag", "{}/healthy", "--snapshot", "{}/graph.json"), "leave out --snapshot"),
+        (("--from", "{}/nowhere/"), "there is no such bag"),
+        (("--from", "{}/nowhere.mcap"), "there is no such bag"),
+        (("--from", "{}/plan.yaml"), "a plan; use multibot check"),
+        (("--from", "{}"), "not a readable bag"),
+        (("--from", "{}/healthy", "--watch"), "leave out --watch"),
+        (("--from", "{}/healthy", "--report", "{}/page.html"), "leave out --report"),
+        (("--from", "{}/healthy", "--from", "{}/graph.json"), "two sources"),
+        (("--from", "{}/healthy", "--from", "{}/healthy"), "two sources"),
     ],
 )
 def test_wrong_use_is_one_line(
@@ -279,7 +281,7 @@ def test_a_damaged_bag_is_one_line_or_is_read(
     (file,) = (it for it in bag.iterdir() if it.suffix != ".yaml")
     file.write_bytes(damage(file.read_bytes()))
     for path in (bag, file):
-        code, _, err = run(capsys, "check", made / "plan.yaml", "--bag", path)
+        code, _, err = run(capsys, "check", made / "plan.yaml", "--from", path)
         assert code in (0, 1, 2, 3)
         assert err.count("\n") == 1 or code == 3, err
         assert "Traceback" not in err
@@ -293,7 +295,7 @@ def test_hostile_metadata_is_one_line(
     bag = tmp_path / "bag"
     shutil.copytree(made / "healthy", bag)
     (bag / "metadata.yaml").write_bytes(text.encode("latin-1"))
-    code, out, err = run(capsys, "check", made / "plan.yaml", "--bag", bag)
+    code, out, err = run(capsys, "check", made / "plan.yaml", "--from", bag)
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
@@ -302,14 +304,14 @@ def test_a_bag_without_messages_is_inconclusive(
     made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bag = write(tmp_path / "bag", [it._replace(count=0) for it in healthy().values()])
-    assert run(capsys, "check", made / "plan.yaml", "--bag", bag)[0] == 3
+    assert run(capsys, "check", made / "plan.yaml", "--from", bag)[0] == 3
 
 
 def test_without_rosbags_it_says_what_to_install(
     made: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "rosbags.rosbag2", None)
-    code, _, err = run(capsys, "check", made / "plan.yaml", "--bag", made / "healthy")
+    code, _, err = run(capsys, "check", made / "plan.yaml", "--from", made / "healthy")
     assert (code, err.count("\n")) == (4, 1)
     assert "pip install 'multibot_rewrite[bags]'" in err
 
@@ -327,6 +329,6 @@ def test_a_tf_topic_of_one_robot_alone_needs_no_endpoint_of_the_plan() -> None:
 def test_the_robots_of_a_recording_are_told_by_its_topics(
     made: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    _, _, err = run(capsys, "check", "--bag", made / "healthy")
+    _, _, err = run(capsys, "check", "--from", made / "healthy")
     assert "2 robots by their namespaces: robot1, robot2" in err
     assert "of no robot" not in err

@@ -209,7 +209,7 @@ def faulty(code: str, level: str = "error") -> System:
 
 
 def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert multibot.main(["check", "--snapshot", saved(tmp_path, nav())]) == 0
+    assert multibot.main(["check", "--from", saved(tmp_path, nav())]) == 0
     out, err = capsys.readouterr()
     assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
 
@@ -227,19 +227,19 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
 )
 def test_the_exit_code(fault: tuple[str, str], more: list[str], code: int, tmp_path: Path) -> None:
     graph = saved(tmp_path, faulty(*fault))
-    assert multibot.main(["check", "--snapshot", graph, *more]) == code
+    assert multibot.main(["check", "--from", graph, *more]) == code
 
 
 def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
     doubt = Caveat("not-settled", True, "still changing")
     graph = nav()._replace(environment=environment(doubt))
-    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["check", "--from", saved(tmp_path, graph)]) == 3
 
 
 def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
     graph = with_node(EMPTY, "/_ros2cli_4711")
-    assert multibot.main(["check", "--snapshot", saved(tmp_path, graph)]) == 3
-    assert multibot.main(["check", "--snapshot", saved(tmp_path, EMPTY)]) == 3
+    assert multibot.main(["check", "--from", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["check", "--from", saved(tmp_path, EMPTY)]) == 3
 
 
 @pytest.mark.more
@@ -249,8 +249,8 @@ def test_what_is_suggested_is_taken(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     graph, folder = saved(tmp_path, SYSTEMS[name]()), tmp_path / "first"
-    assert multibot.main(["check", "--snapshot", graph, "--suggest", str(folder)]) == 0
-    assert multibot.main(["check", str(folder / "plan.yaml"), "--snapshot", graph]) == 0
+    assert multibot.main(["check", "--from", graph, "--suggest", str(folder)]) == 0
+    assert multibot.main(["check", str(folder / "plan.yaml"), "--from", graph]) == 0
     fleet, planned = str(folder / "fleet.yaml"), str(tmp_path / "plan.yaml")
     assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
 
@@ -266,7 +266,7 @@ def test_what_separates_a_robots_word_from_frames_is_suggested(tmp_path: Path) -
     graph = shared_tf()
     frames = (it._replace(child=spelled(it.child), parent=spelled(it.parent)) for it in graph.edges)
     graph, folder = graph._replace(edges=tuple(frames)), tmp_path / "first"
-    given = ["check", "--snapshot", saved(tmp_path, graph), "--suggest", str(folder)]
+    given = ["check", "--from", saved(tmp_path, graph), "--suggest", str(folder)]
     assert multibot.main(given) == 0
     (made,) = {it.read_text().partition("\n")[0] for it in folder.rglob("*.urdf")}
     assert made == '<?xml version="1.0"?>'
@@ -323,7 +323,7 @@ def test_nobody_manages_it_so_it_may_be_meant() -> None:
     assert "/robot1/lifecycle_manager_localization" in found.hint
 
 
-@pytest.mark.parametrize("more", [["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]])
+@pytest.mark.parametrize("more", [["--from", "tcp/localhost:7447"], ["--from", "g"]])
 def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert multibot.main(["check", "--state", *more]) == 2
     assert "--state asks nodes of the live graph" in capsys.readouterr().err

@@ -147,7 +147,7 @@ def saved(folder: Path, seen: dict[int, System]) -> list[str]:
     for number, view in seen.items():
         file = folder / f"{number}.json"
         file.write_bytes(to_json(view))
-        words += ["--snapshot", str(file)]
+        words += ["--from", str(file)]
     return words
 
 
@@ -217,7 +217,7 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     assert (main(words), main(words)) == (0, 2)
     assert f"{first / 'domain11' / 'fleet.yaml'} is there already" in capsys.readouterr().err
     for at in healthy:
-        one = ["--snapshot", str(tmp_path / f"{at}.json")]
+        one = ["--from", str(tmp_path / f"{at}.json")]
         assert main(["check", str(first / f"domain{at}" / "plan.yaml"), *one]) == 0
     assert main(["check", *one, "--suggest", str(tmp_path / "one")]) == 0
     assert (tmp_path / "one" / "plan.yaml").exists()

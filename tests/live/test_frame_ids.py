@@ -433,7 +433,7 @@ def test_the_table_shows_what_was_heard_and_answered(
     nodes = (*nav().nodes, Node("/n"))
     graph = with_answers(nav()._replace(nodes=nodes, heard=(Heard("/scan", "laser"),)), states)
     (tmp_path / "g.json").write_bytes(to_json(graph))
-    assert multibot.main(["snapshot", "--snapshot", str(tmp_path / "g.json")]) == 0
+    assert multibot.main(["snapshot", "--from", str(tmp_path / "g.json")]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["/scan", "laser"] in lines and ["/n", "inactive"] in lines
     assert ["/m", "false", "arm", "(active)"] in lines

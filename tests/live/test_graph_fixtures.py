@@ -64,7 +64,7 @@ def same(path: str, graph: System) -> None:
 def test_a_healthy_graph_is_silent(layout: str, capsys: CaptureFixture[str]) -> None:
     folder = FOLDERS[layout]
     same(f"{folder}/healthy.json", healthy(layout))
-    assert main(["check", f"{folder}/plan.yaml", "--snapshot", f"{folder}/healthy.json"]) == 0
+    assert main(["check", f"{folder}/plan.yaml", "--from", f"{folder}/healthy.json"]) == 0
     assert capsys.readouterr().out == ""
 
 
@@ -73,7 +73,7 @@ def test_a_healthy_graph_is_silent(layout: str, capsys: CaptureFixture[str]) -> 
 def test_a_broken_graph_gives_exactly_its_lines(case: Case, capsys: CaptureFixture[str]) -> None:
     same(f"{case.stem}.json", case.broken(healthy(case.layout)))
     plan = f"{FOLDERS[case.layout]}/plan.yaml"
-    code = main(["check", plan, "--snapshot", f"{case.stem}.json", "--verbose"])
+    code = main(["check", plan, "--from", f"{case.stem}.json", "--verbose"])
     out = capsys.readouterr().out
     assert out == (ROOT / f"{case.stem}.txt").read_text()
     assert tuple(re.findall(r": (MG\d{3}) ", out)) == case.found

@@ -709,9 +709,7 @@ def test_what_is_learned_gives_the_whole_table(
 ) -> None:
     mine = str(tmp_path / "mine.yaml")
     assert (
-        main(
-            ["snapshot", "--form", "nodes", "--snapshot", str(shot), "--stack", "mine", "-o", mine]
-        )
+        main(["snapshot", "--form", "nodes", "--from", str(shot), "--stack", "mine", "-o", mine])
         == 0
     )
     note = "left out as tools: /rviz2; to learn one give its name to --node"
@@ -730,11 +728,10 @@ def test_what_is_learned_gives_the_whole_table(
 
 def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert (
-        main(["snapshot", "--form", "nodes", "--snapshot", str(shot), "--node", "/eye", "-o", "-"])
-        == 0
+        main(["snapshot", "--form", "nodes", "--from", str(shot), "--node", "/eye", "-o", "-"]) == 0
     )
     out, err = capsys.readouterr()
-    assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot), "--node", "/eye"]) == 0
+    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "--node", "/eye"]) == 0
     assert capsys.readouterr().out == out
     assert "# Of: /eye\n" in out
     assert (
@@ -752,7 +749,7 @@ def test_an_incomplete_view_is_written_and_reported(
     caveat = Caveat("not-settled", True, "it still changed")
     shot.write_bytes(to_json(seen._replace(environment=environment(caveat))))
     mine = tmp_path / "mine.yaml"
-    assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot), "-o", str(mine)]) == 3
+    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "-o", str(mine)]) == 3
     assert "multibot: incomplete: it still changed\n" in capsys.readouterr().err
     assert "/odom" in mine.read_text()
 
@@ -767,7 +764,7 @@ def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
         (["--namespace", "/old"], False),
         (["--namespace", "/"], False),
     ):
-        assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot), *more]) == 0
+        assert main(["snapshot", "--form", "nodes", "--from", str(shot), *more]) == 0
         assert (hint in capsys.readouterr().err) is hinted
 
 
@@ -775,7 +772,7 @@ def test_helpers_without_a_node_are_reported(
     shot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shot.write_bytes(to_json(graph(node(), LISTENER)))
-    assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot)]) == 0
+    assert main(["snapshot", "--form", "nodes", "--from", str(shot)]) == 0
     assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err
 
 
@@ -789,8 +786,8 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "/none"], "there is no node to learn below /none"),
         (["--stack", ""], "'' is not a name of a stack, give one word"),
         (["--stack", "a\nb"], "is not a name of a stack, give one word"),
-        (["--timeout", "5"], "--timeout is for the live graph, leave out --snapshot"),
-        (["--domain", "5"], "--domain is for the live graph, leave out --snapshot"),
+        (["--timeout", "5"], "--timeout is for the live graph, leave out --from"),
+        (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),
         (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
         (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
@@ -800,7 +797,7 @@ def test_wrong_use_is_one_line(
     shot: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     try:
-        code: object = main(["snapshot", "--form", "nodes", "--snapshot", str(shot), *words])
+        code: object = main(["snapshot", "--form", "nodes", "--from", str(shot), *words])
     except SystemExit as end:
         code = end.code
     out, err = capsys.readouterr()
@@ -810,7 +807,7 @@ def test_wrong_use_is_one_line(
 
 def test_the_snapshot_is_never_written_over(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = shot.read_bytes()
-    assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot), "-o", str(shot)]) == 2
+    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "-o", str(shot)]) == 2
     assert "is a file that is read" in capsys.readouterr().err
     assert shot.read_bytes() == before
 
@@ -820,7 +817,7 @@ def test_what_is_no_snapshot_is_one_line(
     shot: Path, data: bytes, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shot.write_bytes(data)
-    assert main(["snapshot", "--form", "nodes", "--snapshot", str(shot)]) == 2
+    assert main(["snapshot", "--form", "nodes", "--from", str(shot)]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith(f"multibot: {shot}")

@@ -283,7 +283,7 @@ def test_endpoints_without_a_name_in_a_file(plan: Path, tmp_path: Path) -> None:
     caveats = tuple(view_caveats([Node("/robot2/drive", "")], [end(nobody)], settings({}), QUIET))
     file = tmp_path / "graph.json"
     file.write_bytes(to_json(snapshot(caveats)))
-    done = multibot("check", plan, "--snapshot", file, env=os.environ)
+    done = multibot("check", plan, "--from", file, env=os.environ)
     assert_inconclusive(done)
     assert "robot1: inconclusive: MG109" in done.stdout
     assert "/robot2/drive: inconclusive: MG102" in done.stdout

@@ -92,7 +92,7 @@ def files(
         "snapshot",
         "--form",
         "nodes",
-        "--snapshot",
+        "--from",
         shot,
         "--namespace",
         "/old",

@@ -126,7 +126,7 @@ def test_a_super_client_sees_forty_participants_and_a_plain_one_has_a_caveat(
             plain = run(base, "check", plan, "-v", **server)
     assert look.returncode == 0, look.stderr
     assert "40 nodes in 40 participants" in look.stderr
-    done = multibot("check", plan, "-v", "--snapshot", graph, env=live_fleet.environ(DOMAIN))
+    done = multibot("check", plan, "-v", "--from", graph, env=live_fleet.environ(DOMAIN))
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert_inconclusive(plain)
     assert "MG102" in plain.stdout
@@ -210,7 +210,7 @@ def test_what_is_advised_finds_it(plan: Path, tmp_path: Path) -> None:
                 assert run(host, "snapshot", "-o", file, **SUBNET).returncode == 0
             named = run(one, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=two.address)
     assert (named.returncode, named.stdout) == (0, ""), named.stderr
-    both = [word for file in files for word in ("--snapshot", file)]
+    both = [word for file in files for word in ("--from", file)]
     done = multibot("check", plan, "-v", *both, env=live_fleet.environ(DOMAIN))
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
@@ -227,11 +227,11 @@ def test_looks_from_two_machines_that_see_the_same_are_one_graph(
                 assert run(host, "snapshot", "-o", file, **SUBNET).returncode == 0
     target, env = tmp_path / "all.json", live_fleet.environ(DOMAIN)
     joined = multibot(
-        "snapshot", *(it for path in files for it in ("--snapshot", path)), "-o", target, env=env
+        "snapshot", *(it for path in files for it in ("--from", path)), "-o", target, env=env
     )
     assert joined.returncode == 0, joined.stderr
     assert "2 nodes in 2 participants" in joined.stderr
-    done = multibot("check", plan, "-v", "--snapshot", target, env=env)
+    done = multibot("check", plan, "-v", "--from", target, env=env)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
@@ -247,7 +247,7 @@ def test_a_robot_of_another_domain(plan: Path, tmp_path: Path) -> None:
             run(one, "snapshot", "-o", file, "--domain", domain, **SUBNET)
     done = multibot(
         "snapshot",
-        *(it for path in files for it in ("--snapshot", path)),
+        *(it for path in files for it in ("--from", path)),
         env=live_fleet.environ(DOMAIN),
     )
     assert done.returncode == 2

@@ -199,7 +199,7 @@ def test_robots_of_two_domains_are_watched_until_one_leaves(plan: Path) -> None:
 
 
 def test_a_snapshot_is_not_watched(plan: Path) -> None:
-    command = [*CHECK, str(plan), "--watch", "--snapshot", "graph.json"]
+    command = [*CHECK, str(plan), "--watch", "--from", "graph.json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=20)
     assert done.returncode == 2
-    assert "--watch is for the live graph, leave out --snapshot" in done.stderr
+    assert "--watch is for the live graph, leave out --from" in done.stderr

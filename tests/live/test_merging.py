@@ -133,23 +133,23 @@ def test_the_command_joins_and_check_takes_all(
         files.append(tmp_path / f"{robot.name}.json")
         files[-1].write_bytes(to_json(half))
     file = "fixtures/graphs/plan.yaml"
-    assert main(["check", file, "--snapshot", str(files[0])]) == 1
+    assert main(["check", file, "--from", str(files[0])]) == 1
     assert "MG109" in capsys.readouterr().out
-    twice = [word for it in files for word in ("--snapshot", str(it))]
+    twice = [word for it in files for word in ("--from", str(it))]
     assert main(["check", file, *twice]) == 0
     target = tmp_path / "all.json"
     assert (
         main(
             [
                 "snapshot",
-                *(it for path in files for it in ("--snapshot", str(path))),
+                *(it for path in files for it in ("--from", str(path))),
                 "-o",
                 str(target),
             ]
         )
         == 0
     )
-    assert main(["check", file, "--snapshot", str(target)]) == 0
+    assert main(["check", file, "--from", str(target)]) == 0
     joined = from_json(target.read_bytes(), "all.json")
     assert len(joined.nodes) == len(whole.nodes)
     assert len(joined.ends) == len(whole.ends)
@@ -161,25 +161,25 @@ def test_the_table_says_how_many_machines_were_seen(
     files = [tmp_path / "one.json", tmp_path / "two.json"]
     for file, robot, process in zip(files, ("robot1", "robot2"), (ONE, TWO), strict=True):
         file.write_bytes(to_json(look(node(robot, process))))
-    assert main(["snapshot", *(it for path in files for it in ("--snapshot", str(path)))]) == 0
+    assert main(["snapshot", *(it for path in files for it in ("--from", str(path)))]) == 0
     assert "2 nodes in 2 participants on 2 machines after" in capsys.readouterr().out
-    assert main(["snapshot", "--snapshot", str(files[0])]) == 0
+    assert main(["snapshot", "--from", str(files[0])]) == 0
     assert "machine" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["snapshot", "--snapshot", "gone.json"], "gone.json"),
-        (["snapshot", "--snapshot", "a.json", "--expect", "/x"], "leave out --snapshot"),
-        (["snapshot", "--snapshot", "a.json", "-o", "a.json"], "a.json is a file that is read"),
-        (["snapshot", "--snapshot", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
-        (["check", "plan.yaml", "--snapshot", "a.json", "--zenoh", "tcp/h:1"], "two sources"),
-        (["snapshot", "--zenoh", "h:7447"], "write PROTOCOL/HOST:PORT"),
-        (["snapshot", "--zenoh", ""], "write PROTOCOL/HOST:PORT"),
-        (["snapshot", "--zenoh", "tcp/h"], "write PROTOCOL/HOST:PORT"),
+        (["snapshot", "--from", "gone.json"], "gone.json"),
+        (["snapshot", "--from", "a.json", "--expect", "/x"], "leave out --from"),
+        (["snapshot", "--from", "a.json", "-o", "a.json"], "a.json is a file that is read"),
+        (["snapshot", "--from", "a.json", "--from", "tcp/h:1"], "two sources"),
+        (["check", "plan.yaml", "--from", "a.json", "--from", "tcp/h:1"], "two sources"),
+        (["snapshot", "--from", "h:7447"], "write PROTOCOL/HOST:PORT"),
+        (["snapshot", "--from", ""], "the name is empty"),
+        (["snapshot", "--from", "tcp/h"], "write PROTOCOL/HOST:PORT"),
         (
-            ["snapshot", "--form", "nodes", "--snapshot", "a.json", "--zenoh", "tcp/h:1"],
+            ["snapshot", "--form", "nodes", "--from", "a.json", "--from", "tcp/h:1"],
             "two sources",
         ),
     ],

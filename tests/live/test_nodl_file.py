@@ -150,7 +150,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder, plan = str(tmp_path / "nodl"), str(tmp_path / "plan.yaml")
-    learned = ("--snapshot", HEALTHY, "--namespace", "/robot1", "--form", "nodl")
+    learned = ("--from", HEALTHY, "--namespace", "/robot1", "--form", "nodl")
     assert main(["snapshot", *learned, "-o", folder]) == 0
     assert (tmp_path / "nodl/local_costmap/local_costmap.nodl.yaml").is_file()
     stacks = "pilot,local_costmap/local_costmap"
@@ -158,7 +158,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     rover = str(FIXTURES / "robots" / "rover.urdf")
     assert main(["plan", rover, "robot1", "robot2", *made]) == 0
     assert f"pilot as in {folder}/pilot.nodl.yaml (NoDL)" in capsys.readouterr().err
-    assert main(["check", plan, "--snapshot", HEALTHY]) == 0
+    assert main(["check", plan, "--from", HEALTHY]) == 0
     assert "0 findings" in capsys.readouterr().err
 
 
@@ -169,15 +169,15 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     graph = healthy(nav2("L1"))
     seen, folder, plan = (str(tmp_path / it) for it in ("graph.json", "nodl", "plan.yaml"))
     Path(seen).write_bytes(to_json(graph))
-    given = ("--snapshot", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
+    given = ("--from", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
     assert main(["snapshot", *given]) == 0
     robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2")
     assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
     capsys.readouterr()
-    assert main(["check", plan, "--snapshot", seen]) == 0, capsys.readouterr().out
+    assert main(["check", plan, "--from", seen]) == 0, capsys.readouterr().out
     leak = moved(graph, "/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
     Path(seen).write_bytes(to_json(leak))
-    assert main(["check", plan, "--snapshot", seen]) == 1
+    assert main(["check", plan, "--from", seen]) == 1
     assert "/cmd_vel" in capsys.readouterr().out
 
 
@@ -190,7 +190,7 @@ def test_what_is_learned_of_nav2_is_valid_by_the_published_schema() -> None:
         assert [it.message for it in validator.iter_errors(yaml.safe_load(text))] == []
 
 
-PILOT = ("snapshot", "--snapshot", HEALTHY, "--namespace", "/robot1", "--node", "/robot1/pilot")
+PILOT = ("snapshot", "--from", HEALTHY, "--namespace", "/robot1", "--node", "/robot1/pilot")
 
 
 def test_the_ending_of_the_file_tells_the_form(
@@ -205,7 +205,7 @@ def test_the_ending_of_the_file_tells_the_form(
 
 
 def test_a_file_is_for_one_node(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    many = ("snapshot", "--snapshot", HEALTHY, "--namespace", "/robot1")
+    many = ("snapshot", "--from", HEALTHY, "--namespace", "/robot1")
     assert main([*many, "-o", str(tmp_path / "all.nodl.yaml")]) == 2
     assert "a NoDL file is for one node, here are 8" in capsys.readouterr().err
     assert main([*PILOT, "--form", "nodes", "-o", str(tmp_path / "a.nodl.yaml")]) == 2

@@ -612,7 +612,7 @@ def test_every_process_draws_the_same_bytes(tmp_path: Path) -> None:
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
     (tmp_path / "graph.json").write_bytes(to_json(nav2_graphs.spoiled(plan)))
     command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", "plan.yaml"]
-    command += ["--snapshot", "graph.json"]
+    command += ["--from", "graph.json"]
     results = []
     for seed in ("1", "2"):
         env = {**os.environ, "PYTHONHASHSEED": seed}
@@ -691,7 +691,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def check(*more: str) -> int:
-    return multibot.main(["check", "plan.yaml", "--snapshot", "graph.json", *more])
+    return multibot.main(["check", "plan.yaml", "--from", "graph.json", *more])
 
 
 @pytest.mark.slow

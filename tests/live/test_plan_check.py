@@ -49,7 +49,7 @@ def held(plan: Path, graph: System, capture: pytest.CaptureFixture[str]) -> tupl
     path = plan.with_name("graph.json")
     path.write_bytes(to_json(graph))
     capture.readouterr()
-    code = main(["check", str(plan), "--snapshot", str(path)])
+    code = main(["check", str(plan), "--from", str(path)])
     return code, *capture.readouterr()
 
 
@@ -194,7 +194,7 @@ def test_a_wrong_plan_is_one_line(
     with pytest.raises(InputError, match=words.replace("[", r"\[")):
         from_yaml(plan.read_bytes(), "plan.yaml")
     capsys.readouterr()
-    assert main(["check", str(plan), "--snapshot", str(graph)]) == 2
+    assert main(["check", str(plan), "--from", str(graph)]) == 2
     err = capsys.readouterr().err
     assert err.startswith(f"multibot: {plan}")
     assert err.count("\n") == 1
@@ -203,7 +203,7 @@ def test_a_wrong_plan_is_one_line(
 @pytest.mark.more
 def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
-    assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
+    assert main(["check", str(plan), "--from", str(plan)]) == 2
     assert "not valid JSON" in capsys.readouterr().err
 
 

@@ -339,22 +339,22 @@ def test_check_finds_the_files_beside_the_plan(
     (built / "g.json").write_bytes(graph_json(graph(state)))
     (built / "silent.json").write_bytes(graph_json(graph()))
     monkeypatch.chdir(built)
-    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json"]) == 1
+    assert multibot.main(["check", "plan.yaml", "--from", "g.json"]) == 1
     assert "MG132" in capsys.readouterr().out
     (built / "elsewhere").mkdir()
     (built / "elsewhere" / "plan.yaml").write_text(PLAN)
-    assert multibot.main(["check", "elsewhere/plan.yaml", "--snapshot", "g.json"]) == 0
+    assert multibot.main(["check", "elsewhere/plan.yaml", "--from", "g.json"]) == 0
     (built / "robot1" / "nav2.yaml").write_text("ros__parameters: [")
-    assert multibot.main(["check", "plan.yaml", "--snapshot", "silent.json"]) == 0
+    assert multibot.main(["check", "plan.yaml", "--from", "silent.json"]) == 0
     capsys.readouterr()
-    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json"]) == 2
+    assert multibot.main(["check", "plan.yaml", "--from", "g.json"]) == 2
     assert "robot1/nav2.yaml:2:1: not YAML" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["--state", "--snapshot", "g.json"], "--state asks nodes of the live graph"),
+        (["--state", "--from", "g.json"], "--state asks nodes of the live graph"),
     ],
 )
 def test_wrong_use(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

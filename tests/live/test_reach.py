@@ -54,7 +54,7 @@ def test_all_that_is_seen_runs_on_one_machine(tmp_path: Path) -> None:
     found = absent(tmp_path, graph)
     assert found.level == INCONCLUSIVE
     assert "all that is seen runs on one machine (/robot1/drive)" in found.hint
-    assert "ROS_STATIC_PEERS" in found.hint and "--snapshot" in found.hint
+    assert "ROS_STATIC_PEERS" in found.hint and "--from" in found.hint
     assert judge([found], graph) == Verdict.INCONCLUSIVE
 
 
@@ -133,8 +133,8 @@ def test_the_command_ends_inconclusive(tmp_path: Path, capsys: pytest.CaptureFix
     plan = write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(seen(("robot1", ONE), range="SUBNET")))
-    assert main(["check", str(plan), "--snapshot", str(graph)]) == 3
+    assert main(["check", str(plan), "--from", str(graph)]) == 3
     shown = capsys.readouterr()
     assert "robot2: inconclusive: MG109" in shown.out
     assert "inconclusive, the view may be incomplete" in shown.err
-    assert main(["check", str(plan), "--snapshot", str(graph), "--ignore", "MG109"]) == 0
+    assert main(["check", str(plan), "--from", str(graph), "--ignore", "MG109"]) == 0

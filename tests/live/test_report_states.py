@@ -268,7 +268,7 @@ def test_page_and_command_say_the_same(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    given = ("check", str(GRAPHS / "plan.yaml"), "--snapshot", str(GRAPHS / f"{case}.json"))
+    given = ("check", str(GRAPHS / "plan.yaml"), "--from", str(GRAPHS / f"{case}.json"))
     done, tree = drawn(tmp_path, *given, *more)
     assert (done, tree.find(".//h1").text) == (code, words)
     assert f": {words} (" in capsys.readouterr().err
@@ -284,7 +284,7 @@ def test_the_open_ends_of_a_plan_are_on_the_page(
     made = nav2_graphs.nav2()
     plan.write_text(to_yaml(made._replace(gaps=(report_pages.OPEN_END,))))
     graph.write_bytes(to_json(nav2_graphs.healthy(made)))
-    code, tree = drawn(tmp_path, "check", str(plan), "--snapshot", str(graph))
+    code, tree = drawn(tmp_path, "check", str(plan), "--from", str(graph))
     words = "as planned, but the plan has faults"
     assert (code, tree.find(".//h1").text) == (0, words)
     assert f": {words} (" in capsys.readouterr().err
@@ -293,7 +293,7 @@ def test_the_open_ends_of_a_plan_are_on_the_page(
 
 
 def test_the_doctor_says_its_own_words(tmp_path: Path) -> None:
-    code, tree = drawn(tmp_path, "check", "--snapshot", str(GRAPHS / "healthy.json"), "-q")
+    code, tree = drawn(tmp_path, "check", "--from", str(GRAPHS / "healthy.json"), "-q")
     assert (code, tree.find(".//h1").text) == (0, "nothing wrong seen")
     assert tree.find(".//header/p").text == "multibot check"
     assert "as planned" not in tree.find("body").text_content().partition('"use strict"')[0]
@@ -303,7 +303,7 @@ def test_a_finding_shows_the_line_of_the_description(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
-    given = ("check", str(GRAPHS / "plan.yaml"), "--snapshot", str(GRAPHS / "MG102.json"))
+    given = ("check", str(GRAPHS / "plan.yaml"), "--from", str(GRAPHS / "MG102.json"))
     _, tree = drawn(tmp_path, *given)
     marked = {it.text.strip() for it in tree.xpath("//pre/b")}
     assert '88     <plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so">' in marked

@@ -156,14 +156,14 @@ def test_check_and_learn_take_a_message_in_yaml_and_in_json(
     words = ("--namespace", "/robot1", "--node", "/robot1/pilot")
     texts = []
     for path in (HEALTHY, str(in_yaml), str(in_json)):
-        assert main(["snapshot", "--form", "nodes", "--snapshot", path, *words]) == 0
+        assert main(["snapshot", "--form", "nodes", "--from", path, *words]) == 0
         texts.append(capsys.readouterr().out)
     assert texts[0] == texts[1] == texts[2] != ""
     plan = tmp_path / "plan.yaml"
     rover = str(FIXTURES / "robots" / "rover.urdf")
     made = ("robot1", "--layout", "frames-per-robot", "-o", str(plan))
     assert main(["plan", rover, *made]) == 0
-    assert main(["check", str(plan), "--snapshot", str(in_yaml)]) in (0, 1)
+    assert main(["check", str(plan), "--from", str(in_yaml)]) in (0, 1)
     assert "MG2" not in capsys.readouterr().out, "frames are not part of a message"
 
 

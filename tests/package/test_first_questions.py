@@ -34,7 +34,7 @@ def running(built: Path) -> System:
 
 def doctor(graph: System, folder: Path, capsys: pytest.CaptureFixture[str]) -> list[str]:
     (folder / "graph.json").write_bytes(to_json(graph))
-    main(["check", "--snapshot", str(folder / "graph.json")])
+    main(["check", "--from", str(folder / "graph.json")])
     return [line for line in capsys.readouterr().out.splitlines() if " MG" in line]
 
 

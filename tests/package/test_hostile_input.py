@@ -125,19 +125,19 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
     "deep-fleet": ("[" * 100_000, (MULTIBOT, "build", "in.yaml", "-o", "out"), 2, "nest"),
     "deep-plan": (
         "- " * 50_000 + "a",
-        (MULTIBOT, "check", "in.yaml", "--snapshot", "good.urdf"),
+        (MULTIBOT, "check", "in.yaml", "--from", "good.urdf"),
         2,
         "nested deeper",
     ),
     "deep-snapshot": (
         "[" * 100_000,
-        (MULTIBOT, "snapshot", "--form", "nodes", "--snapshot", "in.json"),
+        (MULTIBOT, "snapshot", "--form", "nodes", "--from", "in.json"),
         2,
         "nested deeper",
     ),
     "large-snapshot": (
         b"",
-        (MULTIBOT, "snapshot", "--form", "nodes", "--snapshot", "/dev/zero"),
+        (MULTIBOT, "snapshot", "--form", "nodes", "--from", "/dev/zero"),
         2,
         "over the limit of",
     ),
@@ -282,7 +282,7 @@ def test_a_plan_and_a_snapshot_may_be_as_large_as_a_fleet(tmp_path: Path) -> Non
     graph.write_bytes(to_json(healthy("frames-per-robot")) + b" " * room)
     command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", str(plan)]
     run = subprocess.run(
-        [*command, "--snapshot", str(graph)], capture_output=True, timeout=PATIENCE, check=False
+        [*command, "--from", str(graph)], capture_output=True, timeout=PATIENCE, check=False
     )
     assert (run.returncode, run.stderr.decode()) == (
         0,

@@ -21,7 +21,7 @@ from multibot_rewrite.cli.urdf_postfix import main as urdf_postfix
 MAINS = {"multibot": multibot, "urdf-lint": urdf_lint, "urdf-postfix": urdf_postfix}
 ROVER, GZ, GRAPHS = "fixtures/robots/rover.urdf", "fixtures/robots/rover_gz.urdf", "fixtures/graphs"
 ARMS, HEX = "examples/two_arms_moveit", "examples/namespace_and_prefix"
-ARM, CHECK = f"{ARMS}/arm.urdf", "multibot check plan.yaml --snapshot"
+ARM, CHECK = f"{ARMS}/arm.urdf", "multibot check plan.yaml --from"
 ELBOW = '    <limit lower="-2.2" upper="2.2" effort="20" velocity="1.5"/>\n'
 COMMAND, RULE = "<command_interface name=", "<remapping>%s</remapping>"
 FIRST = f'<joint name="shoulder_joint">\n      {COMMAND}"position"/>'
@@ -125,7 +125,7 @@ ROWS = (
         "multibot check-launch mended.launch.py"),
     Row("MG513", (f"{GRAPHS}/healthy.json",),
         (("healthy.json", '"edges"', f'"controllers": [{CONTROLLER % "inactive"}], "edges"'),),
-        "multibot check --snapshot healthy.json", "see the log of the spawners",
+        "multibot check --from healthy.json", "see the log of the spawners",
         (("healthy.json", '"inactive"', '"active"'),)),
     Row("MR103", (ROVER,), (("rover.urdf", "<ros>", f"<ros>{RULE % 'laser_scan:=scan'}"),),
         "multibot plan rover.urdf robot1 -o plan.yaml", "remove it",

@@ -189,7 +189,7 @@ def test_the_command_ends_with_the_level_of_the_fault(
 ) -> None:
     fault, file = FAULTS[at], tmp_path / "graph.json"
     file.write_bytes(to_json(fault.change(fault.system())))
-    assert multibot.main(["check", "--snapshot", str(file)]) == int(fault.level == "error")
+    assert multibot.main(["check", "--from", str(file)]) == int(fault.level == "error")
     assert fault.code in capsys.readouterr().out
 
 

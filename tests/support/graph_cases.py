@@ -390,7 +390,7 @@ CASES = (
 
 
 def check_lines(plan: str, graph: str) -> str:
-    return printed("check", plan, "--snapshot", graph, "--verbose")
+    return printed("check", plan, "--from", graph, "--verbose")
 
 
 def printed(*words: str) -> str:

@@ -92,7 +92,7 @@ def walk(folder: Path, description: str, beside: Path) -> Iterator[Step]:
     told, step = _launch(folder, beside)
     yield step
     (folder / "graph.json").write_bytes(_seen(told, folder))
-    check = f"multibot check {OUT}/plan.yaml --snapshot graph.json"
+    check = f"multibot check {OUT}/plan.yaml --from graph.json"
     yield shell("Do they run as planned?", check, folder)
 
 

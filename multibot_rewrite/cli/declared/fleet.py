@@ -6,10 +6,10 @@ from __future__ import annotations
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
-    BAG,
     DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
+    FROM,
     GENERAL,
     KNOWN_NODES,
     LAYOUT_NAMES,
@@ -19,7 +19,6 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     ROBOTS,
     ROOTS,
-    SAVED,
     TRUST,
     VOCABULARY,
 )
@@ -34,7 +33,6 @@ from multibot_rewrite.cli.options import (
     output,
     output_group,
     path_option,
-    rare,
     repeated,
     several,
     switch,
@@ -243,15 +241,13 @@ REHEARSE = Command(
         OptionGroup(
             "rehearsal",
             (
-                rare(
-                    several(
-                        "--without-rules",
-                        "WAY",
-                        f"leave out rules that are given at {', '.join(WAYS)}; all: start nodes with"
-                        " namespace and name alone",
-                        [],
-                        values.some_of((EVERY_WAY, *WAYS)),
-                    ),
+                several(
+                    "--without-rules",
+                    "WAY",
+                    f"leave out rules that are given at {', '.join(WAYS)}; all: start nodes with"
+                    " namespace and name alone",
+                    [],
+                    values.some_of((EVERY_WAY, *WAYS)),
                 ),
             ),
         ),
@@ -277,7 +273,7 @@ VIEW = Command(
     (
         Example("multibot view fleet.yaml", "all robots at their poses, in view.html"),
         Example("multibot view rover.urdf robot1 robot2 -o rover.html"),
-        Example("multibot view fleet.yaml --snapshot graph.json", "what is on tf, and where?"),
+        Example("multibot view fleet.yaml --from graph.json", "what is on tf, and where?"),
     ),
     (
         OptionGroup(
@@ -288,8 +284,7 @@ VIEW = Command(
                 ),
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
                 ROBOTS,
-                SAVED,
-                BAG,
+                FROM,
                 DISTRO,
                 TRUST,
             ),

@@ -9,17 +9,15 @@ from multibot_rewrite.cli.declared.shared import (
     DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
+    FROM,
     GENERAL,
     KNOWN_NODES,
     LIVE,
     LIVE_CODES,
     PICTURES,
     ROOTS,
-    SAVED,
     SOURCE,
-    SOURCE_OR_BAG,
     TRUST,
-    ZENOH,
 )
 from multibot_rewrite.cli.options import (
     Command,
@@ -30,7 +28,6 @@ from multibot_rewrite.cli.options import (
     output,
     output_group,
     path_option,
-    rare,
     several,
     switch,
     value,
@@ -41,11 +38,9 @@ STATE = switch(
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and"
     " parameters that multibot build wrote",
 )
-HEADERS = rare(
-    switch(
-        "--no-frame-ids",
-        about="do not receive a message of each sensor topic, for its frame; --watch never does",
-    )
+HEADERS = switch(
+    "--no-frame-ids",
+    about="do not receive a message of each sensor topic, for its frame; --watch never does",
 )
 WATCH = switch(
     "--watch",
@@ -59,8 +54,8 @@ DOMAINS = several(
     f"instead of ROS_DOMAIN_ID, 0 to {values.MAX_DOMAIN}; several are looked at side by side, 11,12",
     read=values.domains,
 )
-LISTENING = SOURCE_OR_BAG._replace(
-    options=(*(it for it in SOURCE_OR_BAG.options if it.names != DOMAINS.names), DOMAINS, HEADERS)
+LISTENING = SOURCE._replace(
+    options=(*(it for it in SOURCE.options if it.names != DOMAINS.names), DOMAINS, HEADERS)
 )
 CHECK = Command(
     "check",
@@ -71,11 +66,11 @@ CHECK = Command(
         Example("multibot check", "what is wrong with the robots that run now?"),
         Example("multibot check plan.yaml", "are they as planned?"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
-        Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
-        Example("multibot check before.json --snapshot after.json", "what is gone or new?"),
+        Example("multibot check plan.yaml --from graph.json", "a saved graph; needs no ROS"),
+        Example("multibot check before.json --from after.json", "what is gone or new?"),
         Example("multibot check --domain 11,12", "robots that have a domain each"),
-        Example("multibot check --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
-        Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
+        Example("multibot check --from tcp/localhost:7447", "a Zenoh router; needs no ROS"),
+        Example("multibot check plan.yaml --from recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
         Example("multibot check --suggest first/", "begin a fleet file and a plan with it"),
     ),
@@ -162,9 +157,9 @@ SNAPSHOT = Command(
             "multibot snapshot -o graph.json --expect /robot1/amcl", "JSON, for multibot check"
         ),
         Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
-        Example("multibot snapshot --zenoh tcp/localhost:7447", "what a Zenoh router knows"),
+        Example("multibot snapshot --from tcp/localhost:7447", "what a Zenoh router knows"),
         Example(
-            "multibot snapshot --snapshot robot1.json --snapshot robot2.json -o all.json",
+            "multibot snapshot --from robot1.json --from robot2.json -o all.json",
             "from two machines",
         ),
         Example("multibot snapshot --form nodes --node /my_driver --stack mine -o mine.yaml"),
@@ -218,8 +213,7 @@ SNAPSHOT = Command(
                     [],
                     values.full_names,
                 ),
-                SAVED,
-                ZENOH,
+                FROM,
                 STATE,
                 HEADERS,
                 *LIVE.options,

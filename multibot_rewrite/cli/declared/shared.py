@@ -10,11 +10,11 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES, VARIABLE
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.options import (
+    Option,
     OptionGroup,
     choice,
     output,
     path_option,
-    repeated,
     several,
     switch,
     value,
@@ -137,27 +137,20 @@ LIVE = OptionGroup(
     ),
 )
 # Where a graph comes from; read by ``cli/live.py``.
-ZENOH = value(
-    "--zenoh",
-    metavar="ROUTER",
-    about="ask this Zenoh router, such as tcp/localhost:7447, or the one in a session configuration"
-    " (.json5); needs no ROS",
-    type=values.zenoh_router,
+FROM = Option(
+    ("--from",),
+    "read the graph there, without ROS: what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML"
+    " (again for each machine that was looked from); a recording of rosbag2 (a folder, .mcap or .db3);"
+    " a Zenoh router (tcp/localhost:7447, or a session configuration .json5)",
+    {
+        "metavar": "SOURCE",
+        "dest": "sources",
+        "action": "append",
+        "type": values.source,
+        "default": [],
+    },
 )
-SAVED = repeated(
-    "--snapshot",
-    "FILE",
-    "what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph;"
-    " written again for each machine that was looked from",
-)
-BAG = path_option(
-    "--bag",
-    "a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
-    " ROS (docs/snapshot.md)",
-    "BAG",
-)
-SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))
-SOURCE_OR_BAG = SOURCE._replace(options=(SAVED, BAG, ZENOH, *LIVE.options))
+SOURCE = OptionGroup("where the graph comes from", (FROM, *LIVE.options))
 
 
 FINDINGS_OUTPUT = output("write the findings there, not to standard output")

@@ -67,7 +67,7 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     for enclave in setup.operators:
         name = f"{operator_word(enclave)}.json5"
         about = (
-            f"Who may do anything, as {enclave}: {_session(name)}, multibot snapshot --zenoh {name}"
+            f"Who may do anything, as {enclave}: {_session(name)}, multibot snapshot --from {name}"
         )
         yield name, _text(_client(enclave, setup), about)
 

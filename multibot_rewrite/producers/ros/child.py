@@ -230,7 +230,7 @@ def _explain(code: int, output: str, environ: Mapping[str, str]) -> str:
         wanted = environ.get("RMW_IMPLEMENTATION", "")
         remedy = "unset it, or install that RMW"
         if wanted == ZENOH:
-            remedy += ", or ask its router: --zenoh tcp/localhost:7447"
+            remedy += ", or ask its router: --from tcp/localhost:7447"
         return f"RMW_IMPLEMENTATION={wanted!r} is not available to this rclpy; {remedy}"
     if code == ENDED:
         return (

@@ -147,7 +147,7 @@ def _foreign_names(plan: Index, seen: Index, node: str, robot: str) -> str:
     why="The robot is off, in another domain, or its nodes run under other names. Where all that is"
     " seen runs on one machine, the network may hide it: then it is inconclusive, not an error.",
     fix="Start it, in its namespace, and check `ROS_DOMAIN_ID` on both sides. Look from its machine as"
-    " well, and join both snapshots: `multibot snapshot --snapshot`.",
+    " well, and join both snapshots: `multibot snapshot --from`.",
     bad="""\
 as planned: /robot1/driver
 planned: /robot2/driver

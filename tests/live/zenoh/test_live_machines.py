@@ -45,7 +45,7 @@ def test_routers_that_are_connected_know_all_robots(tmp_path: Path) -> None:
         stack.enter_context(machine(one, "robot1"))
         stack.enter_context(machine(two, "robot2", one))
         for host in (one, two):
-            words = ("check", plan, "--zenoh", endpoint(host), "--domain", "0")
+            words = ("check", plan, "--from", endpoint(host), "--domain", "0")
             done = multibot(*words, env=live_fleet.environ(0), inside=base.inside)
             assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
@@ -57,13 +57,13 @@ def test_routers_that_are_not_connected_are_joined_by_their_snapshots(tmp_path: 
     with hosts(3) as (one, two, base), ExitStack() as stack:
         stack.enter_context(machine(one, "robot1"))
         stack.enter_context(machine(two, "robot2"))
-        words = ("check", plan, "--zenoh", endpoint(one), "--domain", "0")
+        words = ("check", plan, "--from", endpoint(one), "--domain", "0")
         alone = multibot(*words, env=env, inside=base.inside)
         for host, file in zip((one, two), files, strict=True):
-            look = ("snapshot", "--zenoh", endpoint(host), "--domain", "0", "-o", file)
+            look = ("snapshot", "--from", endpoint(host), "--domain", "0", "-o", file)
             assert multibot(*look, env=env, inside=base.inside).returncode == 0
     assert alone.returncode == 1
     assert f"connected to the router at {endpoint(one)}?" in alone.stdout
-    both = [word for file in files for word in ("--snapshot", file)]
+    both = [word for file in files for word in ("--from", file)]
     done = multibot("check", plan, *both, env=env)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr

@@ -57,7 +57,7 @@ def watched(address: str, domain: int) -> Generator[System, None, None]:
 
 
 def check(plan: Path, address: str, domain: int) -> int:
-    return main(["check", str(plan), "--zenoh", address, "--domain", str(domain)])
+    return main(["check", str(plan), "--from", address, "--domain", str(domain)])
 
 
 def codes(snapshot: System) -> set[str]:
@@ -108,7 +108,7 @@ def test_another_version_of_a_type_is_found_and_other_qos_is_none(
         there.end(8, "/", "rviz2", "MP", "/robot1/cmd_vel", STRING, qos=best_effort)
         there.end(8, "/", "rviz2", "MS", "/robot1/odom", STRING, qos=reliable)
         assert check(plan, address, 4) == 0
-        main(["check", "--zenoh", address, "--domain", "4"])
+        main(["check", "--from", address, "--domain", "4"])
         there.end(8, "/", "rviz2", "MS", "/robot2/odom", STRING, hash=TF_HASH)
         assert check(plan, address, 4) == 0
     shown = capsys.readouterr().out
@@ -172,12 +172,12 @@ def test_another_domain_is_named(
 
 def test_a_missing_router_is_inconclusive(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Not "the robots are missing": nobody was asked."""
-    command = ["check", str(plan), "--zenoh", NOWHERE, "--timeout", "0.3"]
+    command = ["check", str(plan), "--from", NOWHERE, "--timeout", "0.3"]
     assert main(command) == 3
     shown = capsys.readouterr()
     assert f"no Zenoh router answers at {NOWHERE}" in shown.err
     assert "error:" not in shown.out
-    assert main(["snapshot", "--zenoh", NOWHERE, "--timeout", "0.3"]) == 3
+    assert main(["snapshot", "--from", NOWHERE, "--timeout", "0.3"]) == 3
 
 
 def test_expected_nodes_are_waited_for(address: str) -> None:
@@ -215,7 +215,7 @@ def test_several_domains_are_watched_side_by_side(
         changes = watch(Request(20.0), {it: Router(address, it) for it in (16, 17)})
         with fleet(address, 17, ("robot2",)):
             nodes = {at: it.nodes for at, it in islice(changes, 2)}
-            words = ["check", "--watch", "--zenoh", address, "--domain", "16,17"]
+            words = ["check", "--watch", "--from", address, "--domain", "16,17"]
             assert main([*words, "--timeout", "1"]) == 0
         gone = next(it for it in changes if not it[1].nodes)
         changes.close()

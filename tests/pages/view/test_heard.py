@@ -103,7 +103,7 @@ def test_fixed_joints_that_are_heard_elsewhere_are_said(
 ) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(with_places(healthy("postfix"))))
-    words = ["view", str(ROBOTS / "rover.urdf"), "robot1", "robot2", "--snapshot", str(graph)]
+    words = ["view", str(ROBOTS / "rover.urdf"), "robot1", "robot2", "--from", str(graph)]
     assert main([*words, "-o", str(tmp_path / "view.html")]) == 0
     (said,) = [it for it in capsys.readouterr().err.splitlines() if "on tf" in it]
     assert "robot2: " in said and "(lidar_link/robot2 by 0.030 m and 0.0 degrees)" in said
@@ -113,7 +113,7 @@ def test_fixed_joints_that_are_heard_elsewhere_are_said(
 def test_the_page_has_the_trees_and_the_transforms_of_links(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(with_places(healthy("postfix"))))
-    words = [ROBOTS / "rover.urdf", "robot1", "robot2", "--snapshot", graph]
+    words = [ROBOTS / "rover.urdf", "robot1", "robot2", "--from", graph]
     made = page(tmp_path, *words)
     assert [it[:3] for it in made["trees"]] == [
         ["/tf/robot1", "odom/robot1", "robot1"],
@@ -129,7 +129,7 @@ def test_a_snapshot_without_places_has_no_trees(tmp_path: Path) -> None:
     graph = tmp_path / "graph.json"
     graph.write_bytes(to_json(healthy("postfix")))
     assert "transform" not in json.loads(graph.read_bytes())["edges"][0]
-    made = page(tmp_path, ROBOTS / "rover.urdf", "robot1", "--snapshot", graph)
+    made = page(tmp_path, ROBOTS / "rover.urdf", "robot1", "--from", graph)
     assert made["trees"] == []
     assert made["robots"][0]["heard"]["base_link/robot1"] == "heard"
 
@@ -141,7 +141,7 @@ def test_a_frame_on_the_tf_of_another_robot_is_not_heard(tmp_path: Path) -> None
     frames = (it for it in graph.edges if it.topic.startswith("/robot2/"))
     (tmp_path / "graph.json").write_bytes(to_json(graph._replace(edges=tuple(frames))))
     words = [ROBOTS / "rover.urdf", "robot1", "robot2", "--layout", "tf-per-robot"]
-    one, two = page(tmp_path, *words, "--snapshot", tmp_path / "graph.json")["robots"]
+    one, two = page(tmp_path, *words, "--from", tmp_path / "graph.json")["robots"]
     assert set(one["heard"].values()) == {"silent"}
     assert set(two["heard"].values()) == {"heard"}
 
@@ -152,7 +152,7 @@ def test_a_recording_has_places_too(tmp_path: Path) -> None:
     made_bags = pytest.importorskip("made_bags", reason="no rosbags")
     bag = made_bags.write(tmp_path / "bag", made_bags.healthy().values())
     words = [ROBOTS / "rover.urdf", "robot1", "--layout", "both", "--affix", "prefix"]
-    found = page(tmp_path, *words, "--bag", bag)["trees"]
+    found = page(tmp_path, *words, "--from", bag)["trees"]
     frames = {it[0]: it[2] for tree in found for it in tree[3]}
     assert frames["robot1/base_link"] == [99, 2, 3, 0, 0, 0, 1]
-    page(tmp_path, *words, "--bag", bag, "--snapshot", "graph.json", code=2)
+    page(tmp_path, *words, "--from", bag, "--from", "graph.json", code=2)

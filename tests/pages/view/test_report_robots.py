@@ -36,7 +36,7 @@ def files(tmp_path: Path) -> dict[str, str]:
 
 def report(files: dict[str, str], plan: str, *words: str) -> str:
     out = Path(files["fleet"]).with_name("report.html")
-    main(["check", files[plan], "--snapshot", files["graph"], "--report", str(out), *words])
+    main(["check", files[plan], "--from", files["graph"], "--report", str(out), *words])
     return out.read_text()
 
 
@@ -95,4 +95,4 @@ def test_a_check_without_a_report_loads_no_model(
     files: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(scene, "load_urdf", lambda *_: pytest.fail("loaded"))
-    main(["check", files["fleet"], "--snapshot", files["graph"]])
+    main(["check", files["fleet"], "--from", files["graph"]])

@@ -126,7 +126,7 @@ def test_frames_of_a_snapshot(tmp_path: Path) -> None:
     imu["parent"] = "lidar_link/robot1"
     (tmp_path / "graph.json").write_text(json.dumps(snapshot))
     words = [ROBOTS / "rover.urdf", "robot1", "--layout", "frames-per-robot"]
-    (robot,) = page(tmp_path, *words, "--snapshot", tmp_path / "graph.json")["robots"]
+    (robot,) = page(tmp_path, *words, "--from", tmp_path / "graph.json")["robots"]
     others = {link: "heard" for link in robot["links"] if link != "imu_link/robot1"}
     assert robot["heard"] == {**others, "imu_link/robot1": "elsewhere"}
 
@@ -156,7 +156,7 @@ def test_names_of_a_file_do_not_reach_the_page_as_code(tmp_path: Path) -> None:
         (["{folder}/r.urdf", "a", "a"], "'a'"),
         (["{folder}/r.urdf", "a:=b"], "NAME:=VALUE is for xacro"),
         (["{folder}/r.urdf", "-o", "{folder}/r.urdf"], "r.urdf"),
-        (["{folder}/r.urdf", "--snapshot", "{folder}/r.urdf"], "r.urdf"),
+        (["{folder}/r.urdf", "--from", "{folder}/r.urdf"], "r.urdf"),
     ],
 )
 def test_mistakes_are_one_line(

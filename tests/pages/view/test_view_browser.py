@@ -94,7 +94,7 @@ def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) ->
 def test_what_tf_has_is_over_the_robots(chromium: webdriver.Chrome, tmp_path: Path) -> None:
     graph, out = tmp_path / "graph.json", tmp_path / "view.html"
     graph.write_bytes(to_json(with_places(healthy("postfix"))))
-    words = [str(ROBOTS / "rover.urdf"), "robot1", "robot2", "--snapshot", str(graph)]
+    words = [str(ROBOTS / "rover.urdf"), "robot1", "robot2", "--from", str(graph)]
     assert main(["view", *words, "-o", str(out), "-q"]) == 0
     chromium.get(out.as_uri())
     WebDriverWait(chromium, 30).until(
@@ -133,7 +133,7 @@ def test_the_robots_head_a_report(chromium: webdriver.Chrome, tmp_path: Path) ->
     robots = "robots: [{name: robot1, pose: {x: 0}}, {name: robot2, pose: {x: 2}}]"
     Path(fleet).write_text(f"description: {ROBOTS / 'rover.urdf'}\n{robots}\n")
     Path(graph).write_bytes(to_json(healthy("postfix")))
-    main(["check", fleet, "--snapshot", graph, "--report", out, "-q"])
+    main(["check", fleet, "--from", graph, "--report", out, "-q"])
     chromium.get(Path(out).as_uri())
     chromium.switch_to.frame(chromium.find_element(By.TAG_NAME, "iframe"))
     WebDriverWait(chromium, 30).until(
