@@ -53,7 +53,7 @@ def fish(program: str) -> str:
         if below:
             first = f"complete -c {program} -n __fish_use_subcommand -f -a {it.name}"
             lines.append(f"{first} -d {quoted(it.about)}")
-        every = (one for group in it.groups for one in group.options if one.shown)
+        every = (one for group in it.groups for one in group.options)
         options = (one for one in every if one.names[0].startswith("-"))
         lines += [f"complete -c {program}{below}{fish_option(one)}" for one in options]
     return "\n".join(lines)

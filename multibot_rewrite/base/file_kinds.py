@@ -114,9 +114,14 @@ _OTHERS = (
     (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
     (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
 )
-_BUILT = b'"format": "multibot build'
-_SESSION = lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{", 0)
-_SNAPSHOT = lazy_compile(rb'"(?:nodes|ends|endpoints)"\s*:', 0)
+_ENDS = rb'"(?:nodes|ends|endpoints)"\s*:'
+_JSON = (
+    (BUILT, lazy_compile(rb'"format": "multibot build', 0)),
+    (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{", 0)),
+    (PLAN, lazy_compile(rb'"ways"|\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
+    (SNAPSHOT, lazy_compile(_ENDS, 0)),
+    (FLEET, lazy_compile(rb'"robots"', 0)),
+)
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
     rb"<!--.*?-->|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
@@ -142,16 +147,7 @@ def recognised(data: bytes) -> str:
         return started
     if text.startswith(b"<"):
         return _first(_XML, text)
-    if text.startswith(b"{"):
-        if _BUILT in text:
-            return BUILT
-        ends = _SNAPSHOT.search(text)
-        if b'"ways"' in text or (ends and b'"layout"' in text):
-            return PLAN
-        if ends:
-            return SNAPSHOT
-        return SESSION if _SESSION.search(text) else FLEET if b'"robots"' in text else ""
-    return _first((*BESIDE, *_OTHERS), text)
+    return _first(_JSON if text.startswith(b"{") else (*BESIDE, *_OTHERS), text)
 
 
 def _first(marks: tuple[tuple[str, re.Pattern[bytes]], ...], text: bytes) -> str:

@@ -18,6 +18,7 @@ complete -c urdf-lint -l layout -r -f -a 'tf-per-robot L1 frames-per-robot L2 bo
 complete -c urdf-lint -l affix -r -f -a 'postfix prefix' -d 'the robot\'s name goes behind names (postfix, the default) or in front (prefix)'
 complete -c urdf-lint -l topics -r -f -a 'postfix prefix namespace' -d 'postfix, prefix or namespace'
 complete -c urdf-lint -l separator -r -d 'what stands between a name and the robot\'s'
+complete -c urdf-lint -l shared -r -d 'frames, and topics with a slash in front, that all robots share'
 complete -c urdf-lint -l select -r -d 'only these codes, or codes that begin so: MB2,MG102'
 complete -c urdf-lint -l ignore -r -d 'not these'
 complete -c urdf-lint -l fail-on -r -f -a 'error warning note' -d 'the lowest level that makes the exit code 1: error (default'
