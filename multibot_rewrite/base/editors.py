@@ -19,4 +19,14 @@ def schema_line(schema: str, folder: str) -> str:
     relative where it is installed below ``folder``, in which the file will be."""
     path = str(files("multibot_rewrite") / schema)
     below = os.path.relpath(path, folder or os.curdir)
-    return f"# yaml-language-server: $schema={path if below.startswith(os.pardir) else below}"
+    return line_of(path if below.startswith(os.pardir) else below)
+
+
+def line_of(path: str) -> str:
+    """The comment that names the schema at a path, which is relative to the file or absolute."""
+    return f"# yaml-language-server: $schema={path}"
+
+
+def schema_text(schema: str) -> bytes:
+    """A schema of this package, to be written beside a file that is the same on every machine."""
+    return (files("multibot_rewrite") / schema).read_bytes()

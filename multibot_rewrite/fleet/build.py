@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator, Sequence
 from functools import cache
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import UsageError
@@ -32,6 +33,7 @@ from multibot_rewrite.fleet.outputs.free_fleet import configurations as free_fle
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames, moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
+    PLAN_SCHEMA,
     FilesAndFindings,
     OutputFile,
     expanded_name,
@@ -188,7 +190,8 @@ def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
 
 
 def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFile]:
-    yield OutputFile(PLAN, to_yaml(planned).encode())
+    yield OutputFile(PLAN, f"{editors.line_of(PLAN_SCHEMA)}\n{to_yaml(planned)}".encode())
+    yield OutputFile(PLAN_SCHEMA, editors.schema_text(editors.PLAN))
     if plan.file.sros2:
         yield OutputFile(POLICY, to_policy(planned, possible(fleet)).encode())
     if layout := to_layout(planned):

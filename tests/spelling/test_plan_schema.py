@@ -96,7 +96,6 @@ def test_plans_that_are_kept_follow_it() -> None:
 
 
 def test_a_plan_in_a_file_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The plan of a build does not: a build is the same on every machine."""
     words = ["plan", str(FIXTURES / "robots" / "rover.urdf"), "robot1", "robot2"]
     plan = tmp_path / "plan.yaml"
     assert main([*words, "-o", str(plan)]) == 0
@@ -107,6 +106,19 @@ def test_a_plan_in_a_file_names_it(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main([*words, "-o", str(tmp_path / "plan.json")]) == 0
     assert wrong((tmp_path / "plan.json").read_text()) == []
     assert read_plan(plan.read_bytes(), "") == read_plan(text.encode(), "")
+
+
+def test_a_built_plan_names_the_schema_beside_it(tmp_path: Path) -> None:
+    """A relative path: a build is the same on every machine."""
+    out = tmp_path / "out"
+    fleet = ROOT / "examples" / "launch_tutorial" / "fleet.yaml"
+    assert main(["build", str(fleet), "-o", str(out)]) == 0
+    first = (out / "plan.yaml").read_text().partition("\n")[0]
+    named = out / first.removeprefix("# yaml-language-server: $schema=")
+    assert named.parent == out
+    jsonschema.validate(
+        yaml.safe_load((out / "plan.yaml").read_text()), json.loads(named.read_text())
+    )
 
 
 @pytest.mark.parametrize("text", WRONG)
