@@ -49,8 +49,6 @@ def run(options: argparse.Namespace) -> int:
     check_report(options, printed=False)
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
-    if not os.path.lexists(options.fleet):
-        raise UsageError(f"{options.fleet} is not there; multibot init PATH... writes a fleet file")
     choice = Choice(number=options.count or 0)
     fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
     plan = plan_fleet(fleet, trust=options.trust)

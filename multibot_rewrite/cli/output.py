@@ -24,6 +24,12 @@ READ = (
     *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes"),
     *("suggest", "config", "baseline"),
 )
+# What makes a file that such an option names.
+MADE_BY = {
+    "fleet": "multibot init PATH... writes a fleet file",
+    "plan": "multibot build and multibot plan write one",
+    "snapshot": "multibot snapshot -o FILE writes one",
+}
 _T = TypeVar("_T")
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"
@@ -47,16 +53,32 @@ def deliver(options: argparse.Namespace, data: bytes) -> None:
     if options.output in (None, STANDARD):
         print_bytes(data)
     else:
-        check_target(options.output, _given(options))
+        check_target(options.output, (it for _, it in _given(options)))
         check_link(options.output)
         write_files(options, [(options.output, data)])
 
 
-def _given(options: argparse.Namespace) -> Iterator[str]:
-    """The files that the options name to be read."""
+def _given(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
+    """The files that the options name to be read, each behind its option."""
     for name in READ:
         value = getattr(options, name, None) or ()
-        yield from [value] if isinstance(value, str) else value
+        yield from ((name, it) for it in ([value] if isinstance(value, str) else value))
+
+
+def check_there(options: argparse.Namespace) -> None:
+    """Raise UsageError for a file to be read that is not there: with one that is called nearly so, or
+    with what makes such a file. A word without an ending may be a package or a folder."""
+    written = {"suggest", "fleet"} if vars(options).get("undo") else {"suggest"}
+    for option, path in _given(options):
+        folder, name = os.path.split(path)
+        if not os.path.splitext(name)[1] or os.path.lexists(path) or option in written:
+            continue
+        from multibot_rewrite.base.nearest import did_you_mean  # a mistake alone needs it
+
+        beside = os.listdir(folder or ".") if os.path.isdir(folder or ".") else []
+        kind = "fleet" if path.endswith((".yaml", ".yml")) and option == "input" else option
+        hint = did_you_mean(name, sorted(beside)) or MADE_BY.get(kind, "")
+        raise UsageError(f"{path} is not there{hint and f'; {hint}'}")
 
 
 def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]]) -> None:

@@ -12,7 +12,7 @@ from itertools import pairwise, takewhile
 from typing import NoReturn
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
@@ -191,17 +191,17 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
     if "sources" in options:
-        _tell_sources(parser, options)
+        _tell_sources(options)
     return options
 
 
-def _tell_sources(parser: Parser, options: argparse.Namespace) -> None:
-    """The sources of a graph by their kind; only saved ones may be several."""
+def _tell_sources(options: argparse.Namespace) -> None:
+    """The sources of a graph by their kind; raises UsageError for several, unless all are saved."""
     saved, *others = ([it for of, it in options.sources if of == kind] for kind in SOURCES)
     single = [it for its in others for it in its]
     if len(single) + bool(saved) > 1:
         two = " and ".join([*saved[:1], *single][:2])
-        parser.error(f"--from: {two} are two sources; give one of them")
+        raise UsageError(f"--from: {two} are two sources; give one of them")
     options.snapshot, options.bag, options.zenoh = saved, *((its or [None])[0] for its in others)
 
 

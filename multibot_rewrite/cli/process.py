@@ -19,7 +19,7 @@ from typing import NoReturn
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.model import MultibotError, ProofError, Unusable
 from multibot_rewrite.cli.options import Command
-from multibot_rewrite.cli.output import detail, say
+from multibot_rewrite.cli.output import check_there, detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
 
 DONE, STOPPED, MISSING, INTERRUPTED = 0, 1, 4, 130
@@ -48,6 +48,7 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
     try:
         run = import_module(f"{__package__}.{command.module}").run
         _catch_interrupts()
+        check_there(options)
         code: int = run(options)
     except RewriteRefused as error:
         code = _refused(options, error)

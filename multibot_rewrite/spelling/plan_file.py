@@ -121,8 +121,8 @@ def from_json(data: bytes, file: str) -> System:
     except json.JSONDecodeError as error:
         place = f"{file}:{error.lineno}:{error.colno}"
         raise InputError(f"{place}: not valid JSON: {error.msg}; {REMEDY}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: not valid JSON: {error}; {REMEDY}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not valid JSON: it is not UTF-8; {REMEDY}") from None
 
 
 def from_yaml(data: bytes, file: str) -> System:
@@ -136,8 +136,8 @@ def from_yaml(data: bytes, file: str) -> System:
         place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
         reason = getattr(error, "problem", None) or " ".join(str(error).split())
         raise InputError(f"{place}: not valid YAML: {reason}; {REMEDY}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: not valid YAML: {error}; {REMEDY}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not valid YAML: it is not UTF-8; {REMEDY}") from None
 
 
 # What follows ``robots:``, empty lines and comments aside.

@@ -61,6 +61,7 @@ from multibot_rewrite.system.records import (
 )
 from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
+_REMEDY = "use the file that multibot snapshot -o wrote"
 SCHEMA = 2
 _EMPTY: tuple[object, ...] = ("", ())
 
@@ -144,9 +145,11 @@ def json_value(data: bytes, file: str) -> object:
         with gc_paused():
             return load_json(data, _record_or_object)
     except json.JSONDecodeError as error:
+        refuse_others(data, file, SNAPSHOT)
         place = f"{file}:{error.lineno}:{error.colno}"
-        hint = "use the file that multibot snapshot -o wrote"
-        raise InputError(f"{place}: not valid JSON: {error.msg}; {hint}") from None
+        raise InputError(f"{place}: not valid JSON: {error.msg}; {_REMEDY}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not valid JSON: it is not UTF-8; {_REMEDY}") from None
     except ValueError as error:
         raise InputError(f"{file}: cannot be read as JSON: {error}") from None
 

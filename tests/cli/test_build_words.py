@@ -35,10 +35,6 @@ def test_a_fleet_has_a_robot(tmp_path: Path) -> None:
     usual = {"undo": False, "select": [], "ignore": [], "format": "text", "fleet": "no.yaml"}
     given = options(output=str(tmp_path / "out"), count=0, **usual)
     assert said(build.run, given) == "--count 0: a fleet has at least one robot"
-    given.count = None
-    assert (
-        said(build.run, given) == "no.yaml is not there; multibot init PATH... writes a fleet file"
-    )
 
 
 def test_a_build_goes_into_a_folder_and_not_over_its_input(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_the_table_is_for_people(capsys: pytest.CaptureFixture[str]) -> None:
     [
         pytest.param((ROVER, "robot1", "--stack", "nva2"), "nav2", id="stack"),
         pytest.param((ROVER, "robot-1"), "robot_1", id="robot"),
-        pytest.param(("gone.urdf", "a"), "cannot be read", id="no-file"),
+        pytest.param(("gone.urdf", "a"), "is not there", id="no-file"),
         pytest.param((ROVER, "a", "a"), "twice", id="robot-twice"),
         pytest.param((ROVER, "a", "--form", "json", "-o", ROVER), "rover.urdf", id="onto-input"),
     ],

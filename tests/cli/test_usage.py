@@ -417,7 +417,7 @@ def test_a_diff_is_one_that_patch_reads() -> None:
 
 def test_files_that_options_name_to_be_read() -> None:
     given = options(input="a", plan="b", snapshot=["c", "d"], urdf=None, nodes="", config="e")
-    assert [*output._given(given)] == ["a", "b", "c", "d", "e"]
+    assert [path for _, path in output._given(given)] == ["a", "b", "c", "d", "e"]
     known = (
         "input",
         "plan",
@@ -430,6 +430,36 @@ def test_files_that_options_name_to_be_read() -> None:
         "suggest",
     )
     assert (*known, "config", "baseline") == output.READ
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"input": "rovr.urdf"}, "rovr.urdf is not there; did you mean 'rover.urdf'?"),
+        ({"plan": "flet.yaml"}, "flet.yaml is not there; did you mean 'fleet.yaml'?"),
+        ({"snapshot": ["rover.urdf", "g.json"]},
+         "g.json is not there; multibot snapshot -o FILE writes one"),
+        ({"plan": "out/p.yaml"}, "out/p.yaml is not there; multibot build and multibot plan write one"),
+        ({"input": "other.yaml"}, "other.yaml is not there; multibot init PATH... writes a fleet file"),
+        ({"fleet": "our.yml"}, "our.yml is not there; multibot init PATH... writes a fleet file"),
+        ({"urdf": "none.xacro"}, "none.xacro is not there"),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_not_there_is_told_with_what_helps(
+    given: dict[str, object], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("rover.urdf", "fleet.yaml"):
+        Path(name).write_text("")
+    assert said(output.check_there, options(**given)) == message
+
+
+def test_what_may_be_no_file_is_not_looked_for(tmp_path: Path) -> None:
+    for given in (
+        {"input": "my_bringup"}, {"input": "-"}, {"nodes": ["none"]}, {"suggest": "a.b"},
+        {"fleet": "gone.yaml", "undo": True}, {"input": "/dev/fd/63"}, {"plan": None},
+    ):  # fmt: skip
+        output.check_there(options(**given))
 
 
 def test_a_line_about_the_work_replaces_the_one_before(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -359,6 +359,17 @@ def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
     assert [it.child for it in found.transforms] == ["r1/odom"]
 
 
+@pytest.mark.parametrize(
+    ("simulator", "level"),
+    [("", "warning"), ("simulator: none\n", "warning"), ("simulator: gazebo\n", "note")],
+)
+def test_a_pose_in_a_simulator_is_of_use_beside_a_localisation(
+    fleet: Any, simulator: str, level: str
+) -> None:
+    found = start_poses.start_poses(fleet("L1", "nav2_slam", DRIVE, simulator))
+    assert [(it.code, it.level) for it in found.findings] == [("MF701", level)]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("stack", "initial"), [("nav2", ["amcl"]), ("nav2_slam", [])])
 @pytest.mark.parametrize("layout", LAYOUTS)

@@ -102,7 +102,7 @@ def test_a_big_file(tmp_path: Path, name: str) -> None:
 def test_no_such_input(tmp_path: Path) -> None:
     for name in ("nothing.urdf", "nothing.xacro", "no/folder.urdf"):
         result = run(tmp_path, name, "robot1", "-o", "out.urdf")
-        check_refusal(tmp_path, result, UNUSABLE, (name, "cannot be read", "No such file"))
+        check_refusal(tmp_path, result, UNUSABLE, (name, "is not there"))
 
 
 @pytest.mark.parametrize("name", ["folder", "folder.xacro"])
@@ -317,11 +317,13 @@ WRONG_USE = {
     "diff-and-in-place": (("in.urdf", "a", "--diff", "--in-place"), ("--diff", "leave out")),
     "strip-and-changes": (("in.urdf", "a", "--undo", "--form", "changes"), ("--form changes",)),
     "in-place-of-stdin": (("-", "a", "--in-place"), ("--in-place needs a URDF file",)),
-    "in-place-of-xacro": (("in.xacro", "a", "--in-place"), ("--in-place needs a URDF file",)),
     "argument-for-urdf": (("in.urdf", "a", "x:=1"), ("in.urdf", "NAME:=VALUE", "is no xacro")),
     "argument-for-stdin": (("-", "a", "x:=1"), ("<stdin>", "NAME:=VALUE", "is no xacro")),
     "argument-for-strip": (("in.urdf", "a", "--undo", "x:=1"), ("in.urdf", "NAME:=VALUE")),
-    "vocabulary-missing": (("in.urdf", "a", "--vocabulary", "my.vocab"), ("my.vocab", "read")),
+    "vocabulary-missing": (
+        ("in.urdf", "a", "--vocabulary", "my.vocab"),
+        ("my.vocab", "is not there"),
+    ),
     "vocabulary-folder": (("in.urdf", "a", "--vocabulary", "."), (".", "cannot be read")),
     "vocabulary-text": (("in.urdf", "a", "--vocabulary", "in.urdf"), ("in.urdf:1:", "[section]")),
 }

@@ -18,8 +18,8 @@ LOCALISED_ALREADY = declare(
     what="A robot has a pose, but a node of its stack already publishes where the robot is. The pose "
     "is not published.",
     why="The frame would have two parents, and the robot would jump between two places.",
-    fix="Start the robot at that place in the simulator, or remove the pose. amcl needs neither: it "
-    "gets the pose in start_pose.yaml.",
+    fix="Remove the pose of a real robot. In a simulator the robot starts there: this is a note then. "
+    "amcl gets the pose in start_pose.yaml.",
     bad=f"stack: slam_toolbox\n{_TWO}",
     good=f"stack: amcl\n{_TWO}",
     line=3,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
@@ -122,8 +122,11 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         nodes = " and ".join(it or "its description" for it in locators)
         says = "already says" if len(locators) == 1 else "already say"
         what = f"its pose is not published, because {nodes} {says} where it is"
-        hint = "a second parent would make the frame jump"
-        yield _finding(LOCALISED_ALREADY, robot, what, hint)
+        starts = robot.spec.simulator not in ("", REAL)
+        hint = "remove the pose: a second parent would make the frame jump"
+        hint = "the simulator starts it there, which is enough" if starts else hint
+        told = _finding(LOCALISED_ALREADY, robot, what, hint)
+        yield told._replace(level=NOTE if starts else WARNING)
         return
     if held := [it for it in sent[""] if _holds(it, naming)]:
         if pose != ORIGIN:

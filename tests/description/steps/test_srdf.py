@@ -376,7 +376,7 @@ BAD = {
     "strip-without-urdf": (("arm.srdf", "--undo"), UNUSABLE, ("arm.srdf", "--urdf")),
     "urdf-with-urdf": (("arm.urdf", "--urdf", "arm.urdf"), UNUSABLE, ("arm.urdf", "only an SRDF")),
     "sdf-with-urdf": (("arm.sdf", "--urdf", "arm.urdf"), UNUSABLE, ("arm.sdf", "only an SRDF")),
-    "missing": (("arm.srdf", "--urdf", "no.urdf"), UNUSABLE, ("no.urdf", "No such file")),
+    "missing": (("arm.srdf", "--urdf", "no.urdf"), UNUSABLE, ("no.urdf", "is not there")),
     "folder": (("arm.srdf", "--urdf", "."), UNUSABLE, (".", "directory")),
     "broken": (("arm.srdf", "--urdf", "broken.urdf"), UNUSABLE, ("broken.urdf:1:", "well-formed")),
     "srdf-as-urdf": (("arm.srdf", "--urdf", "arm.srdf"), UNUSABLE, ("arm.srdf", "--urdf")),
