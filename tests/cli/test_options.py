@@ -16,9 +16,10 @@ import pytest
 from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, make_naming
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.cli.declared import shared
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
 from multibot_rewrite.cli.options import Command
@@ -90,6 +91,12 @@ def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
         )
         assert set(action.choices or ()) == layouts
         assert f"default: {DEFAULT_LAYOUT}" in str(action.help)
+
+
+def test_the_default_of_what_is_shared_may_be_given() -> None:
+    text = next(it for it in shared.NAMING.options if "--shared" in it.names).help
+    words = policy(given("plan", ROVER, "--shared", text.rpartition("default: ")[2]))
+    assert make_naming(**words) == make_naming()
 
 
 def given(name: str, *words: str) -> argparse.Namespace:

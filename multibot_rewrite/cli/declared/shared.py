@@ -44,15 +44,15 @@ NAMING = OptionGroup(
             "--separator",
             "KIND=SEP",
             "what stands between a name and the robot's; SEP alone is for all names of the"
-            " description, not for ROS nodes and topics; groups of an SRDF are renamed with"
-            f" group=SEP alone; defaults: {_SEPARATORS}",
+            " description, not for ROS nodes and topics; group=SEP renames the groups of an SRDF,"
+            f" too; defaults: {_SEPARATORS}",
             [],
         ),
         several(
             "--shared",
             "FRAME,/TOPIC",
             "frames, and topics with a slash in front, that all robots share; default:"
-            f" {','.join((*WORLD_FRAMES, *(f'/{it}' for it in SHARED_TOPICS)))}",
+            f" {','.join((*WORLD_FRAMES, *SHARED_TOPICS))}",
             [],
         ),
     ),
