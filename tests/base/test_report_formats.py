@@ -321,3 +321,5 @@ def test_a_rule_for_a_terminal() -> None:
         "Bad:\n\n    <a>\n    </a>\n\nFixed by --fix:\n\n    <b/>\n"
     )
     assert codes.examples(it._replace(fixed="")) == [("Bad", "<a>\n</a>"), ("Good", "<b/>")]
+    beside = it._replace(fixed="", good="", beside={"a.yaml": "x: 1\n", "empty": "", "b.stl": "\n"})
+    assert codes.examples(beside)[1:] == [("Beside it, a.yaml", "x: 1\n")]

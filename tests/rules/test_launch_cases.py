@@ -26,6 +26,7 @@ from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
 
+START = "start ros2_control_node there, or load gz_ros2_control in the description"
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
 MANAGER = ("controller_manager", "ros2_control_node", "controller_manager")
@@ -221,8 +222,8 @@ def test_a_spawner_without_its_manager(known: Knowledge) -> None:
     manager = started(*MANAGER, namespace="/b")
     assert judged(known, "MG723", spawner, manager) == []
     (alone,) = judged(known, "MG723", spawner)
-    assert alone.message == "nothing starts /b/controller_manager, so arm, leg are not started"
-    assert (alone.level, alone.hint) == ("error", "start it, or name the one that is there")
+    assert alone.message == "nothing starts /b/controller_manager: arm, leg will not be loaded"
+    assert (alone.level, alone.hint) == ("error", START)
     (near,) = judged(known, "MG723", spawner, started(*MANAGER), UNKNOWN)
     assert (near.level, near.hint) == ("error", "did you mean /controller_manager?")
     # A node that is not known may have it.

@@ -127,7 +127,8 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
                 if attribute and element.get(attribute) is None:
                     continue
                 message = f"{site.path} of {section.name} {where}: nothing in it is renamed"
-                yield Problem(element, message, None, ANOTHER_RELEASE, (), "MB905")
+                hint = f"delete it, or {ANOTHER_RELEASE}"
+                yield Problem(element, message, None, hint, (), "MB905")
 
 
 def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:

@@ -33,7 +33,7 @@ NO_MANAGER = declare(
     "no-controller-manager",
     ERROR,
     what="A spawner waits for a controller manager that no node of the launch files and no plugin of a "
-    "published description makes. A warning of `build`, where they start another one.",
+    "published description makes. In `build` it is a warning where they start another one.",
     why="The spawner waits for the manager and gives up: its controllers are never loaded. A relative "
     "name is below the spawner's namespace, so a namespace in both is there twice.",
     fix="Name the manager that runs (`-c`), without the namespace that the spawner has already, or "

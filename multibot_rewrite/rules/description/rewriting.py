@@ -135,8 +135,8 @@ row_of_another_release = rule(
     "row-of-another-release",
     NOTE,
     what="A plugin has a parameter that the vocabulary knows, and its release does not read it.",
-    why="A row of the vocabulary may hold in some releases only (releases=). In the others the "
-    "parameter has no effect, so no name in it is renamed.",
+    why="The plugin reads it in other releases only. In this one it has no effect, so no name in it is "
+    "renamed.",
     fix="Delete the parameter, or name the release that the description is for: --distro, or distro: "
     "in a fleet file.",
     bad='<gazebo><plugin name="p" filename="libmy_lamp.so"><lamp_link>a</lamp_link></plugin></gazebo>',

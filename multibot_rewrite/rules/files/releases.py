@@ -20,6 +20,7 @@ from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.rules.files.declared import of_other_releases
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
+_FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"
 # What sensor_msgs/JointState has a field for.
 _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
@@ -179,7 +180,8 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
         if words and has_release(words, release):
             message = f"{value.value} is deprecated in {release}"
-            hint = "use forward_command_controller/ForwardCommandController with interface_name"
+            interface = value.value.partition("_")[0]
+            hint = f"use {_FORWARD} with interface_name: {interface}"
             yield remark_at(value, message, hint)
 
 

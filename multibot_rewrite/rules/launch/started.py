@@ -121,9 +121,13 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
             continue
         mine = [it for it in launched.spawned if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))
-        message = f"nothing starts {manager}, so {names} are not started"
+        message = f"nothing starts {manager}: {names} will not be loaded"
         near = nearest(manager, there) or next(iter(there), "")
-        hint = f"did you mean {near}?" if near else "start it, or name the one that is there"
+        hint = (
+            f"did you mean {near}?"
+            if near
+            else "start ros2_control_node there, or load gz_ros2_control in the description"
+        )
         certain = bool(near) or _is_known(launched)
         level = {} if certain else {"level": INCONCLUSIVE}
         yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)

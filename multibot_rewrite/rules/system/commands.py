@@ -196,7 +196,7 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     meant=(PUBLISHES, CALLS),
     what="A robot's node sends commands to another robot: velocities, trajectories, goals, requests to"
     " its services, or a topic for which its own robot waits.",
-    why="Who drives, or stops, the one robot moves the other.",
+    why="Whoever drives or stops one robot moves the other one as well.",
     fix="Correct the remap rule, namespace or parameter that has the other robot's name.",
     bad="""\
 running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist

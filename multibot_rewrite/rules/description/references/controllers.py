@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
 _BESIDE = "controllers"
+_DRIVE = "diff_drive_controller/DiffDriveController"
 _LOADS = block(
     "<gazebo>",
     block(
@@ -66,9 +67,10 @@ def _claimed_twice(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
         from multibot_rewrite.rules.system.interfaces import claimed_twice
 
-        for _, twice in claimed_twice(known):
+        for other, twice in claimed_twice(known):
             message = f"{_at(twice)}: {twice.node} claims {twice.name} by two parameters"
-            yield Problem(element, message, _place(element), "name another joint in one of them")
+            hint = f"name another joint there, or in {_at(other)}"
+            yield Problem(element, message, _place(element), hint)
 
 
 def _place(element: _Element) -> str | None:
@@ -97,12 +99,12 @@ interface_claimed_twice = of_both.CLAIMED_TWICE._replace(
     check=_claimed_twice,
     formats=(URDF,),
     bad=ARM + a_system(_VELOCITY) + _LOADS,
-    good=ARM + _LOADS,
+    good=ARM + a_system(_VELOCITY) + _LOADS.replace("controllers", "one_wheel"),
     line=13,
-    beside=_own(
-        "diff_drive_controller/DiffDriveController",
-        "left_wheel_names: [j],\n    right_wheel_names: [j]",
-    ),
+    beside={
+        **_own(_DRIVE, "left_wheel_names: [j],\n    right_wheel_names: [j]"),
+        "one_wheel.yaml": _own(_DRIVE, "left_wheel_names: [j]")["controllers.yaml"],
+    },
     options={},
 )
 
