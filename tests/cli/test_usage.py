@@ -454,6 +454,14 @@ def test_a_file_that_is_not_there_is_told_with_what_helps(
     assert said(output.check_there, options(**given)) == message
 
 
+def test_a_result_is_not_written_over_a_file_that_an_option_names(tmp_path: Path) -> None:
+    file = tmp_path / "own.vocab"
+    file.write_text("old")
+    given = options(output=str(file), vocabulary=[str(file)])
+    assert said(output.deliver, given, b"new").startswith(f"{file} is a file that is read")
+    assert file.read_text() == "old"
+
+
 def test_what_may_be_no_file_is_not_looked_for(tmp_path: Path) -> None:
     for given in (
         {"input": "my_bringup"}, {"input": "-"}, {"nodes": ["none"]}, {"suggest": "a.b"},

@@ -368,6 +368,7 @@ def test_a_pose_in_a_simulator_is_of_use_beside_a_localisation(
 ) -> None:
     found = start_poses.start_poses(fleet("L1", "nav2_slam", DRIVE, simulator))
     assert [(it.code, it.level) for it in found.findings] == [("MF701", level)]
+    assert found.findings[0].hint.startswith("remove the pose") is (level == "warning")
 
 
 @pytest.mark.slow
