@@ -329,7 +329,7 @@ def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
 
 
 def test_expected_nodes_that_are_absent_are_named() -> None:
-    (caveat,) = view_caveats([Node("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b"])
+    (caveat,) = view_caveats([Node("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b", "/x"])
     assert (caveat.code, caveat.incomplete) == ("expected-not-seen", True)
     assert "/b;" in caveat.message
 
