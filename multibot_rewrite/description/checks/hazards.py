@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 # Of a plugin that opens what is the world's, and the elements that it belongs in.
 WORLD = "world"
 WITH_WORLD = (WORLD, "gui")
+# Says which of them no robot loads any more.
+LEFT = "MF847"
 # What a plugin reads the description from: names that no other robot's plugin may read.
 DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
