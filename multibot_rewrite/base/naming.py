@@ -253,6 +253,8 @@ def _ros_affix(
     if kind == "stem" and in_namespace:
         return _namespace_affix("/", text) if text.startswith("/") else None
     if kind == "stem":
+        if not NOT_PLAIN.isdisjoint(text):
+            return None
         # The root as a namespace: /robot1.
         return _name_affix(naming.affix, separator if text.strip("/") else "", text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)

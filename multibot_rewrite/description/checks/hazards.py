@@ -32,7 +32,7 @@ LEFT = "MF847"
 DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
 # What is left where a name has to stay, and is looked up in the whole world.
-ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION"
+ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION, in Classic by GAZEBO_MASTER_URI"
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
@@ -167,7 +167,8 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
                 bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
-                yield _host(host, "MB428", message, ALONE if kind == section.unique else bare)
+                alone = kind in (section.unique, "light")  # renamed in every layout
+                yield _host(host, "MB428", message, ALONE if alone else bare)
 
 
 def _host(host: Host, code: str, message: str, hint: str) -> Problem:
