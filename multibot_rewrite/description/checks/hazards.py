@@ -179,10 +179,8 @@ def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     if "base_link" not in links or not all(it in sensors for it in OF_PX4):
         return
     for it in OF_PX4:
-        if renames.changes("sensor", it) or renames.changes("link", "base_link"):
-            message = (
-                f"PX4 looks for a sensor called {it!r} in 'base_link', one of which is renamed"
-            )
+        if renames.changes("sensor", it):
+            message = f"PX4 looks for a sensor called {it!r} in 'base_link', which is renamed"
             hint = "the names are fixed in its code: use --layout frame-prefix"
             yield about(sensors[it], "MB428", message, hint)
 
