@@ -57,10 +57,8 @@ def test_px4_looks_for_the_sensors_of_its_airframes(
     link: str, sensor: str, layout: str, told: int
 ) -> None:
     """PX4-Autopilot GZBridge.cpp: .../link/base_link/sensor/air_pressure_sensor/air_pressure."""
-    inside = (
-        f'<gazebo reference="{link}"><sensor name="imu_sensor" type="imu"/>'
-        f'<sensor name="{sensor}" type="air_pressure"/></gazebo>'
-    )
-    text = ROBOT.replace("base_link", link).format(inside)
+    sensors = f'<sensor name="imu_sensor" type="imu"/><sensor name="{sensor}" type="air_pressure"/>'
+    block = f'<gazebo reference="{link}">{sensors}</gazebo>'
+    text = f'<robot name="drone"><link name="{link}"/>{block}</robot>'
     found = rewrite(text, "robot1", layout=layout, distro="jazzy").findings
     assert [it.code for it in found].count("MB428") == told
