@@ -87,7 +87,7 @@ POSTFIX = Command(
                     "--world-systems",
                     "HOW",
                     WORLD_SYSTEMS,
-                    "systems of the whole world, such as Sensors: keep (default for one robot), or"
+                    "systems of the whole world, such as Sensors; keep (default for one robot), or"
                     " leave them to the world, which has to load each once (for several)",
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
