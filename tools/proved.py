@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.base.naming import KEEP, LAYOUTS, WORLD_SYSTEMS
+from multibot_rewrite.base.naming import LAYOUTS, WORLD_SYSTEMS
 from multibot_rewrite.description.checks.verdict import REASONS
 from multibot_rewrite.description.library import rewrite_all
 
@@ -73,14 +73,14 @@ def kind_of(text: bytes) -> str:
 
 
 def judged(
-    path: Path, layouts: Sequence[str], releases: Sequence[str], systems: str = KEEP
+    path: Path, layouts: Sequence[str], releases: Sequence[str], systems: str | None = None
 ) -> list[Verdict]:
     """The verdicts of one file; none for what is no robot: a macro, a world, a file that is broken."""
     found = [_verdict(path, layout, it, systems) for layout in layouts for it in releases]
     return [it for it in found if it is not None]
 
 
-def _verdict(path: Path, layout: str, release: str, systems: str) -> Verdict | None:
+def _verdict(path: Path, layout: str, release: str, systems: str | None) -> Verdict | None:
     try:
         first, *_ = rewrite_all(
             path, ["robot1", "robot2"], layout=layout, distro=release, world_systems=systems
@@ -142,7 +142,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("folders", type=Path, nargs="+")
     parser.add_argument("--layouts", nargs="*", default=[it.name for it in LAYOUTS])
     parser.add_argument("--releases", nargs="*", default=[""], help="empty: by evidence")
-    parser.add_argument("--world-systems", choices=WORLD_SYSTEMS, default=KEEP)
+    parser.add_argument("--world-systems", choices=WORLD_SYSTEMS)
     parser.add_argument("--every", type=int, default=1, help="each so manieth file alone")
     parser.add_argument("--only", default="", help="a kind of robot")
     parser.add_argument("--reasons", type=int, default=40)

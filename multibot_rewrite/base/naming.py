@@ -7,7 +7,7 @@ where to insert, and what is put before and after the robot's name.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
@@ -94,7 +94,7 @@ LAYOUTS = (
 )
 DEFAULT_LAYOUT = "postfix"
 # What becomes of systems of the whole world that a description loads.
-KEEP, LEAVE = WORLD_SYSTEMS = ("keep", "leave")
+WORLD_SYSTEMS = ("keep", LEAVE := "leave")
 
 
 class Affix(NamedTuple):
@@ -134,8 +134,11 @@ class Naming(NamedTuple):
         return self.layout._replace(namespaced=self.topics == NAMESPACE)
 
 
-def leaves(world_systems: str) -> bool:
-    """Are they left to the world? Raises UsageError for a word that is not known."""
+def leaves(world_systems: str | None, robots: Sequence[str]) -> bool:
+    """Are they left to the world? Where nothing is said, those of several robots are: each would be
+    loaded twice. Raises UsageError for a word that is not known."""
+    if world_systems is None:
+        return len(robots) > 1
     _one_of("world_systems", world_systems, WORLD_SYSTEMS)
     return world_systems == LEAVE
 
@@ -250,6 +253,8 @@ def _ros_affix(
     if kind == "stem" and in_namespace:
         return _namespace_affix("/", text) if text.startswith("/") else None
     if kind == "stem":
+        if not NOT_PLAIN.isdisjoint(text):
+            return None
         # The root as a namespace: /robot1.
         return _name_affix(naming.affix, separator if text.strip("/") else "", text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)

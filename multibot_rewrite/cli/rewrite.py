@@ -112,7 +112,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
-    given = {**rewriting(options), "world_systems": options.world_systems}
+    given = rewriting(options)
     if not options.xacro:
         given["xacro_args"] = None
     return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
@@ -154,7 +154,8 @@ def summary(
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
-    proved = " ".join(filter(None, ["proved", given(first.findings, first.prepared.job.aside)]))
+    aside = dict(first.prepared.job.aside)
+    proved = " ".join(filter(None, ["proved", given(first.findings, aside)]))
     end = f"rewritten, not proved: {', '.join(why)}" if why else proved
     end += facts_of_release(first.distro, of_release)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

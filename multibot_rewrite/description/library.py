@@ -13,7 +13,7 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.base.naming import DEFAULT_LAYOUT, KEEP, leaves, make_naming
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import split_open
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import Source, is_xacro
-from multibot_rewrite.description.sources.world_systems import put_back
+from multibot_rewrite.description.sources.world_systems import left_to_world, put_back
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import Document, read_document
@@ -128,7 +128,7 @@ def rewrite(
     file: str = "",
     trust: bool = False,
     distro: str = "",
-    world_systems: str = KEEP,
+    world_systems: str | None = None,
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
@@ -143,7 +143,7 @@ def rewrite(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     given = (urdf, xacro_args, vocabulary, file, [robot], trust)
-    aside = leaves(world_systems)
+    aside = leaves(world_systems, [robot])
     job = read_job(source, naming, *given, release=release_told(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
 
@@ -167,7 +167,7 @@ def rewrite_all(
     file: str = "",
     trust: bool = False,
     distro: str = "",
-    world_systems: str = KEEP,
+    world_systems: str | None = None,
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -182,12 +182,13 @@ def rewrite_all(
     read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
     ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS);
     ``world_systems`` is keep or leave: leave makes comments of the systems that the world has to load
-    once, as Sensors. Raises as ``rewrite`` does, before the first result.
+    once, as Sensors (default: keep for one robot, leave for several, and a note says what to load).
+    Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro), leaves(world_systems))
-    jobs = read_jobs(names, source, naming, *given)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro))
+    jobs = read_jobs(names, source, naming, *given, leaves(world_systems, names))
     return _with_own_ports(rewrite_jobs(jobs, again))
 
 
@@ -219,8 +220,10 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     """Rewrite what was read, raises as ``rewrite_all``."""
     check_robot_names(robots)
     prepared = Prepared(job)
-    findings = (*_unread(prepared), *prepared.template.findings)
-    texts = pipeline.render(prepared.template, robots, again)
+    template = prepared.template
+    left = left_to_world(template.inventory.document, job.aside)
+    findings = (*_unread(prepared), *left, *template.findings)
+    texts = pipeline.render(template, robots, again)
     # Nothing here holds a text while the next one is made: it may take the same memory.
     return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)
 
@@ -322,7 +325,6 @@ def strip(
     file: str = "",
     trust: bool = False,
     distro: str = "",
-    world_systems: str = KEEP,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -343,4 +345,4 @@ def strip(
     job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
     beside_urdf = job.urdf_declarations
     made = pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
-    return put_back(made, job.file, job.tree) if leaves(world_systems) else made
+    return put_back(made, job.file, job.tree)

@@ -1005,3 +1005,9 @@ def test_gazebo_is_everybodys() -> None:
 def test_the_frame_of_a_message_of_joy_teleop() -> None:
     line = "walk.message_value.header-frame_id.value: base_link"
     assert value("joy_teleop", line).endswith(": r1/base_link")
+
+
+def test_a_frame_of_mavlink_is_no_frame_of_the_robot() -> None:
+    """mavros setpoint_position.cpp: ``mav_frame`` is one of MAV_FRAME."""
+    text, findings = made(section("/**/setpoint_position", "mav_frame: LOCAL_NED"), L2)
+    assert "mav_frame: LOCAL_NED" in text and not list(findings)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import ERROR
-from multibot_rewrite.base.naming import KEEP, WORLD_SYSTEMS
+from multibot_rewrite.base.naming import WORLD_SYSTEMS
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
     FINDINGS,
@@ -87,9 +87,8 @@ POSTFIX = Command(
                     "--world-systems",
                     "HOW",
                     WORLD_SYSTEMS,
-                    "systems of the whole world, such as Sensors; keep (default), or leave them to"
-                    " the world, which has to load each once",
-                    default=KEEP,
+                    "systems of the whole world, such as Sensors; keep (default for one robot), or"
+                    " leave them to the world, which has to load each once (for several)",
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
                 form(POSTFIX_FORMS, "the result, or every change for every robot as JSON"),

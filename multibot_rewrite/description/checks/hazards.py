@@ -26,11 +26,15 @@ if TYPE_CHECKING:
 # Of a plugin that opens what is the world's, and the elements that it belongs in.
 WORLD = "world"
 WITH_WORLD = (WORLD, "gui")
+# Says which of them no robot loads any more.
+LEFT = "MF847"
 # What a plugin reads the description from: names that no other robot's plugin may read.
 DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
+# Sensors of base_link that PX4 looks for: PX4-Autopilot src/modules/simulation/gz_bridge/GZBridge.cpp.
+OF_PX4 = ("imu_sensor", "air_pressure_sensor")
 # What is left where a name has to stay, and is looked up in the whole world.
-ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION"
+ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION, in Classic by GAZEBO_MASTER_URI"
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
@@ -39,7 +43,7 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
         yield from of_naming(inventory, renames.naming)
     yield from one_description(inventory, renames.naming, _moved(inventory, renames))
     yield from world_systems(inventory)
-    for of_names in (hardwired, outside_frames, reordered):
+    for of_names in (hardwired, of_px4, outside_frames, reordered):
         yield from of_names(inventory, renames)
 
 
@@ -165,7 +169,20 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
                 bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
-                yield _host(host, "MB428", message, ALONE if kind == section.unique else bare)
+                alone = kind in (section.unique, "light")  # renamed in every layout
+                yield _host(host, "MB428", message, ALONE if alone else bare)
+
+
+def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """The airframes of PX4: it takes Gazebo's topics below the names of the model, link and sensor."""
+    links, sensors = (inventory.declared[kind] for kind in ("link", "sensor"))
+    if "base_link" not in links or not all(it in sensors for it in OF_PX4):
+        return
+    for it in OF_PX4:
+        if renames.changes("sensor", it):
+            message = f"PX4 looks for a sensor called {it!r} in 'base_link', which is renamed"
+            hint = "the names are fixed in its code: use --layout frame-prefix"
+            yield about(sensors[it], "MB428", message, hint)
 
 
 def _host(host: Host, code: str, message: str, hint: str) -> Problem:

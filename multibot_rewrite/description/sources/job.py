@@ -32,6 +32,7 @@ from multibot_rewrite.description.sources.own_names import (
 from multibot_rewrite.description.sources.read import Source, SourceText, args_for
 from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.description.steps.document import read_document
@@ -63,8 +64,8 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count, ``why`` what says it; ``aside`` are the systems that the world has to load. It
-    holds no parsed document, so it can be pickled."""
+    whose facts count, ``why`` what says it; ``aside`` are the systems that the world has to load,
+    names and texts. It holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
@@ -75,7 +76,7 @@ class Job(NamedTuple):
     why: str = ""
     own: OwnSource = OF_ALL
     read: FilesRead = NO_FILES
-    aside: tuple[str, ...] = ()
+    aside: tuple[tuple[str, str], ...] = ()
 
     @property
     def tree(self) -> Tree:
@@ -181,16 +182,12 @@ def reader(
         name = file or own.file
         said = release_said(release, own.data + (beside.data if beside else b""), own.file)
         job = Job(own.data, name, naming, vocabulary, pair, *said, read=found)
-        return _without_world_systems(job) if aside else job
+        if not aside:
+            return job
+        data, left = set_aside(job.data, job.file, job.tree)
+        return job._replace(data=data, aside=left)
 
     return lambda args: read(frozenset(args.items()))
-
-
-def _without_world_systems(job: Job) -> Job:
-    from multibot_rewrite.description.sources.world_systems import set_aside  # few ask for it
-
-    data, names = set_aside(job.data, job.file, job.tree)
-    return job._replace(data=data, aside=names)
 
 
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:

@@ -9,44 +9,63 @@ with the Sensors system crashes it (gz-sensors issue 497).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from lxml.etree import _Element
-
+from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.description.checks.hazards import system_key, world_systems
+from multibot_rewrite.description.checks.hazards import LEFT, system_key, world_systems
+from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.description.steps.spans import Spans
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
 _ASIDE = re.compile(_OPEN + rb"(<plugin\b.*?>)" + _CLOSE, re.DOTALL)
+# A comment cannot hold two dashes, as the begin of another one.
+_DASHES, _WRITTEN = b"--", b"-&#45;"
+Systems = tuple[tuple[str, str], ...]
 
 
-def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, tuple[str, ...]]:
-    """The description with its systems of the world as comments, and their libraries. One that holds a
-    comment stays, and is found to be loaded with every robot. Raises InputError."""
+def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
+    """The description with its systems of the world as comments; their names and texts. Raises
+    InputError."""
     if b"<plugin" not in source:
         return source, ()
     document = read_document(source, file)
-    own = [it.element for it in world_systems(collect(document, tree))]
     spans = Spans(document)
-    found = [it for it in own if b"--" not in spans.text_of(it)]
-    return b"".join(cut(source, sorted(_edits(spans, found)))), tuple(map(system_key, found))
+    own = [it.element for it in world_systems(collect(document, tree))]
+    found = {spans.of(it): (system_key(it), spans.text_of(it)) for it in own}
+    left = {at: it for at, it in found.items() if _WRITTEN not in it[1]}
+    edits = sorted(_edits({at: text for at, (_, text) in left.items()}))
+    names = tuple((key, " ".join(text.decode().split())) for key, text in left.values())
+    return b"".join(cut(source, edits)), names
 
 
-def _edits(spans: Spans, elements: list[_Element]) -> Iterator[Edit]:
-    for start, end in map(spans.of, elements):
-        yield Edit(start, start, _OPEN, None)
-        yield Edit(end, end, _CLOSE, None)
+def _edits(texts: Mapping[tuple[int, int], bytes]) -> Iterator[Edit]:
+    for (start, end), text in texts.items():
+        yield Edit(start, end, _OPEN + text.replace(_DASHES, _WRITTEN) + _CLOSE, None)
+
+
+def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
+    """A note of what the world has to load. Raises InputError for a source with such a comment: a strip
+    would take it for its own."""
+    if len(_ASIDE.findall(document.source)) != len(left):
+        what = "a comment 'left to the world' is that of an earlier rewrite"
+        raise InputError(f"{document.file}: {what}: take that back by --undo")
+    if left:
+        names, texts = (sorted({*it}) for it in zip(*left, strict=True))
+        message = f"the world has to load {', '.join(names)}, which no robot loads any more"
+        hint = f"write into its <world>: {' '.join(texts)}"
+        problem = Problem(document.root, message, hint=hint, code=LEFT)
+        yield from to_findings(document, [problem], NOTE, of_file=True)
 
 
 def put_back(source: bytes, file: str, tree: Tree) -> bytes:
     """The inverse, proved by doing it again; raises InputError where that makes another text."""
-    whole = _ASIDE.sub(rb"\1", source)
-    if set_aside(whole, file, tree)[0] != source:
-        what = "a comment 'left to the world' is not what --world-systems leave writes"
-        raise InputError(f"{file}: {what}: leave out that option, or take back what was edited")
+    whole = _ASIDE.sub(lambda it: it[1].replace(_WRITTEN, _DASHES), source)
+    if whole != source and set_aside(whole, file, tree)[0] != source:
+        what = "a comment 'left to the world' is not what a rewrite writes"
+        raise InputError(f"{file}: {what}: take back what was edited")
     return whole

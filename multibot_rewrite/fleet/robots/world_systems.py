@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.description.checks.hazards import world_systems
+from multibot_rewrite.description.checks.hazards import LEFT, world_systems
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.spans import Spans
@@ -41,16 +41,16 @@ _SENSORS = """\
 """
 _FLEET = "simulator: gazebo\ndistro: jazzy\ndescription: {}.urdf\nrobots:\n  - {{name: robot1}}\n"
 MOVED = declare(
-    "MF847",
+    LEFT,
     "system-of-the-world",
     NOTE,
-    what="A description loads systems of gz-sim that act on the whole world. They are left out of each "
-    "robot, and the world of the fleet loads them. A warning where robots have other settings for one: "
-    "those of the first robot are taken.",
+    what="A description loads systems that act on the whole world. They are left out of each robot. "
+    "The world of the fleet loads them, with `urdf-postfix` yours. A warning where robots have other "
+    "settings for one: those of the first robot are taken.",
     why="gz-sim loads them again with every robot: two Sensors systems crash it (gz-sensors issue "
     "497), two Imu systems each publish every IMU of the world.",
     fix="Nothing, with the world of the fleet (`simulator_world`, or the one that is made). Another "
-    "world that you start has to load them.",
+    "world that you start has to load them: the finding of `urdf-postfix` has the text.",
     bad=_FLEET.format("rover"),
     good=_FLEET.format("base"),
     line=5,

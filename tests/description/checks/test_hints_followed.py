@@ -58,6 +58,12 @@ OPENARM = (
     "<plugin>openarm_hardware/OpenArm_v10HW</plugin></hardware>"
     '<joint name="openarm_joint1"><command_interface name="position"/></joint></ros2_control>'
 )
+# PX4-Autopilot src/modules/simulation/gz_bridge/GZBridge.cpp: .../link/base_link/sensor/imu_sensor/imu
+PX4 = (
+    "<link name='base_link'/><gazebo reference='base_link'>"
+    "<sensor name='imu_sensor' type='imu'><gz_frame_id>base_link</gz_frame_id></sensor>"
+    "<sensor name='air_pressure_sensor' type='air_pressure'/></gazebo>"
+)
 MOTOR = (
     '<link name="prop"/><joint name="rotor_0_joint" type="continuous"><parent link="base"/>'
     '<child link="prop"/></joint><gazebo><plugin name="custom::MotorFailureSystem" '
@@ -115,6 +121,7 @@ ROWS = (
         Followed(MOTOR, it, "jazzy", code, "--layout", MOTOR, {"layout": "frame-prefix"})
         for it, code in (("postfix", "MB428"), ("both", "MB428"), ("tf-per-robot", "MB437"))
     ),
+    Followed(PX4, "postfix", "jazzy", "MB428", "frame-prefix", PX4, {"layout": "frame-prefix"}),
     Followed(
         WINCH,
         "postfix",

@@ -42,3 +42,23 @@ def test_an_absolute_node_with_the_description(name: str, layout: str, expected:
 
 def test_an_absolute_node_is_renamed_where_nodes_are() -> None:
     assert "MB410" not in codes(CONTROL.format("/robot_state_publisher"), "postfix")
+
+
+@pytest.mark.parametrize(
+    ("link", "sensor", "layout", "told"),
+    [
+        ("base_link", "air_pressure_sensor", "postfix", 2),
+        ("base_link", "air_pressure_sensor", "frame-prefix", 0),
+        ("base_link", "barometer", "postfix", 0),
+        ("base", "air_pressure_sensor", "postfix", 0),
+    ],
+)
+def test_px4_looks_for_the_sensors_of_its_airframes(
+    link: str, sensor: str, layout: str, told: int
+) -> None:
+    """PX4-Autopilot GZBridge.cpp: .../link/base_link/sensor/air_pressure_sensor/air_pressure."""
+    sensors = f'<sensor name="imu_sensor" type="imu"/><sensor name="{sensor}" type="air_pressure"/>'
+    block = f'<gazebo reference="{link}">{sensors}</gazebo>'
+    text = f'<robot name="drone"><link name="{link}"/>{block}</robot>'
+    found = rewrite(text, "robot1", layout=layout, distro="jazzy").findings
+    assert [it.code for it in found].count("MB428") == told

@@ -267,7 +267,7 @@ hard_wired_name = rule(
     "MB428",
     "hard-wired-name",
     WARNING,
-    what="A plugin's code looks for a fixed name, which is renamed for each robot.",
+    what="A plugin's code, or PX4, looks for a fixed name, which is renamed for each robot.",
     why="It does not find the new name and stops, or moves nothing: it has no parameter for "
     "another name.",
     fix="Keep the names as they are and separate the robots by tf topics: layout tf-per-robot. Or take "

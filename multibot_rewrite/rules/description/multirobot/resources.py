@@ -132,8 +132,8 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     what="The robot loads a gz system that acts on the whole world.",
     why="gz-sim loads it again with every copy. Two Sensors systems crash it (gz-sensors issue "
     "497). Two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
-    fix="Load it in the world's SDF, once, and remove it from the robot; `urdf-postfix --world-systems "
-    "leave` takes it out of each robot.",
+    fix="Load it in the world's SDF, once, and remove it from the robot. `urdf-postfix` takes it out "
+    "of several robots, and with `--world-systems leave` out of one.",
     bad="<gazebo>\n"
     '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
     "</gazebo>\n",
