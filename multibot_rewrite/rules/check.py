@@ -235,5 +235,5 @@ def doubts(graph: System) -> tuple[Caveat, ...]:
 
 
 def _inconclusive(finding: Finding) -> Finding:
-    hint = "the view of the graph may be incomplete: see the caveats of the snapshot"
+    hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
     return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0)
