@@ -68,7 +68,7 @@ def _check_use(options: argparse.Namespace) -> bool:
     """Are nodes to be described? Raises UsageError."""
     live.check_source(options)
     for name in ("expect", "timeout", "domain"):
-        if options.snapshot and getattr(options, name) not in (None, []):
+        if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):
             raise UsageError(f"--{name} is for the live graph, leave out --from")
     if options.output not in (None, STANDARD):
         check_folder(options.output)

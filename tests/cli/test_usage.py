@@ -256,6 +256,8 @@ def test_what_a_snapshot_does_not_take_together() -> None:
         saved = options(**{**usual, "snapshot": ["g.json"], name: given})
         hint = f"--{name} is for the live graph, leave out --from"
         assert said(snapshot._check_use, saved) == hint
+        saved.snapshot, saved.bag = [], "bag/"
+        assert said(snapshot._check_use, saved) == hint
     same = options(**{**usual, "snapshot": ["g.json"], "output": "./g.json"})
     assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")
     assert snapshot._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))

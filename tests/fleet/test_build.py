@@ -98,7 +98,7 @@ def renamed(folder: Path, old: str = "robot2", new: str = "robot3") -> None:
 
 @pytest.mark.slow
 def test_the_smallest_fleet_gives_everything(out: Path) -> None:
-    common = {"plan.yaml", "remappings.yaml", "commands.md", MANIFEST}
+    common = {"plan.yaml", ".plan.schema.json", "remappings.yaml", "commands.md", MANIFEST}
     common |= {"fleet.launch.py", "bridge.yaml", "foxglove.json"}
     own = {"robot1/rover.urdf", "robot1/params.yaml", "robot1/start_pose.yaml"}
     assert set(held(out)) == common | own | {

@@ -85,7 +85,7 @@ def scalars(value: Any) -> Iterator[str]:
 @pytest.mark.slow
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
-    common = {"plan.yaml", "remappings.yaml", "commands.md", "bridge.yaml"}
+    common = {"plan.yaml", ".plan.schema.json", "remappings.yaml", "commands.md", "bridge.yaml"}
     common |= {"fleet.launch.py"}
     # One set of frames for each robot: a layout of Foxglove shows all.
     common |= {"foxglove.json"} if layout != "L1" else set()

@@ -232,9 +232,7 @@ def test_json_is_there_when_nothing_is_found(capsys: pytest.CaptureFixture[str])
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     out = said(capsys, "--help")[1]
-    options = {
-        name for group in LINT.groups for it in group.options if it.shown for name in it.names[-1:]
-    }
+    options = {name for group in LINT.groups for it in group.options for name in it.names[-1:]}
     options -= {"words"}
     assert [it for it in options if it not in out] == []
 

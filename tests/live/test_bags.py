@@ -209,6 +209,7 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.slow
 def test_the_doctor(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "check", "--from", made / "healthy")[0] == 0
+    assert "\ntf topic " in run(capsys, "snapshot", "--from", made / "healthy")[1]
     code, out, _ = run(capsys, "check", "--from", made / "collision")
     assert (code, "MG401" in out) == (1, True)
 

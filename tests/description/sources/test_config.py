@@ -156,6 +156,7 @@ def test_a_file_named_twice_is_read_once(project: Path, capsys: pytest.CaptureFi
 
 def test_a_wrong_table_stops_the_command(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (project / "pyproject.toml").write_text("[tool.multibot-rewrite]\nx = 1\n")
+    (project / "in.urdf").write_text("<robot/>")
     assert main([str(project / "in.urdf"), "robot1"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
