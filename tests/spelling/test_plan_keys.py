@@ -177,9 +177,6 @@ def test_json_has_a_robot_a_line() -> None:
     assert lines[-2:] == [" }", "}"]
 
 
-VALUE = yaml.load(to_yaml(PLAN), yaml.CSafeLoader)
-
-
 def without(*path: str) -> dict[str, Any]:
     return changed(path, None, drop=True)
 
