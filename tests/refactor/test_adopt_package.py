@@ -337,3 +337,12 @@ def test_one_that_takes_it_and_one_that_does_not(package: Path) -> None:
     made = adopt(str(package))
     assert list(made.already) == [str(package / "urdf/other.urdf.xacro")]
     assert made.proved == (str(package / "urdf/r.urdf.xacro"),)
+
+
+def test_an_srdf_that_takes_one_stays_and_its_urdf_gets_the_same(package: Path) -> None:
+    own = '<xacro:arg name="prefix" default=""/><group name="g"><link name="$(arg prefix)base"/>'
+    srdf = package / "config/r.srdf.xacro"
+    srdf.write_text(f'<robot name="r" {SPACE}>{own}</group></robot>')
+    made = adopt(str(package))
+    assert (made.argument, dict(made.already)) == ("prefix", {str(srdf): "prefix"})
+    assert made.proved == (str(package / "urdf/r.urdf.xacro"),)
