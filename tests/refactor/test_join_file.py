@@ -12,6 +12,8 @@ from lxml import etree
 from multibot_rewrite import InputError, rewrite
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.urdf_lint import main as lint
+from multibot_rewrite.description.joining.from_file import listed_in, part_of
+from multibot_rewrite.description.joining.part import Part
 
 ARM = '<robot name="arm"><link name="base"/><link name="tool"/>{}</robot>\n'.format(
     '<joint name="end" type="fixed"><parent link="base"/><child link="tool"/></joint>'
@@ -49,6 +51,45 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
 
 def links(data: bytes) -> list[str | None]:
     return [it.get("name") for it in etree.fromstring(data).iterchildren("link")]
+
+
+WHOLE = """\
+join:
+  - {description: arm.urdf, srdf: a.srdf, rviz: ../a.rviz, controllers: [c.yaml, d.yaml], moveit: m}
+  - description: parts/hand.urdf.xacro
+    arguments: {n: paw, wide: true, size: 2}
+    prefix: h_
+    name: paw
+    one_system: true
+    at: {parent: tool, pose: {x: 1, y: 2, z: 3, roll: 4, pitch: 5, yaw: 6.5}}
+samples: 20
+"""
+
+
+def test_every_key_of_a_list(write: Write) -> None:
+    arm = Part(
+        "arm.urdf", srdf="a.srdf", controllers=("c.yaml", "d.yaml"), moveit=("m",), rviz="../a.rviz"
+    )
+    given = {"n": "paw", "wide": "true", "size": "2"}
+    pose = (1, 2, 3, 4, 5, 6.5)
+    hand = Part("parts/hand.urdf.xacro", "tool", pose, "h_", "paw", given, one_system=True)
+    assert listed_in(write(WHOLE)) == ((arm, hand), 20)
+    assert listed_in(write(LIST))[1] == 0
+
+
+def test_a_part_of_a_fleet_file_has_the_same_keys() -> None:
+    """There values are checked already, and paths are not of a folder."""
+    assert part_of({"description": "a.urdf"}) == Part("a.urdf")
+    data = {
+        "description": "a.urdf", "at": {"parent": "tool", "pose": {"z": 1}}, "prefix": "a_",
+        "name": "arm", "arguments": {"x": True, "y": 2}, "srdf": "a.srdf", "controllers": "c.yaml",
+        "one_system": True, "moveit": ["m", "n"], "rviz": "a.rviz",
+    }  # fmt: skip
+    given, pose = {"x": "true", "y": "2"}, (0, 0, 1, 0, 0, 0)
+    assert part_of(data) == Part(
+        *("a.urdf", "tool", pose, "a_", "arm", given, "a.srdf", ("c.yaml",), True, ("m", "n")),
+        "a.rviz",
+    )
 
 
 def test_a_rewrite_reads_it(write: Write) -> None:
@@ -99,6 +140,17 @@ def test_join_joins_it(write: Write, capsys: pytest.CaptureFixture[str]) -> None
         ("parts/arm.urdf", "parts/no.urdf", "parts/no.urdf: cannot be read"),
         ("parts/arm.urdf", "robot.urdf.join", "robot.urdf.join is a list of parts"),
         ("join:", "join: [", "not valid YAML"),
+        (
+            "join:",
+            "samples: x\njoin:",
+            "robot.urdf.join:1: samples is x; write a number such as 100",
+        ),
+        ("join:", "samples: 9\njoin:", "samples is for an SRDF: give a part its srdf, too"),
+        (
+            "{description: parts/arm.urdf}",
+            "{}",
+            "robot.urdf.join:2: a part has no description; name",
+        ),
     ],
 )
 def test_a_wrong_list_is_told_in_one_line(write: Write, old: str, new: str, wanted: str) -> None:
