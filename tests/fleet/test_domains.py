@@ -124,7 +124,7 @@ def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
     return config["name"], found
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_domain_bridge_takes_what_is_written(made: Outputs) -> None:
     """Also of names with a slash, and of a topic that the robot only reads."""
     for robot in ("robot1", "robot2"):
@@ -170,7 +170,7 @@ def test_what_a_robot_only_reads_comes_from_the_domain_of_all() -> None:
     }
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_bridge_of_a_robot_has_what_crosses(made: Outputs) -> None:
     bridge = yaml.safe_load(text(made, "domain_bridge/robot1_bridge.yaml"))
     assert (bridge["name"], bridge["from_domain"], bridge["to_domain"]) == ("robot1_bridge", 11, 10)
@@ -190,7 +190,7 @@ def test_the_bridge_of_a_robot_has_what_crosses(made: Outputs) -> None:
     assert sorted(other["topics"]) == ["/map", "/robot2/tf", "/robot2/tf_static"]
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -> None:
     first, _, config = text(made, "free_fleet/robot2.json5").partition("\n")
     assert first.startswith("//")
@@ -211,7 +211,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
     }
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize("layout", ["both", "tf-per-robot"])
 def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path) -> None:
     """As nav2_robot_adapter.py and fleet_adapter.py (002505f): names have the robot's before them, and
@@ -242,7 +242,7 @@ ALLOWED = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_launch_file_starts_each_robot_in_its_domain(made: Outputs) -> None:
     launch = text(made, "fleet.launch.py")
     assert "SetEnvironmentVariable('ROS_DOMAIN_ID', '10')" in launch
@@ -256,7 +256,7 @@ def test_the_launch_file_starts_each_robot_in_its_domain(made: Outputs) -> None:
     assert "## robot2\n\n```sh\nexport ROS_DOMAIN_ID=12\n" in commands
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_plan_has_the_bridge_on_both_sides_and_comes_back_from_a_file(made: Outputs) -> None:
     plan = made.planned
     assert domain_of(plan) == {"": 10, "robot1": 11, "robot2": 12}
@@ -298,7 +298,7 @@ def test_what_a_fleet_file_may_not_say(more: str, said: str, tmp_path: Path) -> 
     assert str(raised.value).startswith(f"{file}:")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("layout", "old", "new", "said"),
     [
@@ -324,7 +324,7 @@ def faults(folder: Path, fleet: str) -> list[Finding]:
     return [it for it in closed_plan(made).gaps if it.code == "MF849"]
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_plugin_is_where_its_simulator_is(tmp_path: Path) -> None:
     (found,) = faults(tmp_path, "simulator: gazebo\ndomains: {robot1: 11, robot2: 12}\n")
     assert (found.level, found.line, found.robots) == ("error", 4, ("robot1", "robot2"))
@@ -371,7 +371,7 @@ shared_nodes: front
 """
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_service_does_not_cross(tmp_path: Path) -> None:
     """A node of all robots calls what a robot in another domain serves."""
     (tmp_path / "nodes.yaml").write_text(NODES)
@@ -381,7 +381,7 @@ def test_a_service_does_not_cross(tmp_path: Path) -> None:
     assert faults(tmp_path, f"{OWN}domains: {{robot1: 11, robot2: 11, shared_nodes: 11}}\n") == []
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
     """A driver that takes no namespace: with one domain each its robots never meet."""
     (tmp_path / "nodes.yaml").write_text(NODES)

@@ -63,7 +63,7 @@ def package(tmp_path: Path) -> Path:
 NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
 FILES = [
     pytest.param("a.launch.py", LAUNCH, marks=pytest.mark.more),
-    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.slow)),
+    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.more)),
 ]
 
 

@@ -66,7 +66,7 @@ def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) ->
     assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_summary_and_strict(tmp_path: Path) -> None:
     file, out = tmp_path / "r.urdf", tmp_path / "out.urdf"
     file.write_text(LIDAR.format("{name}/scan"))
@@ -86,7 +86,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     assert healthy.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf"
     file.write_text(LIDAR.format("{name}/scan"))
