@@ -173,6 +173,54 @@ def test_without_trust_a_parameter_file_stays(package: Path) -> None:
 
 
 @pytest.mark.more
+def test_a_parameter_file_of_a_node_that_does_not_run_stays(package: Path) -> None:
+    """Nothing proves what it is then; the argument is handed on all the same."""
+    with_parameters(package, GIVEN)
+    path = package / "launch/a.launch.py"
+    text = path.read_text().replace(
+        'executable="ros2_control_node",',
+        'executable="ros2_control_node",\n            condition=IfCondition("false"),',
+    )
+    path.write_text(f"from launch.conditions import IfCondition\n{text}")
+    made = adopt(str(package), trust=True)
+    assert str(package / "config/c.yaml") not in made.after
+    assert made.launches == (str(path),)
+    assert b"ParameterFile" not in made.after[str(path)]
+
+
+PLUGIN = (
+    '<gazebo><plugin name="p" filename="libgazebo_ros_control.so"><robotNamespace>/demo'
+    "</robotNamespace></plugin></gazebo>\n"
+)
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("own", [True, False])
+def test_a_launch_file_puts_the_description_into_the_namespace_or_keeps_its_own(
+    package: Path, own: bool
+) -> None:
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(JOINT + PLUGIN))
+    path = package / "launch/a.launch.py"
+    path.write_text(LAUNCH.replace("executable=", 'namespace="x", executable=') if own else LAUNCH)
+    made = adopt(str(package), trust=True)
+    assert (made.namespace, made.launches) == ("namespace", (str(path),))
+    assert (b'" namespace:=", LaunchConfiguration("namespace")' in made.after[str(path)]) != own
+    told = [it.why for it in made.left if it.place.startswith(str(path))]
+    assert told == ["it has a namespace; give that to its xacro by hand"] * own
+
+
+def test_sections_of_parameters_are_told_where_there_is_a_namespace(package: Path) -> None:
+    (package / "config/c.yaml").write_text(MANAGED.format("drive", "x"))
+    assert adopt(str(package)).left == ()
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(JOINT + PLUGIN))
+    (told,) = adopt(str(package)).left
+    assert (told.place, told.why) == (
+        f"{package}/config/c.yaml:2",
+        "'controller_manager' is for no node in a namespace; write /**/controller_manager",
+    )
+
+
+@pytest.mark.more
 def test_one_that_does_not_hand_it_on_is_left_as_it_was(package: Path) -> None:
     path = package / "launch/a.launch.py"
     path.write_text(EARLY)

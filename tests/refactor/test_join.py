@@ -295,7 +295,14 @@ def test_a_part_of_macros_says_which_file_includes_it(
 
 WRONG = {
     "one part": ([Part(ARM)], "one description alone"),
-    "no link named": ([Part(ARM), Part(HAND, prefix="h_")], "name the link"),
+    "no link named": (
+        [Part(ARM), Part(HAND, prefix="h_")],
+        "name the link that it is fixed to with --at, as tool",
+    ),
+    "a link like none": (
+        [Part(ARM), Part(HAND, "xyz", prefix="h_")],
+        "no part before it has a link 'xyz'; it ends in tool",
+    ),
     "a link that is not there": (
         [Part(ARM), Part(HAND, "tol", prefix="h_")],
         "has a link 'tol'; did you mean 'tool'?",

@@ -73,7 +73,8 @@ def test_what_does_not_expand_is_said(tmp_path: Path) -> None:
 def test_it_is_tried_beside_a_prefix_too(tmp_path: Path) -> None:
     """What holds without a prefix need not hold with one."""
     declared = b'<xacro:arg name="prefix" default=""/>'
-    bad = b"<xacro:if value=\"${'$(arg prefix)' != '' and namespace != ''}\"><link name='odd'/></xacro:if>"
+    test = b"${'$(arg prefix)' != '' and namespace != ''}"
+    bad = b'<xacro:if value="%s"><link name="odd"/></xacro:if>' % test
     why = 'its ROS names are not proved: with namespace:=ns1 it has <link name="odd">'
     tampered = proved(
         tmp_path,
