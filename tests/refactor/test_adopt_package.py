@@ -331,6 +331,15 @@ def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> Non
     assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
 
 
+@pytest.mark.parametrize("folder", ["build", "install", "log", "node_modules", ".git", "src/build"])
+def test_what_a_build_made_is_not_searched(package: Path, folder: str) -> None:
+    (package / folder).mkdir()
+    (package / folder / "a.py").write_text("x = 'arm'\n")
+    (package / "src" / "no_build.py").write_text("x = 'arm'\n")
+    found = [it.place for it in named_elsewhere(str(package), ["arm"], ())]
+    assert found == [f"{package}/src/no_build.py:1"]
+
+
 @pytest.mark.parametrize("lines", [20, 23])
 def test_of_many_lines_of_a_file_twenty_are_listed(package: Path, lines: int) -> None:
     (package / "src/a.py").write_text("x = 'arm'\n" * lines)

@@ -43,6 +43,7 @@ PYTHON = {
 LEFT = {
     "a program of its own": 'text = xacro.process_file("r.urdf.xacro").toxml()\n',
     "no literal list": 'ld.add_action(Node())\nt = Command(["xacro ", "r.urdf.xacro"])\n',
+    "the first line that has it": 'p = "r.urdf.xacro"\ntext = xacro.process_file(p)\n',
     "words in one text": 't = Command("xacro r.urdf.xacro")\nx = LaunchDescription([Node()])\n',
 }
 

@@ -11,6 +11,7 @@ import pytest
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
 from multibot_rewrite.refactor.namespaces import namespaced, space_proved
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
@@ -36,6 +37,27 @@ def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...
     paths, wrong = space_proved(space, "prefix", "robot1_", after, how, tree)
     assert {it.place for it in wrong} <= {str(folder / "r.urdf.xacro")}
     return tuple(Path(it).name for it in paths), [it.why for it in wrong]
+
+
+@pytest.mark.parametrize("names", [NAMES, SPACES])
+def test_the_first_name_that_is_free_is_taken(names: tuple[str, ...], tmp_path: Path) -> None:
+    """By an argument, a property or a parameter of a macro, with a default or without."""
+    forms = (
+        '<xacro:arg name="{}" default=""/>',
+        '<xacro:property name="{}" value=""/>',
+        '<xacro:macro name="m" params="a {}:=1 b"/>',
+        '<xacro:macro name="n" params="{} c"/>',
+    )
+    tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
+    for at, name in enumerate(names):
+        taken = "".join(form.format(it) for form, it in zip(forms, names[:at], strict=False))
+        (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(taken))
+        assert free_name(read_package(str(tmp_path), tree, how).descriptions, names) == name
+
+
+def test_names_of_arguments_are_those_that_people_use() -> None:
+    assert NAMES == ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
+    assert SPACES == ("namespace", "robot_namespace", "ros_namespace")
 
 
 def test_what_the_rewrite_makes_is_proved(tmp_path: Path) -> None:
