@@ -39,4 +39,5 @@ def only(names: Sequence[str]) -> str:
 
 def plural(count: int, word: str) -> str:
     """A number with the word for what is counted."""
-    return f"{count} {word}{'s' * (count != 1)}"
+    ending = "es" if word.endswith("s") else "s"
+    return f"{count} {word}{ending * (count != 1)}"

@@ -234,7 +234,7 @@ def _is_srdf(it: Description) -> bool:
 
 def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
     """The arguments of a xacro that are called as those for a robot's names."""
-    if it.read is None or it.inventory.format != "robot":
+    if it.read is None:
         return ()
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):

@@ -97,7 +97,7 @@ def _of_xml(
     commands = list(_COMMAND.finditer(source))
     root = _ROOT.search(source)
     if not commands or not root or b'<arg name="%s"' % argument.encode() in source:
-        return LaunchEdit(None, (_left(path, source, b"xacro"),))
+        return LaunchEdit(None, (_left(path, source),))
     given = "".join(f" {it}:=$(var {it})" for it in of_xacro).encode()
     edits = [SourceEdit(path, it.start(2), it.start(2), given) for it in commands]
     declared = "".join(f'\n  <arg name="{it}" default=""/>' for it in every).encode()
@@ -126,7 +126,9 @@ class _Text(NamedTuple):
         return self.lines[node.lineno - 1] + node.col_offset
 
     def end(self, node: _Placed) -> int:
-        return self.lines[(node.end_lineno or 1) - 1] + (node.end_col_offset or 0)
+        line, column = node.end_lineno, node.end_col_offset
+        assert line and column
+        return self.lines[line - 1] + column
 
     def insert(self, at: int, text: str) -> SourceEdit:
         return SourceEdit(self.path, at, at, text.encode())
@@ -145,7 +147,7 @@ def _of_python(
     commands = list(_lists_of(tree, "Command", _runs_xacro))
     actions = next(_lists_of(tree, "LaunchDescription", lambda _: True), None)
     if not commands or actions is None or not actions.elts:
-        return LaunchEdit(None, (_left(path, source, b"xacro"),))
+        return LaunchEdit(None, (_left(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
     edits.append(_declared(it, actions, every))
@@ -256,6 +258,6 @@ def _runs_xacro(words: ast.List) -> bool:
     return bool(words.elts) and bool(_XACRO.search(ast.unparse(words.elts[0])))
 
 
-def _left(path: str, source: bytes, word: bytes) -> Left:
-    line = locate(source, max(source.find(word), 0))[0]
+def _left(path: str, source: bytes) -> Left:
+    line = locate(source, max(source.find(b"xacro"), 0))[0]
     return Left(f"{path}:{line}", "give its xacro the argument by hand")

@@ -179,7 +179,7 @@ def _changes(template: Template) -> Iterator[Change]:
 
 def _written(change: Change, argument: str) -> bytes:
     """An expression that is empty without a namespace."""
-    before, _, after = change.new.partition(TRIED_SPACE)
+    before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""
     return f"${{{test}{' + '.join(words)}}}".encode()

@@ -149,4 +149,4 @@ def is_fleet(data: bytes) -> bool:
     """Is this a fleet file? Its robots are a list, or in files that it includes; in a plan they are
     keys."""
     found = _ROBOTS.search(data)
-    return found[1][:1] in (b"-", b"[") if found else bool(_INCLUDE.search(data))
+    return found[1] in (b"-", b"[") if found else bool(_INCLUDE.search(data))

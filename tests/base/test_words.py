@@ -33,6 +33,7 @@ def test_lists_in_a_sentence() -> None:
         "",
     )
     assert [plural(it, "node") for it in (0, 1, 2)] == ["0 nodes", "1 node", "2 nodes"]
+    assert [plural(it, "class") for it in (1, 2)] == ["1 class", "2 classes"]
     assert (clip(" a\n b "), clip("x" * 60), clip("x" * 61)) == ("a b", "x" * 60, "x" * 59 + "…")
 
 

@@ -236,6 +236,15 @@ def test_a_tool_that_reaches_into_a_robot_crosses() -> None:
     )
 
 
+def test_what_crosses_is_in_the_order_of_robots_not_of_nodes() -> None:
+    graph = more(end("/r1/a", PUBLISHES, "/t"), end("/tool", SUBSCRIBES, "/r1/t"))
+    made = scene(found("MG320", "/r1/a", "/t", robot="r1"), graph=graph)
+    assert made.crossings == (
+        Crossing("", "/tool", "r1", UNEXPECTED, ("subscribes /r1/t",)),
+        Crossing("r1", "", "", LEAK, ("publishes /t",)),
+    )
+
+
 def test_a_node_under_another_name_is_a_leak() -> None:
     lost = GRAPH._replace(
         nodes=(Node("/a"), *GRAPH.nodes[1:]), ends=(ENDS[0]._replace(node="/a"), *ENDS[1:])

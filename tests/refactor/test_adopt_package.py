@@ -63,7 +63,7 @@ def package(tmp_path: Path) -> Path:
 NEEDS_LAUNCH = pytest.mark.skipif(bool(missing()), reason="launch reads XML alone")
 FILES = [
     pytest.param("a.launch.py", LAUNCH, marks=pytest.mark.more),
-    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.slow)),
+    pytest.param("a.launch.xml", XML, marks=(NEEDS_LAUNCH, pytest.mark.more)),
 ]
 
 
@@ -170,6 +170,54 @@ def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Pa
 def test_without_trust_a_parameter_file_stays(package: Path) -> None:
     with_parameters(package, GIVEN)
     assert str(package / "config/c.yaml") not in adopt(str(package)).after
+
+
+@pytest.mark.more
+def test_a_parameter_file_of_a_node_that_does_not_run_stays(package: Path) -> None:
+    """Nothing proves what it is then; the argument is handed on all the same."""
+    with_parameters(package, GIVEN)
+    path = package / "launch/a.launch.py"
+    text = path.read_text().replace(
+        'executable="ros2_control_node",',
+        'executable="ros2_control_node",\n            condition=IfCondition("false"),',
+    )
+    path.write_text(f"from launch.conditions import IfCondition\n{text}")
+    made = adopt(str(package), trust=True)
+    assert str(package / "config/c.yaml") not in made.after
+    assert made.launches == (str(path),)
+    assert b"ParameterFile" not in made.after[str(path)]
+
+
+PLUGIN = (
+    '<gazebo><plugin name="p" filename="libgazebo_ros_control.so"><robotNamespace>/demo'
+    "</robotNamespace></plugin></gazebo>\n"
+)
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("own", [True, False])
+def test_a_launch_file_puts_the_description_into_the_namespace_or_keeps_its_own(
+    package: Path, own: bool
+) -> None:
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(JOINT + PLUGIN))
+    path = package / "launch/a.launch.py"
+    path.write_text(LAUNCH.replace("executable=", 'namespace="x", executable=') if own else LAUNCH)
+    made = adopt(str(package), trust=True)
+    assert (made.namespace, made.launches) == ("namespace", (str(path),))
+    assert (b'" namespace:=", LaunchConfiguration("namespace")' in made.after[str(path)]) != own
+    told = [it.why for it in made.left if it.place.startswith(str(path))]
+    assert told == ["it has a namespace; give that to its xacro by hand"] * own
+
+
+def test_sections_of_parameters_are_told_where_there_is_a_namespace(package: Path) -> None:
+    (package / "config/c.yaml").write_text(MANAGED.format("drive", "x"))
+    assert adopt(str(package)).left == ()
+    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(JOINT + PLUGIN))
+    (told,) = adopt(str(package)).left
+    assert (told.place, told.why) == (
+        f"{package}/config/c.yaml:2",
+        "'controller_manager' is for no node in a namespace; write /**/controller_manager",
+    )
 
 
 @pytest.mark.more
@@ -283,6 +331,15 @@ def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> Non
     assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
 
 
+@pytest.mark.parametrize("folder", ["build", "install", "log", "node_modules", ".git", "src/build"])
+def test_what_a_build_made_is_not_searched(package: Path, folder: str) -> None:
+    (package / folder).mkdir()
+    (package / folder / "a.py").write_text("x = 'arm'\n")
+    (package / "src" / "no_build.py").write_text("x = 'arm'\n")
+    found = [it.place for it in named_elsewhere(str(package), ["arm"], ())]
+    assert found == [f"{package}/src/no_build.py:1"]
+
+
 @pytest.mark.parametrize("lines", [20, 23])
 def test_of_many_lines_of_a_file_twenty_are_listed(package: Path, lines: int) -> None:
     (package / "src/a.py").write_text("x = 'arm'\n" * lines)
@@ -336,4 +393,13 @@ def test_one_that_takes_it_and_one_that_does_not(package: Path) -> None:
     (package / "urdf/other.urdf.xacro").write_text(f'<robot name="o" {SPACE}>{own}</robot>')
     made = adopt(str(package))
     assert list(made.already) == [str(package / "urdf/other.urdf.xacro")]
+    assert made.proved == (str(package / "urdf/r.urdf.xacro"),)
+
+
+def test_an_srdf_that_takes_one_stays_and_its_urdf_gets_the_same(package: Path) -> None:
+    own = '<xacro:arg name="prefix" default=""/><group name="g"><link name="$(arg prefix)base"/>'
+    srdf = package / "config/r.srdf.xacro"
+    srdf.write_text(f'<robot name="r" {SPACE}>{own}</group></robot>')
+    made = adopt(str(package))
+    assert (made.argument, dict(made.already)) == ("prefix", {str(srdf): "prefix"})
     assert made.proved == (str(package / "urdf/r.urdf.xacro"),)

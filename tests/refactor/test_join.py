@@ -293,9 +293,40 @@ def test_a_part_of_macros_says_which_file_includes_it(
     assert str(found.value) == f"{tmp_path}/part.xacro (expanded): {wanted}"
 
 
+# What a robot has once -> what it is called, and a part that has one.
+SYSTEM = '<ros2_control name="{}" type="system"><hardware><plugin>a/B</plugin></hardware>{}'
+OF_ONE = {
+    "link": ("link", link("x") + fixed("on_{}", "{}", "x")),
+    "joint": ("joint", link("y") + fixed("x", "{}", "y")),
+    "transmission": ("transmission", '<transmission name="x"/>'),
+    "hardware": ("ros2_control", SYSTEM.format("x", "</ros2_control>")),
+    "gpio": ("gpio", SYSTEM.format("{}", '<gpio name="x"/></ros2_control>')),
+    "sensor": ("sensor", SYSTEM.format("{}", '<sensor name="x"/></ros2_control>')),
+}
+
+
+@pytest.mark.parametrize("case", OF_ONE)
+def test_what_a_robot_has_once_two_parts_may_not_both_have(case: str) -> None:
+    word, inside = OF_ONE[case]
+    first = robot(link("base") + inside.replace("{}", "base").replace('"y"', '"y1"'))
+    other = robot(link("root") + inside.replace("{}", "root"))
+    with pytest.raises(InputError) as found:
+        join([Part(first, name="a"), Part(other, "base", name="b")])
+    said = f"<text>: {word} 'x' is in <text>, too; give it a prefix (--prefix hand_)"
+    assert str(found.value) == said
+    assert b'name="b_x"' in join([Part(first, name="a"), Part(other, "base", prefix="b_")]).data
+
+
 WRONG = {
     "one part": ([Part(ARM)], "one description alone"),
-    "no link named": ([Part(ARM), Part(HAND, prefix="h_")], "name the link"),
+    "no link named": (
+        [Part(ARM), Part(HAND, prefix="h_")],
+        "name the link that it is fixed to with --at, as tool",
+    ),
+    "a link like none": (
+        [Part(ARM), Part(HAND, "xyz", prefix="h_")],
+        "no part before it has a link 'xyz'; it ends in tool",
+    ),
     "a link that is not there": (
         [Part(ARM), Part(HAND, "tol", prefix="h_")],
         "has a link 'tol'; did you mean 'tool'?",

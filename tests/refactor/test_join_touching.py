@@ -56,7 +56,7 @@ def test_without_samples_nothing_is_guessed() -> None:
     assert any("5 pairs of links of two parts are checked" in it for it in made.notes)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_what_never_and_what_always_touches_is_disabled() -> None:
     pytest.importorskip("pinocchio")
     made = joined()
@@ -72,7 +72,7 @@ def test_what_never_and_what_always_touches_is_disabled() -> None:
     assert any("'bar' and 'round' touch in every pose" in it for it in made.notes)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_it_is_the_same_each_time_and_knows_where_the_part_is() -> None:
     pytest.importorskip("pinocchio")
     assert joined().srdf == joined().srdf
@@ -84,7 +84,7 @@ def test_it_is_the_same_each_time_and_knows_where_the_part_is() -> None:
 AROUND = [(0.7, 0), (-0.7, 0), (0, 0.7), (0, -0.7)]
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_what_touches_in_some_poses_is_checked() -> None:
     pytest.importorskip("pinocchio")
     links = "".join(
@@ -96,7 +96,7 @@ def test_what_touches_in_some_poses_is_checked() -> None:
     assert [it for it in disabled(made) if "bar" in it] == []
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_poses_are_the_same_each_time() -> None:
     pytest.importorskip("pinocchio")
     # In one pose the bar is in this half or it is not.
@@ -104,7 +104,7 @@ def test_the_poses_are_the_same_each_time() -> None:
     assert len({joined(half, samples=1).srdf for _ in range(8)}) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_limits_are_kept() -> None:
     pytest.importorskip("pinocchio")
     limit = '<limit lower="1" upper="2" effort="1" velocity="1"/></joint>'
@@ -115,7 +115,7 @@ def test_limits_are_kept() -> None:
     assert disabled(made)["bar", "near"] == "Never"
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_of_a_mesh_that_is_not_there_nothing_is_said() -> None:
     pytest.importorskip("pinocchio")
     far = BOX.format("1.5 0 0", "0.2 0.2 0.2")
@@ -124,7 +124,7 @@ def test_of_a_mesh_that_is_not_there_nothing_is_said() -> None:
     assert any("'far': the mesh package://nowhere/far.stl is not there" in it for it in made.notes)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_meshes_are_found_from_their_package(tmp_path: Path) -> None:
     pytest.importorskip("pinocchio")
     (tmp_path / "package.xml").write_text("<package><name>blocks</name></package>")
@@ -152,7 +152,7 @@ def test_without_pinocchio_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         joined()
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_list_of_parts_says_how_many_poses(tmp_path: Path) -> None:
     pytest.importorskip("pinocchio")
     listed, out = parts_in(tmp_path, "200", "srdf: it.srdf, "), tmp_path / "out"

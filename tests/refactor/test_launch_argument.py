@@ -43,6 +43,7 @@ PYTHON = {
 LEFT = {
     "a program of its own": 'text = xacro.process_file("r.urdf.xacro").toxml()\n',
     "no literal list": 'ld.add_action(Node())\nt = Command(["xacro ", "r.urdf.xacro"])\n',
+    "the first line that has it": 'p = "r.urdf.xacro"\ntext = xacro.process_file(p)\n',
     "words in one text": 't = Command("xacro r.urdf.xacro")\nx = LaunchDescription([Node()])\n',
 }
 
@@ -122,11 +123,13 @@ def test_what_belongs_to_the_description_is_in_the_namespace(of_xacro: bool) -> 
     more = 'Node(package="rviz2", executable="rviz2")'
     spawner = 'Node(package="gazebo_ros", arguments=["-topic", "robot_description"])'
     command = 't = Command(["xacro ", "r.urdf.xacro"])'
-    source = f"{HEAD}{command}\nx = LaunchDescription([{NODE}, {more}, {spawner}])\n"
+    source = (
+        f"{HEAD}{command}\nx = LaunchDescription([{NODE}, {more}, {spawner}, Node(package=P)])\n"
+    )
     space = Space("namespace", of_xacro)
     made = with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"], (), space)
     text = (made.data or b"").decode()
-    assert (IN_SPACE in text, more in text) == (True, True)
+    assert (IN_SPACE in text, more in text, "Node(package=P)]" in text) == (True, True, True)
     assert 'package="gazebo_ros", namespace=LaunchConfiguration("namespace"),' in text
     assert text.count('DeclareLaunchArgument("namespace", default_value="")') == 1
     assert ('" namespace:=", LaunchConfiguration("namespace")' in text) == of_xacro

@@ -69,6 +69,19 @@ def test_lines_that_are_left_are_in_the_order_of_their_paths(package: Path) -> N
     assert list(made.mentions) == [f"{package}/node.py:1", *inside]
 
 
+def test_lines_are_told_of_every_kind_of_text(package: Path) -> None:
+    """Code, and what a package of ROS has beside it; a picture has no lines."""
+    kinds = {
+        *("py", "yaml", "yml", "xml", "rviz", "lua"),
+        *("cpp", "hpp", "h", "xacro", "srdf"),
+    }  # fmt: skip
+    (package / "node.py").unlink()
+    for kind in (*kinds, "png", "txt"):
+        (package / f"a.{kind}").write_text("x(base_link) # base_link2 /base_link\n")
+    made = rename_symbol("base_link", "chassis", str(package))
+    assert {it.rpartition(".")[2] for it in made.mentions} == {f"{it}:1" for it in kinds}
+
+
 def test_an_srdf_alone_declares_no_link(tmp_path: Path) -> None:
     (tmp_path / "r.srdf").write_text(
         '<robot name="r"><group name="g"><link name="a"/></group></robot>'

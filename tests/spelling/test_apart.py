@@ -33,7 +33,7 @@ def found(table: Table, node: str) -> NodeTable:
     return next(it for it in table.nodes if it.node == node and it.robot == "robot1")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
 def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, stack: str) -> None:
@@ -46,7 +46,7 @@ def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, s
     assert table.problems == made(release, "no_robot_state_publisher").problems
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
 def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
@@ -73,7 +73,7 @@ def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str)
     assert name(costmap, "/tf") == name("amcl", "/tf") == "/tf/robot1"
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_lifecycle_manager_finds_a_server_in_its_namespace(release: str) -> None:
     rules = {
@@ -127,7 +127,7 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
     assert not any("__node" in word for word in own.arguments)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("release", "rule"),
     [("jazzy", None), ("kilted", "/speed_limit/robot1"), ("lyrical", "/speed_limit/robot1")],

@@ -12,14 +12,18 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
     as_yaml,
     bridge_data,
+    bridged_as,
     bridged_topics,
+    is_for_classic,
+    once,
 )
+from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, Topic
 
 ROBOTS = ("robot1", "robot2")
 ROBOT = """\
@@ -220,3 +224,71 @@ def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
         assert {topic[0].partition("/")[0] for topic in topics} <= {
             site.path for site in rewriter.sites
         }, section
+
+
+OF_CLASSIC = '<plugin name="c" filename="libgazebo_ros_camera.so"/>'
+
+
+def inventory(inside: str) -> Inventory:
+    text = f'<robot name="r"><link name="b"/><gazebo reference="b">{inside}</gazebo></robot>'
+    return collect(read_document(text.encode(), "r"), builtin_tree((), NEWEST_LTS))
+
+
+@pytest.mark.parametrize(
+    "library", ["gz-sim-x", "gz_x", "ign_x", "ignition-gazebo-x", "libgz_x.so"]
+)
+def test_a_description_for_both_is_not_for_classic_alone(library: str) -> None:
+    assert is_for_classic(inventory(OF_CLASSIC))
+    assert not is_for_classic(inventory(f'{OF_CLASSIC}<plugin name="g" filename="{library}"/>'))
+    assert not is_for_classic(inventory('<plugin name="a" filename="libacme.so"/>'))
+
+
+@pytest.mark.parametrize(
+    ("type_", "carried"),
+    [
+        ("camera", False), ("imu", False), ("magnetometer", False), ("altimeter", False),
+        ("force_torque", False), ("gpu_lidar", True), ("rgbd_camera", True),
+    ],
+)  # fmt: skip
+def test_a_sensor_that_classic_has_too_is_not_carried_there(type_: str, carried: bool) -> None:
+    """sdformat sensor types; Gazebo Classic has ray and gpu_ray where gz has gpu_lidar."""
+    sensor = f'<sensor name="s" type="{type_}"><topic>t</topic></sensor>'
+    naming = make_naming("L4")
+    of_classic, _ = bridged_topics({"a": inventory(f"{OF_CLASSIC}{sensor}")}, naming)
+    assert ([it for it in of_classic if it.robot] != []) is carried
+    alone, _ = bridged_topics({"a": inventory(sensor)}, naming)
+    assert {it.direction for it in alone if it.robot} == {"GZ_TO_ROS"}
+
+
+@pytest.mark.parametrize(
+    ("library", "carried"), [("libgazebo_ros_x.so", False), ("gz-sim-x", True), ("", True)]
+)
+def test_a_sensor_with_a_plugin_of_classic_is_that_plugins(library: str, carried: bool) -> None:
+    plugin = f'<plugin name="p" filename="{library}"/>'
+    sensor = f'<sensor name="s" type="gpu_lidar"><topic>t</topic>{plugin}</sensor>'
+    found, _ = bridged_topics({"a": inventory(sensor)}, make_naming("L4"))
+    assert ([it.gz for it in found if it.robot] == ["t", "t/points"]) is carried
+
+
+def test_topics_of_a_bridge_are_once_with_all_that_it_does() -> None:
+    """Nothing said is both ways; the order is that of a plan."""
+    rows = (
+        BridgedTopic("a", "/x", "x", "a/msg/B", "gz.msgs.B", "ROS_TO_GZ"),
+        BridgedTopic("b", "/x", "y", "a/msg/B", "gz.msgs.B", "GZ_TO_ROS"),
+        BridgedTopic("b", "/y", "y", "a/msg/C", "gz.msgs.C", "ROS_TO_GZ"),
+        BridgedTopic("b", "/z", "z", "a/msg/C", "gz.msgs.C", "BIDIRECTIONAL"),
+    )
+    both = (PUBLISHES, SUBSCRIBES)
+    assert bridged_as(rows) == (
+        Topic("/x", bridge=both, type="a/msg/B"),
+        Topic("/y", bridge=(SUBSCRIBES,), type="a/msg/C"),
+        Topic("/z", bridge=both, type="a/msg/C"),
+    )
+    served = Topic("/s", bridge=(SERVES,), type="a/srv/D")
+    assert once((served, served._replace(bridge=(PUBLISHES,)))) == (
+        served._replace(bridge=(PUBLISHES, SERVES)),
+    )
+    assert as_yaml(rows[:1]) == (
+        '- ros_topic_name: "/x"\n  gz_topic_name: "/x"\n  ros_type_name: "a/msg/B"\n'
+        '  gz_type_name: "gz.msgs.B"\n  direction: ROS_TO_GZ\n'
+    )

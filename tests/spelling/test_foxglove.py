@@ -12,7 +12,20 @@ from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.foxglove import to_layout
-from multibot_rewrite.system.records import Robot, System
+from multibot_rewrite.spelling.shown import world_of_plan
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    Node,
+    Robot,
+    System,
+    Topic,
+    edge_of,
+)
 
 ROVERS = """\
 layout: {layout}
@@ -72,3 +85,135 @@ def test_frames_of_one_name_give_no_layout() -> None:
     robots = tuple(Robot(it, ("odom", "base_link"), f"/{it}/tf") for it in ("robot1", "robot2"))
     assert not to_layout(System(layout="tf-per-robot", robots=robots))
     assert to_layout(System(layout="tf-per-robot", robots=robots[:1]))
+
+
+def sends(node: str, name: str, type_: str, role: str = PUBLISHES) -> End:
+    return End(TOPIC, role, name, type_, "", node, None, "")
+
+
+TWIST = "geometry_msgs/msg/Twist"
+PLAN = System(
+    nodes=(Node("/a/driver", robot="a"), Node("/maps")),
+    ends=(
+        sends("/a/driver", "/a/scan", "sensor_msgs/msg/LaserScan"),
+        sends("/a/driver", "/a/odom", "nav_msgs/msg/Odometry"),
+        sends("/a/driver", "/a/eye/image", "sensor_msgs/msg/Image"),
+        sends("/a/driver", "/a/description", "std_msgs/msg/String"),
+        sends("/a/driver", "/a/robot_description", "std_msgs/msg/String"),
+        sends("/a/driver", "/a/front/cmd_vel", TWIST, SUBSCRIBES),
+        sends("/a/driver", "/a/cmd_vel", TWIST, SUBSCRIBES),
+        sends("/a/driver", "/a/go", TWIST, SUBSCRIBES),
+        sends("/a/driver", "/a/goal_pose", "geometry_msgs/msg/PoseStamped", SUBSCRIBES),
+        sends("/maps", "/map", "nav_msgs/msg/OccupancyGrid"),
+        sends("/maps", "/a/go", TWIST),
+        End(SERVICE, PUBLISHES, "/a/none", "sensor_msgs/msg/LaserScan", "", "/maps", None, ""),
+    ),
+    robots=(
+        Robot("a", ("a/odom", "a/base_link"), "/tf"),
+        Robot("b", ("x/odom",), "/tf", (), "x"),
+    ),
+    topics=(
+        Topic("/depth/x", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
+        Topic("/b/cmd", bridge=(SUBSCRIBES,), type=TWIST),
+        Topic("/all", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
+    ),
+    layout="frame-prefix",
+    shared_frames=("map",),
+)
+
+
+def scene(frame: str, topics: list[str], layers: dict[str, object], goal: str) -> dict[str, object]:
+    return {
+        "followTf": frame,
+        "followMode": "follow-pose",
+        "topics": {it: {"visible": True} for it in topics},
+        "layers": layers,
+        "publish": {
+            "type": "pose",
+            "poseTopic": goal,
+            "poseEstimateTopic": "/initialpose",
+            "pointTopic": "/clicked_point",
+        },
+    }
+
+
+def model(robot: str, prefix: str) -> dict[str, object]:
+    return {
+        "layerId": "foxglove.Urdf",
+        "instanceId": robot,
+        "label": robot,
+        "visible": True,
+        "sourceType": "topic",
+        "topic": f"/{robot}/robot_description",
+        "framePrefix": prefix,
+    }
+
+
+def test_the_whole_layout_of_a_small_plan() -> None:
+    a, b = model("a", "a/"), model("b", "x/")
+    side = {"direction": "column", "first": "Image!a_0", "second": "Teleop!a"}
+    own = {"direction": "row", "first": "3D!a", "second": side, "splitPercentage": 70}
+    other = {"direction": "row", "first": "3D!b", "second": "Teleop!b", "splitPercentage": 70}
+    assert json.loads(to_layout(PLAN)) == {
+        "configById": {
+            "3D!all": scene(
+                "map", ["/a/scan", "/depth/x", "/map"], {"a": a, "b": b}, "/a/goal_pose"
+            ),
+            "3D!a": scene("a/base_link", ["/a/scan", "/map"], {"a": a}, "/a/goal_pose"),
+            "Image!a_0": {
+                "imageMode": {
+                    "imageTopic": "/a/eye/image",
+                    "calibrationTopic": "/a/eye/camera_info",
+                }
+            },
+            "Teleop!a": {"topic": "/a/cmd_vel", "publishRate": 10},
+            "3D!b": scene("x/odom", ["/depth/x", "/map"], {"b": b}, "/goal_pose"),
+            "Teleop!b": {"topic": "/b/cmd", "publishRate": 10},
+            "Tab!robots": {
+                "activeTabIdx": 0,
+                "tabs": [
+                    {"title": "all robots", "layout": "3D!all"},
+                    {"title": "a", "layout": own},
+                    {"title": "b", "layout": other},
+                ],
+            },
+        },
+        "globalVariables": {},
+        "userNodes": {},
+        "playbackConfig": {"speed": 1},
+        "layout": "Tab!robots",
+    }
+
+
+@pytest.mark.parametrize(
+    "type_",
+    [
+        "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/OccupancyGrid",
+        "nav_msgs/msg/Path", "geometry_msgs/msg/PolygonStamped", "geometry_msgs/msg/PoseArray",
+        "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray",
+    ],
+)  # fmt: skip
+def test_what_a_3d_panel_draws(type_: str) -> None:
+    """packages/suite-base/src/panels/ThreeDeeRender/renderables of lichtblick."""
+    made = json.loads(to_layout(PLAN._replace(ends=(sends("/a/driver", "/a/x", type_),))))
+    assert "/a/x" in made["configById"]["3D!a"]["topics"]
+
+
+@pytest.mark.parametrize(
+    ("edges", "shared", "frame"),
+    [
+        ((edge_of("map", "odom"), edge_of("site", "map")), ("map", "site"), "map"),
+        ((edge_of("site", "map"),), ("map", "site"), "site"),
+        ((edge_of("lab", "odom"),), ("world", "map"), "map"),
+        ((), ("world",), "world"),
+        ((), ("hall",), "a/odom"),
+    ],
+)
+def test_robots_stand_in_what_they_share(
+    edges: tuple[Edge, ...], shared: tuple[str, ...], frame: str
+) -> None:
+    assert world_of_plan(PLAN._replace(edges=edges, shared_frames=shared)) == frame
+
+
+def test_nothing_stands_nowhere() -> None:
+    assert world_of_plan(System()) == ""

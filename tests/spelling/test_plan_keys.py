@@ -177,9 +177,6 @@ def test_json_has_a_robot_a_line() -> None:
     assert lines[-2:] == [" }", "}"]
 
 
-VALUE = yaml.load(to_yaml(PLAN), yaml.CSafeLoader)
-
-
 def without(*path: str) -> dict[str, Any]:
     return changed(path, None, drop=True)
 
@@ -231,6 +228,10 @@ R1 = ("robots", "r1")
         (changed(("topics", "/y"), {"one_sender": 1}), "topics./y.one_sender: write true or false"),
         (changed(("topics", "/y"), {"qos": []}), "topics./y.qos: write words, as"),
         (changed(("topics", "/y"), {"qos": {"durability": 1}}), "topics./y.qos: write words"),
+        (
+            changed(("topics", "/y"), {"qos": {"durability": "volatile", "history": 1}}),
+            "topics./y.qos: write words, as {durability: transient_local}",
+        ),
         (changed(("topics", "/y"), {"qos": {"depth": "x"}}), "topics./y.qos: "),
         (changed(("topics", "/y"), {"bridge": []}), "topics./y.bridge: write [publishes], [sub"),
         (changed(("topics", "/y"), {"type": 1}), "topics./y.type: write a type, as sensor_msgs"),

@@ -100,7 +100,7 @@ def test_the_launch_form_has_each_key_once_and_what_is_started_alone(release: st
     assert spawner["arguments"] == ["diff_drive_controller", *rules]
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_data_says_where_each_rule_stands() -> None:
     found = yaml.safe_load(FORMS["yaml"](table("lyrical", "gz_ros2_control", "nav2")))
     assert found["distro"] == "lyrical"

@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.way_checks import RunningNode, running_nodes
+from multibot_rewrite.spelling.way_checks import RunningNode, is_stand_in, running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -93,6 +93,15 @@ def test_the_rules_of_a_plugin_reach_its_controllers_or_not(
 ) -> None:
     made = table(release, MANAGER, BASE, tags=("/tf:=ROBOT",))
     assert running(made, "base_controller", "spawner").rules == rules
+
+
+@pytest.mark.parametrize(
+    ("role", "theirs"), [(PUBLISHES, True), ("", True), (SUBSCRIBES, False), (CALLS, False)]
+)
+def test_what_a_plugin_publishes_is_of_its_controllers(role: str, theirs: bool) -> None:
+    end = Endpoint(TOPIC, role, "odom")
+    assert is_stand_in(tag("robot1"), end) is theirs
+    assert not is_stand_in(NodeTable("robot1", "n", "/robot1", "n", ()), end)
 
 
 def test_what_is_forwarded_comes_before_the_spawners_rules() -> None:

@@ -138,13 +138,11 @@ def _changed(
     document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
     """What met or matched before the rewrite, and does not after it."""
-    has_rules = b":=" in document.source
     images = any(CAMERA_INFO in it.name for it in reading.names)
-    if not has_rules and not images and not _alike(reading, robot):
+    if b":=" not in document.source and not images and not _alike(reading, robot):
         return
     before = read(document.source, document.file, vocabulary)
-    if has_rules:
-        yield from _lost(document, before, reading, naming)
+    yield from _lost(document, before, reading, naming)
     for it, other in parted(before, reading):
         one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
         message = (

@@ -41,7 +41,7 @@ REASONS = {
     LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),
     "MB416": ("world system", "in every robot"),
-    "MB436": ("remap rule", "that matches no name any more"),
+    "MB436": ("remap rule", "matching no name any more"),
     "MB426": ("remap rule", "of the whole process"),
     "MB143": ("frame", "that an argument of the xacro misses"),
     "MB422": ("prefix parameter", "that no postfix reaches"),

@@ -209,10 +209,10 @@ def in_sources(path: str) -> str:
 @lru_cache(maxsize=64)
 def _every_file(folder: str) -> tuple[str, ...]:
     """The files of a package, as many as are looked at."""
-    every = (
-        os.path.join(above, name)
-        for above, _, names in os.walk(folder)
-        if os.path.basename(above) not in _SKIPPED
-        for name in names
-    )
-    return tuple(islice(every, MOST_FOLDERS))
+    return tuple(islice(_files_below(folder), MOST_FOLDERS))
+
+
+def _files_below(folder: str) -> Iterator[str]:
+    for above, folders, names in os.walk(folder):
+        folders[:] = (it for it in folders if it[0] != "." and it not in _SKIPPED)
+        yield from (os.path.join(above, name) for name in names)

@@ -15,7 +15,6 @@ from multibot_rewrite.pages.view.models import Joint
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tf_copies import tree_topic
 
-# Frames that are where the world is, whoever has them (REP 105).
 # What rounding and single precision explain.
 METRES, DEGREES = 0.001, 0.1
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.description.checks.hazards import world_systems
 from multibot_rewrite.description.library import rewrite
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.description.steps.document import read_document
 
 ROBOT = '<robot name="rover"><link name="base_link"/><gazebo>{}</gazebo></robot>'
 SENSORS = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
@@ -62,3 +66,23 @@ def test_px4_looks_for_the_sensors_of_its_airframes(
     text = f'<robot name="drone"><link name="{link}"/>{block}</robot>'
     found = rewrite(text, "robot1", layout=layout, distro="jazzy").findings
     assert [it.code for it in found].count("MB428") == told
+
+
+@pytest.mark.parametrize("tag", ["robot_param", "robotParam", "robot_param_node"])
+def test_each_name_of_a_description_is_said_with_its_tag(tag: str) -> None:
+    """gazebo_ros_control reads robotParam, gazebo_ros2_control the others."""
+    text = ROBOT.format(CONTROL.replace("robot_param_node", tag).format("/x"))
+    (found,) = (it for it in rewrite(text, "robot1", layout="both", distro="humble").findings
+                if it.code == "MB410")  # fmt: skip
+    assert found.message == f"<{tag}> '/x' is the same for all robots"
+    assert found.hint == "use the part after the last slash"
+
+
+@pytest.mark.parametrize(("above", "told"), [("", True), ("world", False), ("gui", False)])
+def test_a_system_is_at_home_in_a_world(above: str, told: bool) -> None:
+    inside = f"<{above}>{SENSORS}</{above}>" if above else SENSORS
+    inventory = collect(
+        read_document(ROBOT.format(inside).encode(), "r"), builtin_tree((), "jazzy")
+    )
+    found = [it.message.partition(":")[0] for it in world_systems(inventory)]
+    assert found == ["gz-sim-sensors-system is loaded again with every robot"] * told

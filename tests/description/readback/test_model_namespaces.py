@@ -39,6 +39,11 @@ def arm(namespace: str) -> str:
     return f'<model name="arm" namespace="{namespace}">{inner}</model>'
 
 
+def included(namespace: str) -> str:
+    """A model that is included, with a plugin for it."""
+    return f"<include><uri>x</uri><name>hand</name>{namespace}{DRIVE.format('turn')}</include>"
+
+
 @pytest.mark.parametrize(
     ("attributes", "inside", "name"),
     [
@@ -55,6 +60,8 @@ def arm(namespace: str) -> str:
         (' namespace="robot"', arm(""), "/robot/turn"),
         (' namespace="robot"', arm("{name}_{name}"), "/robot/arm_arm/turn"),
         ("", arm("left"), "/left/turn"),
+        (' namespace="robot"', included("<namespace> {name}/x </namespace>"), "/robot/hand/x/turn"),
+        (' namespace="robot"', included(""), "/robot/turn"),
     ],
 )
 def test_the_namespaces_around_a_plugin_are_joined(attributes: str, inside: str, name: str) -> None:

@@ -11,7 +11,7 @@ from postfix_command import run
 
 from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.checks.verdict import REASONS, not_proved
+from multibot_rewrite.description.checks.verdict import REASONS, given, not_proved
 
 LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
 <sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
@@ -37,6 +37,51 @@ def of(*codes: str) -> tuple[str, ...]:
 )
 def test_reasons_with_counts(codes: tuple[str, ...], why: tuple[str, ...]) -> None:
     assert of(*codes) == why
+
+
+# What a summary says of two findings with a code.
+SAID = {
+    "MB901": "2 names not understood",
+    "MB219": "2 models not known",
+    "MB902": "2 plugins not known",
+    "MB903": "2 hardware classes not known",
+    "MB906": "2 included models not read",
+    "MG320": "2 topics shared by all robots",
+    "MG310": "2 commands shared by all robots",
+    "MG305": "2 services shared by all robots",
+    "MG301": "2 nodes shared by all robots",
+    "MG402": "2 frames shared by all robots",
+    "MB412": "2 resources shared by all robots",
+    "MB437": "2 descriptions the same for all robots",
+    "MB438": "2 topics whose ends no longer match",
+    "MB502": "2 robots without a link",
+    "MB425": "2 names looked up in the whole world",
+    "MB410": "2 description names shared by all robots",
+    "MB416": "2 world systems in every robot",
+    "MB436": "2 remap rules matching no name any more",
+    "MB426": "2 remap rules of the whole process",
+    "MB143": "2 frames that an argument of the xacro misses",
+    "MB422": "2 prefix parameters that no postfix reaches",
+    "MB428": "2 names fixed in a plugin's code",
+    "MB429": "2 model namespaces that not every Gazebo reads",
+}
+
+
+def test_every_reason_has_its_words() -> None:
+    assert {code: of(code, code) for code in SAID} == {code: (it,) for code, it in SAID.items()}
+    assert SAID.keys() == REASONS.keys()
+
+
+def test_what_is_taken_for_granted_is_said() -> None:
+    def said(*codes: str, world: tuple[str, ...] = ()) -> str:
+        return given([Finding(it, "note", "x") for it in codes], world)
+
+    assert said() == said("MB901") == ""
+    assert said("MR105") == "where each controller is spawned with its rules"
+    assert said("MB439", "MF845", world=("b", "a", "b")) == (
+        "where what shows an image has the rule for its camera_info and "
+        "where what each robot talks to has its number and where the world loads a, b"
+    )
 
 
 def test_every_reason_is_a_warning_of_a_rewrite() -> None:
@@ -66,7 +111,7 @@ def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) ->
     assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_summary_and_strict(tmp_path: Path) -> None:
     file, out = tmp_path / "r.urdf", tmp_path / "out.urdf"
     file.write_text(LIDAR.format("{name}/scan"))
@@ -86,7 +131,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     assert healthy.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf"
     file.write_text(LIDAR.format("{name}/scan"))

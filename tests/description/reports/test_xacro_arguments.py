@@ -47,7 +47,7 @@ def written(path: Path, body: str) -> Path:
     return path
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_prefix_of_an_arm() -> None:
     arm = by_name(XACROS / "arm.urdf.xacro")
     assert arm["tf_prefix"].uses == (
@@ -65,7 +65,7 @@ def test_an_argument_of_an_included_file_that_names_one_link() -> None:
     assert tool.value == ""
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_numbers_switches_and_words_of_a_table_take_no_name() -> None:
     arm, base = by_name(XACROS / "arm.urdf.xacro"), by_name(XACROS / "base.urdf.xacro")
     assert {it.name for it in (*arm.values(), *base.values()) if it.fault} == {
@@ -107,7 +107,7 @@ def test_where_in_a_name(write: Path, default: str, name: str, use: Use, value: 
     assert (argument.uses, argument.value) == ((use,), value)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_command_that_is_advised_gives_every_robot_names_of_its_own(tmp_path: Path) -> None:
     for file in ("arm.urdf.xacro", "base.urdf.xacro"):
         words = [word.partition(":=") for word in found(XACROS / file).words]
@@ -133,7 +133,7 @@ def test_the_first_default_counts(write: Path) -> None:
     assert [(it.name, it.default) for it in found(path).arguments] == [("p", "a")]
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_what_is_too_much_is_not_tried(write: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     many = "".join(f'<xacro:arg name="a{at}" default=""/>' for at in range(5))
     path = written(write, f'{many}<link name="x"/>')
@@ -146,7 +146,7 @@ def test_what_is_too_much_is_not_tried(write: Path, monkeypatch: pytest.MonkeyPa
     assert late.untried == ("a2", "a3", "a4")
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_table(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["inspect", str(XACROS / "arm.urdf.xacro")]) == 0
     out = capfd.readouterr().out.splitlines()

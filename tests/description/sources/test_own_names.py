@@ -72,7 +72,7 @@ def test_names_with_the_argument_stay_and_others_are_rewritten(
     assert {it.get("link") for it in root.iter("parent", "child")} == {*ARMS_OWN, camera}
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_each_robot_is_an_expansion_of_its_own() -> None:
     made = list(rewrite_all(ARM, ["a", "b", "c"], xacro_args=PREFIX))
     assert [it.robot for it in made] == ["a", "b", "c"]
@@ -178,7 +178,7 @@ def test_the_advice_leaves_the_name_of_the_argument_alone(tmp_path: Path) -> Non
         list(rewrite_all(path, ["arm", "cart"], xacro_args={"arm_p": "arm_x_"}))
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_value_that_names_a_robot_by_accident_is_for_all() -> None:
     given = {"meshes": "package://left/meshes"}
     made = list(rewrite_all(ARM, ["a", "left", "b"], xacro_args=given))
@@ -219,7 +219,7 @@ def test_strip_without_the_xacro_is_refused() -> None:
     assert "xacro" in refused.value.findings[0].hint
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_an_srdf_keeps_what_its_urdf_names(tmp_path: Path) -> None:
     srdf = made(
         '<xacro:arg name="tf_prefix" default=""/>',
@@ -251,7 +251,7 @@ def test_an_explanation_says_where_the_name_is_from() -> None:
     assert "the xacro's arguments have put the robot's name into it" in found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_two_arguments_of_one_name_are_refused(tmp_path: Path) -> None:
     head = '<xacro:arg name="p" default=""/><xacro:arg name="q" default="arm"/>'
     path = made(head, '<link name="$(arg p)$(arg q)"/>', tmp_path)
@@ -312,7 +312,7 @@ def test_what_no_argument_reaches_is_still_found_to_be_shared(tmp_path: Path) ->
     assert "{name}/left/scan" in done.findings[0].message
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_reference_without_the_argument_is_a_warning(tmp_path: Path) -> None:
     body = (
         '<link name="$(arg p)base_link"/><gazebo>'

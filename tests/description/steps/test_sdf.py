@@ -462,7 +462,7 @@ def test_libsdformat_notices_a_wrong_name(
 # ---------------------------------------------------------------- the command
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
     (tmp_path / "model.sdf").write_bytes(NESTED)
     assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}/model.sdf").code == 0
@@ -474,7 +474,7 @@ def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
         assert (back.code, back.out) == (0, NESTED)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_world_is_refused_with_a_way_out(tmp_path: Path) -> None:
     world = NESTED.replace(b'1.9">', b'1.9"><world name="w">').replace(b"</sdf>", b"</world></sdf>")
     (tmp_path / "w.sdf").write_bytes(world)

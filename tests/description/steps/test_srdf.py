@@ -325,7 +325,7 @@ MACRO = """
   <joint name="wrist" type="fixed"><parent link="base_link"/><child link="$(arg tip)"/></joint>"""
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
     done = run(folder, "arm.srdf", ROBOT, "--urdf", "arm.urdf", "-o", "out.srdf")
     assert done.code == 0
@@ -336,7 +336,7 @@ def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
     assert (back.code, back.out) == (0, SRDF)
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_several_robots_get_a_file_each(folder: Path) -> None:
     words = ("arm.srdf", "r1", "r2", "--urdf", "arm.urdf", "--separator", "group=_")
     assert run(folder, *words, "-o", "{robot}.srdf").code == 0
@@ -346,7 +346,7 @@ def test_several_robots_get_a_file_each(folder: Path) -> None:
     assert run(folder, *words).code == UNUSABLE
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_the_urdf_may_be_xacro(folder: Path) -> None:
     (folder / "arm.urdf.xacro").write_text(xacro(MACRO))
     words = ("arm.srdf", ROBOT, "--urdf", "arm.urdf.xacro")
@@ -357,7 +357,7 @@ def test_the_urdf_may_be_xacro(folder: Path) -> None:
     assert b'link2="nothing/robot1"' in other.out
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_an_srdf_may_be_xacro_beside_a_plain_urdf(folder: Path) -> None:
     group = (
         '<xacro:arg name="end" default="wrist"/><group name="a"><link name="$(arg end)"/></group>'

@@ -97,7 +97,7 @@ def test_what_is_said_of_a_joint(kind: str, heard: tuple[float, ...], said: list
     assert [*moved([joint], {})] == []
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_fixed_joints_that_are_heard_elsewhere_are_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

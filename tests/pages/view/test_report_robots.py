@@ -53,7 +53,7 @@ def robots_in(page: str) -> dict[str, dict[str, str]]:
     return {it["name"]: it["heard"] for it in json.loads(found[1])["robots"]}
 
 
-@pytest.mark.slow
+@pytest.mark.more
 def test_a_fleet_is_at_the_head_with_its_frames_as_heard(files: dict[str, str]) -> None:
     page = report(files, "fleet")
     heard = robots_in(page)

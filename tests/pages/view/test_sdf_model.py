@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from math import pi
+from pathlib import Path
 
 import pytest
 from lxml import etree
@@ -74,6 +75,41 @@ def test_a_joint_turns_about_its_axis_and_keeps_its_limits(model: Model) -> None
 
 
 @pytest.mark.parametrize(
+    ("scale", "size"),
+    [("", (1, 1, 1)), ("<scale>2 3 4</scale>", (2, 3, 4)), ("<scale>2 3</scale>", (1, 1, 1))],
+)
+@pytest.mark.parametrize(
+    ("diffuse", "colour"),
+    [("1 0 0 0.5", (1, 0, 0, 0.5)), ("1 0 0", (1, 0, 0, 1)), ("1 0", ()), ("", ())],
+)
+def test_a_mesh_of_the_only_link(
+    scale: str, size: object, diffuse: str, colour: object, tmp_path: Path
+) -> None:
+    """A link that no joint moves and that is where its model is stands alone."""
+    (tmp_path / "a.stl").write_bytes(b"")
+    text = (
+        f'<sdf><model name="m"><link name="a"><pose/><visual name="v"><geometry><mesh>{scale}'
+        f"<uri> a.stl </uri></mesh></geometry><material><diffuse>{diffuse}</diffuse></material>"
+        "</visual></link></model></sdf>"
+    )
+    model = load_sdf(etree.fromstring(text), str(tmp_path / "m.sdf"))
+    assert (list(model.links), model.joints) == (["a"], ())
+    (shape,) = model.links["a"]
+    assert (shape.kind, shape.mesh, shape.missing) == ("mesh", str(tmp_path / "a.stl"), "")
+    assert (shape.size, shape.colour) == (size, colour)
+
+
+def test_a_visual_may_be_where_another_frame_is() -> None:
+    visual = (
+        '<visual name="v"><pose relative_to="f">1 0 0 0 0 0</pose><geometry><box><size>1 1 1</size>'
+        "</box></geometry></visual>"
+    )
+    text = f'<frame name="f"><pose>0 2 0 0 0 0</pose></frame><link name="a">{visual}</link>'
+    (shape,) = load(f'<sdf><model name="m">{text}</model></sdf>').links["a"]
+    assert at(shape.pose) == [1, 2, 0]
+
+
+@pytest.mark.parametrize(
     ("kind", "ends"),
     [("revolute", (-pi, pi)), ("continuous", (-pi, pi)), ("prismatic", (-10.0, 10.0))],
 )
@@ -86,6 +122,20 @@ def test_a_joint_without_limits_makes_one_turn_or_ten_metres(
     )
     made = of(load(text), "j")
     assert (made.lower, made.upper) == pytest.approx(ends)
+    assert (made.parent, made.child, made.axis, made.mimic) == ("a", "b", (0, 0, 1), None)
+    # SDF's own defaults are as far as a number goes.
+    wide = "<axis><limit><lower>-1e16</lower><upper>1e16</upper></limit></axis>"
+    made = of(load(text.replace("</joint>", f"{wide}</joint>")), "j")
+    assert (made.lower, made.upper) == pytest.approx(ends)
+
+
+def test_a_joint_that_cannot_move_has_no_limits() -> None:
+    limit = "<axis><limit><lower>-1</lower><upper>1</upper></limit></axis>"
+    joint = f'<joint name="j" type="ball"><parent>a</parent><child>b</child>{limit}</joint>'
+    made = of(
+        load(f'<sdf><model name="m"><link name="a"/><link name="b"/>{joint}</model></sdf>'), "j"
+    )
+    assert (made.type, made.lower, made.upper) == ("ball", 0, 0)
 
 
 def test_shapes_stay_where_their_link_is(model: Model) -> None:

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where packages are looked for, and files in them, in a tree of folders made for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.description.sources.packages import (
+    find_in,
+    in_sources,
+    is_for_ros_1,
+    package_folder,
+    package_of,
+    packages_below,
+    sources_around,
+)
+
+# What ROS 2 packages say, and what catkin's do.
+AMENT, CATKIN = "<depend>ament_cmake</depend>", "<buildtool_depend>catkin</buildtool_depend>"
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder in which nothing is installed, and no package of this machine."""
+    for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    return tmp_path
+
+
+def package(folder: Path, name: str = "", more: str = AMENT) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    named = f"<name> {name} </name>" if name else ""
+    (folder / "package.xml").write_text(f"<package>{named}{more}</package>")
+    return folder
+
+
+def written(path: Path) -> str:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("")
+    return str(path)
+
+
+def test_packages_are_found_by_their_manifests_else_by_their_folders(tree: Path) -> None:
+    one = package(tree / "a", "arm")
+    twice = package(tree / "z" / "arm", "arm")
+    bare = package(tree / "no_name")
+    (tree / "hand").mkdir()
+    found = packages_below((str(tree),))
+    assert found["arm"] == (str(one), str(twice))
+    assert (found["no_name"], found["hand"]) == ((str(bare),), (str(tree / "hand"),))
+    # A folder of a name that a manifest has is none.
+    (tree / "y" / "arm").mkdir(parents=True)
+    assert packages_below((str(tree), str(tree / "none")))["arm"] == (str(one), str(twice))
+
+
+def test_what_a_build_made_is_no_source(tree: Path) -> None:
+    skipped = ("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake", ".git")
+    for name in skipped:
+        package(tree / name / "arm", "arm")
+    package(tree / "1" / "2" / "3" / "4", "deep")
+    package(tree / "1" / "2" / "3" / "5" / "6", "deeper")
+    package(package(tree / "outer", "outer") / "inner", "inner")
+    (tree / "link").symlink_to(tree / "outer")
+    found = packages_below((str(tree),))
+    assert {"deep", "outer", "5"} <= found.keys()
+    assert found.keys().isdisjoint({"arm", "deeper", "inner", "link", *skipped})
+
+
+def test_the_package_that_a_file_is_in(tree: Path) -> None:
+    home = package(tree / "arm", "arm")
+    assert package_of(str(home / "a.urdf")) == ("arm", str(home))
+    assert package_of(str(home / "1/2/3/4/5/a.urdf")) == ("arm", str(home))
+    assert package_of(str(home / "1/2/3/4/5/6/a.urdf")) is None
+    assert package_of(str(package(tree / "hand") / "a.urdf")) == ("hand", str(tree / "hand"))
+
+
+def test_a_package_is_the_own_one_or_that_of_the_environment(
+    tree: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = str(package(tree / "own" / "arm", "arm") / "a.urdf")
+    roots = (str(tree / "roots"),)
+    source, given = (package(tree / it / "hand", "hand") for it in ("sources", "roots"))
+    share = package(tree / "prefix" / "share" / "hand", "hand")
+    (tree / "bare" / "share" / "hand").mkdir(parents=True)
+    assert package_folder("arm", file, ()) == str(tree / "own" / "arm")
+    assert package_folder("hand", file, roots) == str(given)
+    assert package_folder("hand", file, ()) == ""
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tree / 'bare'}:{tree / 'prefix'}")
+    assert package_folder("hand", file, ()) == str(share)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f":{tree / 'sources'}")
+    assert package_folder("hand", file, ()) == str(source)
+    assert package_folder("hand", file, roots) == str(given)
+
+
+def test_a_package_may_be_beside_that_of_the_file(tree: Path) -> None:
+    home, hand = package(tree / "arm", "arm"), package(tree / "hand", "hand")
+    (tree / "foot").mkdir()
+    file = str(home / "urdf" / "a.urdf")
+    assert package_folder("hand", file, ()) == str(hand)
+    # A folder without a manifest is no package, and a repository ends at itself.
+    assert package_folder("foot", file, ()) == ""
+    alone = package(tree / "other" / "arm", "arm")
+    package(tree / "other" / "hand", "hand")
+    (alone / ".git").mkdir()
+    assert package_folder("hand", str(alone / "a.urdf"), ()) == ""
+    assert package_folder("hand", str(tree / "a.urdf"), ()) == ""
+
+
+def test_the_sources_around_a_package(tree: Path) -> None:
+    home = package(tree / "work" / "src" / "arm", "arm")
+    assert sources_around(str(home / "a.urdf")) == str(tree / "work" / "src")
+    fresh = package(tree / "repository" / "src" / "hand", "hand")
+    (tree / "repository" / ".git").mkdir()
+    assert sources_around(str(fresh / "a.urdf")) == str(tree / "repository")
+    assert sources_around(str(tree / "a.urdf")) == ""
+
+
+@pytest.mark.parametrize(
+    ("more", "old"), [(CATKIN, True), (AMENT, False), (f"{CATKIN}{AMENT}", False), ("", False)]
+)
+def test_a_package_of_ros_1(tree: Path, more: str, old: bool) -> None:
+    assert is_for_ros_1(str(package(tree / "arm", "arm", more) / "a.urdf")) is old
+    assert not is_for_ros_1(str(tree / "a.urdf"))
+
+
+@pytest.mark.parametrize(
+    ("path", "found"),
+    [
+        ("meshes/arm.stl", "Meshes/Arm.stl"),
+        ("Meshes/ARM.STL", "Meshes/Arm.stl"),
+        ("meshes/hand.stl", ""),
+        ("sub/../Meshes/Arm.stl", "Meshes/Arm.stl"),
+        ("sub/../../arm.stl", "../arm.stl"),
+        ("both/a", "both/a"),
+        ("both/A", "both/A"),
+        ("Both/a", "both/a"),
+    ],
+)
+def test_a_path_as_it_is_on_the_disk(tree: Path, path: str, found: str) -> None:
+    for name in ("p/Meshes/Arm.stl", "arm.stl", "p/both/a", "p/both/A", "p/sub/x"):
+        written(tree / name)
+    assert find_in(str(tree / "p"), path) == found
+
+
+def test_a_file_that_a_build_installs_elsewhere(tree: Path) -> None:
+    home = package(tree / "arm", "arm")
+    source = written(home / "description" / "urdf" / "arm.xacro")
+    written(home / "build" / "urdf" / "arm.xacro")
+    for name in ("a", "b"):
+        written(home / name / "rviz" / "view.rviz")
+    assert in_sources(str(home / "urdf" / "arm.xacro")) == source
+    assert in_sources(str(home / "urdf" / "rm.xacro")) == ""
+    assert in_sources(str(home / "rviz" / "view.rviz")) == ""
+    assert in_sources(str(tree / "urdf" / "arm.xacro")) == ""

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The argument for a namespace is proved: what a description is with it, said where that is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
+from multibot_rewrite.refactor.namespaces import namespaced, space_proved
+from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
+from multibot_rewrite.refactor.source_edits import edited
+
+ROBOT = (
+    '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><gazebo>'
+    '<plugin name="p" filename="libgazebo_ros_control.so"><robotNamespace>/demo</robotNamespace>'
+    "<legacyModeNS>true</legacyModeNS></plugin></gazebo>{}<link name='last'/></robot>"
+)
+Tamper = Callable[[bytes], bytes]
+
+
+def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...], list[str]]:
+    """The names of files that are proved with the edits, which somebody tampered with, and why others
+    are not."""
+    (folder / "r.urdf.xacro").write_text(ROBOT.format(more))
+    tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
+    found = read_package(str(folder), tree, how).descriptions
+    texts = texts_of(found)
+    space = namespaced(found, texts, tree)
+    assert (space.argument, space.left) == ("namespace", ())
+    after = {path: tamper(data) for path, data in edited(texts, space.edits).items()}
+    paths, wrong = space_proved(space, "prefix", "robot1_", after, how, tree)
+    assert {it.place for it in wrong} <= {str(folder / "r.urdf.xacro")}
+    return tuple(Path(it).name for it in paths), [it.why for it in wrong]
+
+
+@pytest.mark.parametrize("names", [NAMES, SPACES])
+def test_the_first_name_that_is_free_is_taken(names: tuple[str, ...], tmp_path: Path) -> None:
+    """By an argument, a property or a parameter of a macro, with a default or without."""
+    forms = (
+        '<xacro:arg name="{}" default=""/>',
+        '<xacro:property name="{}" value=""/>',
+        '<xacro:macro name="m" params="a {}:=1 b"/>',
+        '<xacro:macro name="n" params="{} c"/>',
+    )
+    tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
+    for at, name in enumerate(names):
+        taken = "".join(form.format(it) for form, it in zip(forms, names[:at], strict=False))
+        (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(taken))
+        assert free_name(read_package(str(tmp_path), tree, how).descriptions, names) == name
+
+
+def test_names_of_arguments_are_those_that_people_use() -> None:
+    assert NAMES == ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
+    assert SPACES == ("namespace", "robot_namespace", "ros_namespace")
+
+
+def test_what_the_rewrite_makes_is_proved(tmp_path: Path) -> None:
+    assert proved(tmp_path, lambda it: it) == (("r.urdf.xacro",), [])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (b"/${namespace and namespace + '/'}demo", b"/demo", "<robotNamespace>/demo"),
+        (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1">'),
+        (b"<link name='last'/>", b"", "</robot>"),
+        (b"<legacyModeNS>true", b"<legacyModeNS>no", "<legacyModeNS>no"),
+        # An element of another one, and one more.
+        (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x>"),
+        (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more">'),
+        (b"</robot>", b"<link name='more'/></robot>", '<link name="more">'),
+    ],
+)
+def test_what_is_otherwise_is_said(tmp_path: Path, old: bytes, new: bytes, said: str) -> None:
+    def tamper(data: bytes) -> bytes:
+        assert old in data
+        return data.replace(old, new)
+
+    why = f"its ROS names are not proved: with namespace:=ns1 it has {said}"
+    assert proved(tmp_path, tamper) == ((), [why])
+
+
+def test_what_does_not_expand_is_said(tmp_path: Path) -> None:
+    paths, (why,) = proved(tmp_path, lambda it: it.replace(b"${namespace", b"${nowhere"))
+    assert paths == () and why.startswith("its ROS names are not proved: ")
+    assert "nowhere" in why
+
+
+def test_it_is_tried_beside_a_prefix_too(tmp_path: Path) -> None:
+    """What holds without a prefix need not hold with one."""
+    declared = b'<xacro:arg name="prefix" default=""/>'
+    test = b"${'$(arg prefix)' != '' and namespace != ''}"
+    bad = b'<xacro:if value="%s"><link name="odd"/></xacro:if>' % test
+    why = 'its ROS names are not proved: with namespace:=ns1 it has <link name="odd">'
+    tampered = proved(
+        tmp_path,
+        lambda it: it.replace(b"<link name='last'/>", declared + bad + b"<link name='last'/>"),
+    )
+    assert tampered == ((), [why])
