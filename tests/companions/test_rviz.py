@@ -428,11 +428,9 @@ RULE_OF_EACH = (
     " them, one for each robot"
 )
 FRAME = (
-    "Fixed Frame: odom",
-    "MF201",
-    "Fixed Frame 'odom' differs from robot to robot; it is 'map' now",
-)
-POSE = "publish a transform from it to each robot, see pose:"
+    "Fixed Frame: odom", "MF201", "Fixed Frame 'odom' differs from robot to robot; it is 'map' now",
+    "publish a transform from it to each robot, see pose:",
+)  # fmt: skip
 VIEW = (
     "Target Frame: base_link", "MF213",
     "the view follows 'base_link'; it now follows robot 'robot1'", "each robot has a saved view",
