@@ -301,6 +301,12 @@ def test_views_that_follow_a_robot() -> None:
         ("robot2 Current View", "robot2/base_link"),
     ]
     assert "MF213" in codes()
+    first = (
+        "      - Class: rviz_default_plugins/Orbit\n"
+        '        Name: "robot1 Current View"\n'
+        "        Target Frame: robot1/base_link\n"
+    )
+    assert first in make()[0][0].text
 
 
 def test_saved_views_are_there_for_each_robot() -> None:
@@ -374,6 +380,18 @@ def test_a_tf_topic_for_each_robot_gives_a_config_for_each(layout: str) -> None:
     assert [one.robot for one in made] == list(ROBOTS)
     (found,) = [it for it in findings if it.code == "MF203"]
     assert found.message.endswith("each robot has its own")
+
+
+def test_the_window_of_one_robot_has_a_colour_where_one_is_said() -> None:
+    for colour, painted in (("#102030", "16; 32; 48"), ("", "255; 0; 0")):
+        shown_ = shown(layout="L1", colour=colour)["Visualization Manager"]["Displays"]
+        assert shown_[1]["Color"] == painted
+
+
+def test_rules_of_an_rviz_of_its_own_come_behind_those_of_tf() -> None:
+    rules = (("__node", "rviz_1"), ("/tf", "/x"), ("/scan", "/robot1/scan"))
+    tf = (("/tf", "/robot1/tf"), ("/tf_static", "/robot1/tf_static"))
+    assert make(layout="L1", rules=rules)[0][0].remaps == (*tf, rules[0], rules[2])
 
 
 def test_how_the_window_of_one_robot_is_started() -> None:
@@ -486,6 +504,7 @@ def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
         "Visibility of 'it' is reset: the displays are in groups now",
         "choose the displays again in rviz2",
     )
+    assert manager(text=hidden)["Displays"][0]["Displays"][0]["Visibility"] == {}
     # An image has no window of another robot in its own.
     assert "MF212" not in codes(hidden, "L1")
     path = hidden.replace("Camera", "Path")
