@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,10 +18,12 @@ from multibot_rewrite.cli import (
     coverage,
     inspect,
     learn,
+    live,
     parser,
     plan,
     process,
     rehearse,
+    rewrite_file,
     snapshot,
     unplanned,
 )
@@ -29,6 +32,8 @@ from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
+from multibot_rewrite.fleet.one_file import RewrittenFile
+from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.live import staged
 from multibot_rewrite.live.learning.learn import LearnedNode
@@ -41,6 +46,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
     Controller,
     Edge,
     End,
@@ -261,6 +267,90 @@ def test_what_is_left_out_is_noted() -> None:
     assert [*learn._notes(quiet, both, None, False)] == []
     assert [*learn._notes(quiet, [both[0], learned("/q/a", "q/a")], None, False)] == []
     assert [*learn._notes(System((Node("/rviz2"),)), both[1:], None, True)] == []
+
+
+def test_how_many_nodes_answered(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of those that have the service of a state under their name."""
+    state = "lifecycle_msgs/srv/GetState"
+    ends = (End(SERVICE, SERVES, f"{it}/get_state", state, "", it, None, "") for it in ("/a", "/b"))
+    graph = System((Node("/a", lifecycle="active"), Node("/b"), Node("/c")), tuple(ends))
+    for asked in (True, False):
+        live.note_answers(options(state=asked, quiet=False, program="multibot"), graph)
+    assert capsys.readouterr().err == "multibot: 1 of 2 nodes answered --state\n"
+    given = options(state=False)
+    assert live.with_states(given, graph) is graph
+
+
+def test_nodl_is_written_to_a_file_or_below_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b = NodlFile("a", "A\n", ()), NodlFile("r/b", "B\n", ("/x", "/y"))
+    usual: dict[str, Any] = {"verbose": False, "program": "multibot", "quiet": False}
+    assert [*learn._write_nodl(options(output=None, **usual), [a])] == []
+    assert capsys.readouterr().out == "A\n"
+    file = str(tmp_path / "b.nodl.yaml")
+    told = ["r/b: NoDL has no form for /x, /y; left out"]
+    assert [*learn._write_nodl(options(output=file, **usual), [b])] == told
+    assert Path(file).read_text() == "B\n"
+    assert [*learn._write_nodl(options(output=str(tmp_path / "f"), **usual), [a, b])] == told
+    assert (tmp_path / "f" / "a.nodl.yaml").read_text() == "A\n"
+    assert (tmp_path / "f" / "r" / "b.nodl.yaml").read_text() == "B\n"
+    for output in (None, "-", file):
+        with pytest.raises(UsageError) as caught:
+            [*learn._write_nodl(options(output=output, **usual), [a, b])]
+        hint = "name one with --node, or a folder with -o"
+        assert str(caught.value) == f"a NoDL file is for one node, here are 2; {hint}"
+
+
+@pytest.mark.parametrize(
+    ("output", "form", "it_is"),
+    [(None, None, False), (None, "nodl", True), ("a.nodl.yaml", None, True), ("a.yaml", None, False),
+     ("a.nodl.json", "nodl", True), ("a.nodl.yml", None, True), ("a.yaml", "nodes", False)],
+)  # fmt: skip
+def test_nodl_is_asked_for_by_form_or_name(output: Any, form: Any, it_is: bool) -> None:
+    assert learn.is_nodl(options(output=output, form=form)) is it_is
+
+
+def test_what_is_for_nodes_needs_their_form() -> None:
+    none: dict[str, Any] = dict.fromkeys(("output", "form", "node", "namespace", "stack", "distro"))
+    assert not learn.is_asked(options(**none))
+    for form in ("nodes", "nodl"):
+        assert learn.is_asked(options(**{**none, "form": form, "node": ["/a"]}))
+    for it in ("node", "namespace", "stack", "distro"):
+        with pytest.raises(UsageError) as caught:
+            learn.is_asked(options(**{**none, it: "x"}))
+        assert str(caught.value) == f"--{it} is for a description of nodes: add --form nodes"
+    with pytest.raises(UsageError) as caught:
+        learn.is_nodl(options(output="a.nodl.yaml", form="json"))
+    assert str(caught.value) == "a.nodl.yaml is the name of a NoDL file; leave out --form json"
+
+
+# ---------------------------------------------------------------- a file beside a description
+
+
+def test_the_summary_of_a_file_beside_a_description() -> None:
+    words = {
+        "params": "a parameter file", "rviz": "a config of RViz", "moveit": "a file of MoveIt",
+        "bridge": "a file of ros_gz_bridge", "tree": "a behavior tree", "lua": "a Lua file",
+    }  # fmt: skip
+    for kind, text in words.items():
+        made = [RewrittenFile("r1", kind, b"", (), ())]
+        assert rewrite_file.summary(made, ["r1"], "", "") == f"r1: {text}; proved"
+    kept = [
+        RewrittenFile(it, "lua", b"", (), why) for it, why in (("a", ("x", "y")), ("b", ("y",)))
+    ]
+    assert rewrite_file.summary(kept, ["a", "b"], "jazzy", "it is set") == (
+        "2 robots: a Lua file; rewritten, not proved: x, y (ROS 2 jazzy: it is set)"
+    )
+
+
+def test_a_caveat_is_a_note_or_makes_the_view_incomplete(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for incomplete in (True, False):
+        given = options(quiet=False, program="multibot")
+        snapshot._remark(given, Caveat("a", incomplete, "is odd"))
+    assert capsys.readouterr().err == "multibot: incomplete: is odd\nmultibot: note: is odd\n"
 
 
 # ---------------------------------------------------------------- plan, rehearse, check

@@ -114,6 +114,10 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("chek",), "multibot: unknown command 'chek'; did you mean 'check'?"),
         (("--quiet", "check"), "write the command first, for example: multibot adopt --quiet"),
         (("--undo",), "write the command first, for example: multibot build --undo"),
+        (
+            ("--form=json",),
+            "write the command first, for example: multibot check-launch --form=json",
+        ),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
         (("coverage", "a"), "there is no command 'coverage'; use multibot inspect PATH..."),
