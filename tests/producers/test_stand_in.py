@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import FIXTURES
 
-from multibot_rewrite.producers.launch import places
+from multibot_rewrite.producers.launch import includes, places, visit
 from multibot_rewrite.producers.launch.entities import Entity
 from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
@@ -17,6 +19,7 @@ from multibot_rewrite.producers.launch.stand_in import (
     frontend,
     packages,
     parameters,
+    parse,
     standing_in,
     values,
 )
@@ -448,6 +451,63 @@ def test_elements_of_ros_1_are_refused_and_those_of_others_are_told() -> None:
         other = frontend._made(Entity("so_they_say", 1, {}, []))
     with pytest.raises(NotImplementedError, match=r"^<so_they_say> is not read: it needs launch"):
         other.execute(LaunchContext())
+
+
+def test_every_substitution_of_launch_files_in_xml() -> None:
+    """The words that launch and launch_ros jazzy expose, each with the class that it stands for."""
+    words = {
+        "all": "All", "and": "And", "any": "Any", "dirname": "ThisLaunchFileDir",
+        "env": "EnvironmentVariable", "equals": "Equals", "exec-in-pkg": "ExecutableInPackage",
+        "file-content": "FileContent", "filename": "ThisLaunchFile", "anon": "AnonName",
+        "find-exec": "FindExecutable", "find-pkg-prefix": "FindPackagePrefix",
+        "find-pkg-share": "FindPackageShare", "if": "IfElse", "launch_log_dir": "LaunchLogDir",
+        "log_dir": "LaunchLogDir", "not": "Not", "not-equals": "NotEquals", "or": "Or",
+        "param": "Parameter", "var": "LaunchConfiguration",
+    }  # fmt: skip
+    known = {**vars(packages), **vars(values)}
+    classes = {it: known.get(f"{name}Substitution") or known[name] for it, name in words.items()}
+    made = {it: kind for it, kind in parse._KNOWN.items() if it not in ("command", "eval")}
+    assert (made, parse._KNOWN.keys() - made.keys()) == (classes, {"command", "eval"})
+    for word in ("arg", "find", "optenv"):
+        with pytest.raises(ValueError, match=word):
+            parse_substitution(f"$({word} a)")
+
+
+def test_every_action_of_launch_is_visited() -> None:
+    """By the table made of the real one; what is not in it is of other releases, what is not named
+    here is visited as the class that it is one of."""
+    there = json.loads((FIXTURES / "launch_signatures.json").read_text())["names"]
+    names = {*there["launch.actions"], *there["launch_ros.actions"]}
+    named = {*visit._HANDLERS}
+    assert names - named == {"LifecycleNode", "OpaqueCoroutine", "ROSTimer", "RosTimer"}
+    others = {"LaunchDescription", "ForEach", "ForLoop", "ReplaceEnvironmentVariables"}
+    assert named - names == others
+    starts = {
+        "IncludeLaunchDescription", "ComposableNodeContainer", "LoadComposableNodes", "Node",
+        "ExecuteLocal", "ExecuteProcess", "RegisterEventHandler", "TimerAction",
+    }  # fmt: skip
+    passed = {
+        "SetUseSimTime", "LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition",
+        "UnregisterEventHandler",
+    }  # fmt: skip
+    assert {it for it, how in visit._HANDLERS.items() if how is visit._pass} == passed
+    executed = {it for it, how in visit._HANDLERS.items() if how is visit._execute}
+    assert executed == named - starts - passed
+
+
+def test_arguments_of_the_launch_files_of_gazebo() -> None:
+    """ros_gz_sim launch/gz_sim.launch.py and gz_spawn_model.launch.py; src/create.cpp has the words."""
+    same = ("world", "file", "string", "topic", "allow_renaming", "x", "y", "z", "R", "P", "Y")
+    words = {it: f"-{it}" for it in same}
+    assert {**words, "entity_name": "-name", "model_string": "-string"} == includes._SPAWN_WORDS
+    gz = ("gz_args", "ign_args", "gz_version", "ign_version", "debugger", "on_exit_shutdown")
+    assert (gz, ("gz_args", "ign_args", "world")) == (includes._GZ_WORDS, includes._WORLDS)
+    files = ("gz_sim", "ign_gazebo", "gz_server", "gazebo", "gzserver", "gzclient")
+    assert tuple(f"{it}.launch.py" for it in files) == includes._SIMULATES
+    given = {"gz_args": "-r 'a b.sdf'", "world": "w.sdf", "other": "x"}
+    assert [*includes._simulator_words(given)] == ["-r", "a b.sdf", "w.sdf"]
+    given = {"entity_name": "r1", "x": "1", "y": "", "other": "z"}
+    assert [*includes._spawner_words(given)] == ["-name", "r1", "-x", "1"]
 
 
 def test_types_of_parameters_in_xml() -> None:
