@@ -27,6 +27,7 @@ from multibot_rewrite.cli import (
     snapshot,
     unplanned,
 )
+from multibot_rewrite.cli import fleet as commands_of_fleets
 from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
@@ -351,6 +352,31 @@ def test_a_caveat_is_a_note_or_makes_the_view_incomplete(
         given = options(quiet=False, program="multibot")
         snapshot._remark(given, Caveat("a", incomplete, "is odd"))
     assert capsys.readouterr().err == "multibot: incomplete: is odd\nmultibot: note: is odd\n"
+
+
+# ---------------------------------------------------------------- a fleet
+
+
+def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
+    read = str(tmp_path / "rover.xacro")
+    fleet: Any = argparse.Namespace(read=[read])
+    for name in ("output", "sros2", "save_snapshot", "report"):
+        with pytest.raises(UsageError) as caught:
+            commands_of_fleets.check_unread(options(**{name: read}), fleet)
+        option = f"--{name.replace('_', '-')}"
+        said = f"{read} is a file that is read; choose another one for {option}"
+        assert str(caught.value) == said
+        commands_of_fleets.check_unread(options(**{name: str(tmp_path / "out")}), fleet)
+
+
+def test_what_a_fleet_file_says_itself() -> None:
+    names = (
+        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared-frames",
+        "shared-topics", "groups", "vocabulary", "launch", "roots",
+    )  # fmt: skip
+    assert {
+        "words": "ROBOT", **{it.replace("-", "_"): f"--{it}" for it in names},
+    } == commands_of_fleets.OF_FLEET_FILE  # fmt: skip
 
 
 # ---------------------------------------------------------------- plan, rehearse, check

@@ -148,7 +148,8 @@ def test_wrong_use_is_one_line(multibot: Multibot, words: tuple[str, ...], said:
 
 
 def test_the_version(multibot: Multibot) -> None:
-    assert multibot("--version").out == f"multibot {multibot_rewrite.__version__}\n"
+    for word in ("-V", "--version"):
+        assert multibot(word).out == f"multibot {multibot_rewrite.__version__}\n"
 
 
 @pytest.mark.slow
