@@ -15,6 +15,9 @@ from graph_cases import environment, qos
 from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
 from multibot_rewrite.cli import (
+    adopt,
+    build,
+    check_launch,
     coverage,
     inspect,
     learn,
@@ -23,6 +26,7 @@ from multibot_rewrite.cli import (
     plan,
     process,
     rehearse,
+    rename,
     rewrite_file,
     snapshot,
     unplanned,
@@ -450,6 +454,103 @@ def test_words_of_a_check_without_a_plan() -> None:
         Outcome(it, text, "multibot check", False, ("a",))
         for it, text in zip(verdicts, words, strict=True)
     ]
+
+
+def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(
+        quiet=False, verbose=True, program="multibot", kind="link", old="a", new="b"
+    )  # fmt: skip
+    usual: dict[str, Any] = {
+        "places": 3,
+        "after": {"x": b"", "y": b""},
+        "unread": {},
+        "mentions": (),
+    }
+    rename._tell(given, options(**usual))  # type: ignore[arg-type]
+    assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; proved\n"
+    left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
+    more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
+    rename._tell(given, options(**more))  # type: ignore[arg-type]
+    assert capsys.readouterr().err.splitlines()[1:] == [
+        "multibot: not looked at: p: odd", "multibot: not looked at: q",
+        f"multibot: left as they are: {len(left)} lines with 'a'",
+        *(f"multibot:   {it}" for it in left[:-1]),
+    ]  # fmt: skip
+
+
+def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(quiet=False, program="multibot")
+    usual: dict[str, Any] = {
+        "argument": "prefix", "proved": ("a",), "configurations": (), "after": {"f": b""},
+        "namespace": "", "spaced": (), "launches": (), "already": {}, "left": (), "unread": {},
+    }  # fmt: skip
+
+    def told(**more: Any) -> list[str]:
+        adopt._tell(given, options(**{**usual, **more}))  # type: ignore[arg-type]
+        return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
+
+    assert told() == ["argument prefix: 1 description in 1 file; proved"]
+    assert told(proved=()) == [
+        "argument prefix: 0 descriptions in 1 file; not proved, see what is left"
+    ]
+    assert told(proved=("a", "b"), configurations=("c",)) == [
+        "argument prefix: 2 descriptions and 1 other configuration in 1 file; proved"
+    ]
+    files = {"l": b"<arg prefix:= />", "m": b"<arg ns:= prefix:= />"}
+    assert told(argument="", unread={"u": "u: odd", "v": ""}, already={"x": "tf_prefix"}) == [
+        "x: it has such an argument already: tf_prefix", "not looked at: u: odd", "not looked at: v",
+    ]  # fmt: skip
+    left = (options(place="f:3", why="it is odd"),)
+    assert told(
+        namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
+    ) == [
+        "argument prefix: 1 description in 2 files; proved",
+        "argument ns: what ROS names in 2 descriptions; proved",
+        "l: it hands prefix on; proved", "m: it hands prefix and ns on; proved",
+        "f:3: left as it is: it is odd",
+    ]  # fmt: skip
+
+
+def test_what_a_check_of_a_build_lists(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(quiet=False, program="multibot", output="out", fleet="fleet.yaml")
+    nothing: Any = options(write={}, remove=())
+    assert build._stale(given, nothing) == 0
+    assert capsys.readouterr().err == "multibot: out is up to date\n"
+    changed: Any = options(write={"a": b""}, remove=("b",))
+    assert build._stale(given, changed) == 1
+    said = capsys.readouterr()
+    assert said.out == "a: stale\nb: left over\n"
+    assert said.err == "multibot: 2 files of out differ from what fleet.yaml makes\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "level", "spawned", "parents", "becomes"),
+    [
+        ("MG601", "warning", False, (), "warning"), ("claim", "warning", False, (), "error"),
+        ("twice", "warning", True, (), "error"), ("claim", "note", False, (), "note"),
+        ("pieces", "error", False, (), "warning"), ("pieces", "error", True, (), "error"),
+        ("pieces", "error", False, ("odom",), "error"), ("pieces", "note", False, (), "note"),
+        ("pieces", "error", False, ("map",), "warning"),
+    ],
+)  # fmt: skip
+def test_how_sure_a_finding_about_a_launch_file_is(
+    code: str, level: str, spawned: bool, parents: tuple[str, ...], becomes: str
+) -> None:
+    """Of a robot that no simulator has a driver may send the odometry."""
+    codes = {
+        "claim": check_launch.interface_not_exported.code,
+        "twice": check_launch.interface_claimed_twice.code,
+        "pieces": check_launch.tf_tree_in_pieces.code,
+    }
+    made: Any = options(
+        models=options(found=[options(spawned=spawned)]),
+        system=options(edges=[options(parent=it) for it in parents]),
+    )
+    it = Finding(codes.get(code, code), level, "m", names=("odom",))
+    assert check_launch._certain(it, made).level == becomes
+    assert check_launch._certain(it._replace(names=()), made).level == (
+        level if code == "pieces" else becomes
+    )
 
 
 # ---------------------------------------------------------------- help and mistakes
