@@ -90,6 +90,8 @@ def _inner(node: ast.AST) -> Iterator[ast.AST]:
     for field, value in ast.iter_fields(node):
         if field in ("annotation", "returns", "decorator_list", "type_comment"):
             continue
+        if isinstance(node, ast.keyword) and node.arg == "strict":  # of zip: as an assertion
+            continue
         for item in value if isinstance(value, list) else [value]:
             if isinstance(item, ast.AST) and not _is_text(item):
                 yield item

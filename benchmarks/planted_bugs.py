@@ -164,11 +164,15 @@ def _outcomes(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[
 
 def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
     """Tests that call the function with the bug, and of the module where few do: what is made once is
-    made in one test. Those of files that name the module most often come first."""
+    made in one test. A module of data is asked by those of its folder. Those of files that name the
+    module most often come first."""
     found = set(bench.called.get(f"{bug.file}:{bug.function}", ()))
     if len(found) < FEW_TESTS:
-        mine = (key for key in bench.called if key.rpartition(":")[0] == bug.file)
-        found.update(test for key in mine for test in bench.called[key])
+        found |= _tests_in(f"{bug.file}:", bench)
+    folder = bug.file
+    while not found and folder:
+        folder = folder.rpartition("/")[0]
+        found = _tests_in(folder, bench)
     name = Path(bug.file).stem if Path(bug.file).stem != "__init__" else Path(bug.file).parent.name
     # Notes of an earlier run may name files that are gone.
     files = {it for test in found if (bench.copy / (it := test.partition("::")[0])).exists()}
@@ -177,6 +181,11 @@ def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
     nearest = sorted(found, key=lambda it: (-named[it.partition("::")[0]], it))
     near, far = nearest[:AT_ONCE], nearest[AT_ONCE:]
     return near + chance.sample(far, min(MOST_TESTS - AT_ONCE, len(far)))
+
+
+def _tests_in(place: str, bench: Bench) -> set[str]:
+    mine = (key for key in bench.called if key.startswith(place))
+    return {test for key in mine for test in bench.called[key]}
 
 
 def _files(room: str, home: Path) -> Iterator[str]:

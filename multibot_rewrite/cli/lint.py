@@ -52,7 +52,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
 STDIN = "-"
-# What says a release by the libraries that it loads.
 # What says by what it loads which release it is for.
 _TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
 CRASHED = "MB001"

@@ -30,6 +30,12 @@ def newline(document: YamlText) -> str:
     return "\r\n" if "\r\n" in document.text else "\n"
 
 
+def inserted(document: YamlText, at: int, text: str) -> Splice:
+    """Lines inserted at the start of a line, or after a last line without a line end."""
+    unended = at == len(document.text) and not document.text.endswith("\n")
+    return Splice(at, at, (newline(document) if unended and text else "") + text)
+
+
 def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
     """The lines of each entry of a block list or map, comments above an entry included.
 

@@ -224,8 +224,8 @@ def _own_file(
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
     sections = {**clocks, **({robot.table.full_name(node): values} if values else {})}
-    name, text = node.replace("/", "_"), parameters_text(sections)
-    return [written(context, robot, f"{name}.{_OWN}", text)] if sections else []
+    text = parameters_text(sections)
+    return [written(context, robot, f"{node}.{_OWN}", text)] if sections else []
 
 
 def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make) -> Action:

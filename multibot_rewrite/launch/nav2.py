@@ -32,7 +32,14 @@ from multibot_rewrite.launch.actions import (
     node_class,
     place,
 )
-from multibot_rewrite.launch.context import Action, Context, fleet_of, sim_time, written
+from multibot_rewrite.launch.context import (
+    SIM_TIME,
+    Action,
+    Context,
+    fleet_of,
+    sim_time,
+    written,
+)
 from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
 
 NONE, ONE, EACH = "none", "one", "each"
@@ -41,7 +48,7 @@ ARGUMENTS = (
     ("fleet", None, "the fleet file"),
     ("robots", "", "some robots of it by name, or robots with poses in place of its own"),
     ("map", "", "the map for map_server; empty: what parameter files say"),
-    ("use_sim_time", "", "true, false, or empty for what the fleet file says"),
+    (SIM_TIME, "", "true, false, or empty for what the fleet file says"),
     ("rviz", NONE, "none, one (one RViz for all robots) or each (one for each robot)"),
     ("robot_state_publisher", "false", "whether to start that of each robot, too"),
     ("autostart", "true", "whether the lifecycle managers start their nodes"),
@@ -215,15 +222,19 @@ def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
 
 
 def _plain(name: str, program: programs.Program, context: Context, parameters: list[Any]) -> Action:
-    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
-    clocks = [] if clock is None else [{"use_sim_time": clock}]
     return node_class()(
         name=name,
         package=program.package,
         executable=program.executable,
         output="screen",
-        parameters=[*parameters, *clocks],
+        parameters=[*parameters, *_clock(context)],
     )
+
+
+def _clock(context: Context) -> list[dict[str, bool]]:
+    """The parameter that says whose time counts, where somebody says it."""
+    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
+    return [] if clock is None else [{SIM_TIME: clock}]
 
 
 def _rviz(context: Context) -> list[Action]:
@@ -249,12 +260,11 @@ def _rviz(context: Context) -> list[Action]:
 
 def _window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
-    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
     return node_class()(
         package="rviz2",
         executable="rviz2",
         namespace=window.namespace or None,
         remappings=list(window.remaps),
         arguments=["-d", path],
-        parameters=[] if clock is None else [{"use_sim_time": clock}],
+        parameters=_clock(context),
     )

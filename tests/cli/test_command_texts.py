@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,21 +15,30 @@ from graph_cases import environment, qos
 from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
 from multibot_rewrite.cli import (
+    adopt,
+    build,
+    check_launch,
     coverage,
     inspect,
     learn,
+    live,
     parser,
     plan,
     process,
     rehearse,
+    rename,
+    rewrite_file,
     snapshot,
     unplanned,
 )
+from multibot_rewrite.cli import fleet as commands_of_fleets
 from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
+from multibot_rewrite.fleet.one_file import RewrittenFile
+from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.live import staged
 from multibot_rewrite.live.learning.learn import LearnedNode
@@ -41,6 +51,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
     Controller,
     Edge,
     End,
@@ -263,6 +274,115 @@ def test_what_is_left_out_is_noted() -> None:
     assert [*learn._notes(System((Node("/rviz2"),)), both[1:], None, True)] == []
 
 
+def test_how_many_nodes_answered(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of those that have the service of a state under their name."""
+    state = "lifecycle_msgs/srv/GetState"
+    ends = (End(SERVICE, SERVES, f"{it}/get_state", state, "", it, None, "") for it in ("/a", "/b"))
+    graph = System((Node("/a", lifecycle="active"), Node("/b"), Node("/c")), tuple(ends))
+    for asked in (True, False):
+        live.note_answers(options(state=asked, quiet=False, program="multibot"), graph)
+    assert capsys.readouterr().err == "multibot: 1 of 2 nodes answered --state\n"
+    given = options(state=False)
+    assert live.with_states(given, graph) is graph
+
+
+def test_nodl_is_written_to_a_file_or_below_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b = NodlFile("a", "A\n", ()), NodlFile("r/b", "B\n", ("/x", "/y"))
+    usual: dict[str, Any] = {"verbose": False, "program": "multibot", "quiet": False}
+    assert [*learn._write_nodl(options(output=None, **usual), [a])] == []
+    assert capsys.readouterr().out == "A\n"
+    file = str(tmp_path / "b.nodl.yaml")
+    told = ["r/b: NoDL has no form for /x, /y; left out"]
+    assert [*learn._write_nodl(options(output=file, **usual), [b])] == told
+    assert Path(file).read_text() == "B\n"
+    assert [*learn._write_nodl(options(output=str(tmp_path / "f"), **usual), [a, b])] == told
+    assert (tmp_path / "f" / "a.nodl.yaml").read_text() == "A\n"
+    assert (tmp_path / "f" / "r" / "b.nodl.yaml").read_text() == "B\n"
+    for output in (None, "-", file):
+        with pytest.raises(UsageError) as caught:
+            [*learn._write_nodl(options(output=output, **usual), [a, b])]
+        hint = "name one with --node, or a folder with -o"
+        assert str(caught.value) == f"a NoDL file is for one node, here are 2; {hint}"
+
+
+@pytest.mark.parametrize(
+    ("output", "form", "it_is"),
+    [(None, None, False), (None, "nodl", True), ("a.nodl.yaml", None, True), ("a.yaml", None, False),
+     ("a.nodl.json", "nodl", True), ("a.nodl.yml", None, True), ("a.yaml", "nodes", False)],
+)  # fmt: skip
+def test_nodl_is_asked_for_by_form_or_name(output: Any, form: Any, it_is: bool) -> None:
+    assert learn.is_nodl(options(output=output, form=form)) is it_is
+
+
+def test_what_is_for_nodes_needs_their_form() -> None:
+    none: dict[str, Any] = dict.fromkeys(("output", "form", "node", "namespace", "stack", "distro"))
+    assert not learn.is_asked(options(**none))
+    for form in ("nodes", "nodl"):
+        assert learn.is_asked(options(**{**none, "form": form, "node": ["/a"]}))
+    for it in ("node", "namespace", "stack", "distro"):
+        with pytest.raises(UsageError) as caught:
+            learn.is_asked(options(**{**none, it: "x"}))
+        assert str(caught.value) == f"--{it} is for a description of nodes: add --form nodes"
+    with pytest.raises(UsageError) as caught:
+        learn.is_nodl(options(output="a.nodl.yaml", form="json"))
+    assert str(caught.value) == "a.nodl.yaml is the name of a NoDL file; leave out --form json"
+
+
+# ---------------------------------------------------------------- a file beside a description
+
+
+def test_the_summary_of_a_file_beside_a_description() -> None:
+    words = {
+        "params": "a parameter file", "rviz": "a config of RViz", "moveit": "a file of MoveIt",
+        "bridge": "a file of ros_gz_bridge", "tree": "a behavior tree", "lua": "a Lua file",
+    }  # fmt: skip
+    for kind, text in words.items():
+        made = [RewrittenFile("r1", kind, b"", (), ())]
+        assert rewrite_file.summary(made, ["r1"], "", "") == f"r1: {text}; proved"
+    kept = [
+        RewrittenFile(it, "lua", b"", (), why) for it, why in (("a", ("x", "y")), ("b", ("y",)))
+    ]
+    assert rewrite_file.summary(kept, ["a", "b"], "jazzy", "it is set") == (
+        "2 robots: a Lua file; rewritten, not proved: x, y (ROS 2 jazzy: it is set)"
+    )
+
+
+def test_a_caveat_is_a_note_or_makes_the_view_incomplete(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for incomplete in (True, False):
+        given = options(quiet=False, program="multibot")
+        snapshot._remark(given, Caveat("a", incomplete, "is odd"))
+    assert capsys.readouterr().err == "multibot: incomplete: is odd\nmultibot: note: is odd\n"
+
+
+# ---------------------------------------------------------------- a fleet
+
+
+def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
+    read = str(tmp_path / "rover.xacro")
+    fleet: Any = argparse.Namespace(read=[read])
+    for name in ("output", "sros2", "save_snapshot", "report"):
+        with pytest.raises(UsageError) as caught:
+            commands_of_fleets.check_unread(options(**{name: read}), fleet)
+        option = f"--{name.replace('_', '-')}"
+        said = f"{read} is a file that is read; choose another one for {option}"
+        assert str(caught.value) == said
+        commands_of_fleets.check_unread(options(**{name: str(tmp_path / "out")}), fleet)
+
+
+def test_what_a_fleet_file_says_itself() -> None:
+    names = (
+        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared-frames",
+        "shared-topics", "groups", "vocabulary", "launch", "roots",
+    )  # fmt: skip
+    assert {
+        "words": "ROBOT", **{it.replace("-", "_"): f"--{it}" for it in names},
+    } == commands_of_fleets.OF_FLEET_FILE  # fmt: skip
+
+
 # ---------------------------------------------------------------- plan, rehearse, check
 
 
@@ -333,6 +453,103 @@ def test_words_of_a_check_without_a_plan() -> None:
         Outcome(it, text, "multibot check", False, ("a",))
         for it, text in zip(verdicts, words, strict=True)
     ]
+
+
+def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(
+        quiet=False, verbose=True, program="multibot", kind="link", old="a", new="b"
+    )  # fmt: skip
+    usual: dict[str, Any] = {
+        "places": 3,
+        "after": {"x": b"", "y": b""},
+        "unread": {},
+        "mentions": (),
+    }
+    rename._tell(given, options(**usual))  # type: ignore[arg-type]
+    assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; proved\n"
+    left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
+    more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
+    rename._tell(given, options(**more))  # type: ignore[arg-type]
+    assert capsys.readouterr().err.splitlines()[1:] == [
+        "multibot: not looked at: p: odd", "multibot: not looked at: q",
+        f"multibot: left as they are: {len(left)} lines with 'a'",
+        *(f"multibot:   {it}" for it in left[:-1]),
+    ]  # fmt: skip
+
+
+def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(quiet=False, program="multibot")
+    usual: dict[str, Any] = {
+        "argument": "prefix", "proved": ("a",), "configurations": (), "after": {"f": b""},
+        "namespace": "", "spaced": (), "launches": (), "already": {}, "left": (), "unread": {},
+    }  # fmt: skip
+
+    def told(**more: Any) -> list[str]:
+        adopt._tell(given, options(**{**usual, **more}))  # type: ignore[arg-type]
+        return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
+
+    assert told() == ["argument prefix: 1 description in 1 file; proved"]
+    assert told(proved=()) == [
+        "argument prefix: 0 descriptions in 1 file; not proved, see what is left"
+    ]
+    assert told(proved=("a", "b"), configurations=("c",)) == [
+        "argument prefix: 2 descriptions and 1 other configuration in 1 file; proved"
+    ]
+    files = {"l": b"<arg prefix:= />", "m": b"<arg ns:= prefix:= />"}
+    assert told(argument="", unread={"u": "u: odd", "v": ""}, already={"x": "tf_prefix"}) == [
+        "x: it has such an argument already: tf_prefix", "not looked at: u: odd", "not looked at: v",
+    ]  # fmt: skip
+    left = (options(place="f:3", why="it is odd"),)
+    assert told(
+        namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
+    ) == [
+        "argument prefix: 1 description in 2 files; proved",
+        "argument ns: what ROS names in 2 descriptions; proved",
+        "l: it hands prefix on; proved", "m: it hands prefix and ns on; proved",
+        "f:3: left as it is: it is odd",
+    ]  # fmt: skip
+
+
+def test_what_a_check_of_a_build_lists(capsys: pytest.CaptureFixture[str]) -> None:
+    given = options(quiet=False, program="multibot", output="out", fleet="fleet.yaml")
+    nothing: Any = options(write={}, remove=())
+    assert build._stale(given, nothing) == 0
+    assert capsys.readouterr().err == "multibot: out is up to date\n"
+    changed: Any = options(write={"a": b""}, remove=("b",))
+    assert build._stale(given, changed) == 1
+    said = capsys.readouterr()
+    assert said.out == "a: stale\nb: left over\n"
+    assert said.err == "multibot: 2 files of out differ from what fleet.yaml makes\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "level", "spawned", "parents", "becomes"),
+    [
+        ("MG601", "warning", False, (), "warning"), ("claim", "warning", False, (), "error"),
+        ("twice", "warning", True, (), "error"), ("claim", "note", False, (), "note"),
+        ("pieces", "error", False, (), "warning"), ("pieces", "error", True, (), "error"),
+        ("pieces", "error", False, ("odom",), "error"), ("pieces", "note", False, (), "note"),
+        ("pieces", "error", False, ("map",), "warning"),
+    ],
+)  # fmt: skip
+def test_how_sure_a_finding_about_a_launch_file_is(
+    code: str, level: str, spawned: bool, parents: tuple[str, ...], becomes: str
+) -> None:
+    """Of a robot that no simulator has a driver may send the odometry."""
+    codes = {
+        "claim": check_launch.interface_not_exported.code,
+        "twice": check_launch.interface_claimed_twice.code,
+        "pieces": check_launch.tf_tree_in_pieces.code,
+    }
+    made: Any = options(
+        models=options(found=[options(spawned=spawned)]),
+        system=options(edges=[options(parent=it) for it in parents]),
+    )
+    it = Finding(codes.get(code, code), level, "m", names=("odom",))
+    assert check_launch._certain(it, made).level == becomes
+    assert check_launch._certain(it._replace(names=()), made).level == (
+        level if code == "pieces" else becomes
+    )
 
 
 # ---------------------------------------------------------------- help and mistakes

@@ -128,6 +128,21 @@ def test_why_says_where_it_is_written(folder: Path, capsys: pytest.CaptureFixtur
     assert said[-1] == f"source: {place}"
 
 
+def test_why_a_value_is_renamed_or_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whole; without a robot for the first of a fleet."""
+    (folder / "a.urdf").write_text('<robot name="a">\n<link name="base"/>\n<x y="base"/></robot>')
+    assert urdf_postfix.main(["--why", "a.urdf:2"]) == 0
+    first, value, claimed, *rest = capsys.readouterr().out.splitlines()
+    assert (first, value) == ("a.urdf:2:13: robot/link@name", "  value: 'base'")
+    assert claimed.startswith("  claimed by [element link] urdf.vocab:")
+    assert claimed.endswith(": @name declares link; also the tf frame")
+    assert rest == ["  is: link 'base'", "  for robot1: 'base/robot1'"]
+    assert urdf_postfix.main(["--why", "a.urdf:3", "r2"]) == 0
+    place, value, claimed = capsys.readouterr().out.splitlines()
+    assert (place, value) == ("a.urdf:3:7: robot/x@y", "  value: 'base'")
+    assert claimed.startswith("  claimed by no rewriter: ")
+
+
 CLASSIC = (
     '<robot name="r"><link name="base"/><gazebo>'
     '<plugin name="p" filename="libgazebo_ros_p3d.so"><body_name>base</body_name></plugin>'

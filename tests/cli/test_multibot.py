@@ -114,6 +114,10 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("chek",), "multibot: unknown command 'chek'; did you mean 'check'?"),
         (("--quiet", "check"), "write the command first, for example: multibot adopt --quiet"),
         (("--undo",), "write the command first, for example: multibot build --undo"),
+        (
+            ("--form=json",),
+            "write the command first, for example: multibot check-launch --form=json",
+        ),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
         (("coverage", "a"), "there is no command 'coverage'; use multibot inspect PATH..."),
@@ -144,7 +148,8 @@ def test_wrong_use_is_one_line(multibot: Multibot, words: tuple[str, ...], said:
 
 
 def test_the_version(multibot: Multibot) -> None:
-    assert multibot("--version").out == f"multibot {multibot_rewrite.__version__}\n"
+    for word in ("-V", "--version"):
+        assert multibot(word).out == f"multibot {multibot_rewrite.__version__}\n"
 
 
 @pytest.mark.slow

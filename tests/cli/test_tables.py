@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import argparse
 import re
+from types import SimpleNamespace
 
 import pytest
 
+from multibot_rewrite.cli import tables
 from multibot_rewrite.cli.tables import Grid, render
 
 ROWS = (
@@ -48,6 +51,17 @@ def test_nothing_is_folded_for_a_file() -> None:
 
 def test_an_empty_table_is_its_heading() -> None:
     assert render([Grid(("a", "b"), [])], 40) == "a  b\n"
+
+
+def test_a_table_is_as_wide_as_the_terminal_that_shows_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "50")
+    terminal, file = SimpleNamespace(isatty=lambda: True), SimpleNamespace(isatty=lambda: False)
+    for output, stream, wide in (
+        (None, terminal, 50), ("-", terminal, 50), ("a.txt", terminal, None), (None, file, None),
+        (None, None, None),
+    ):  # fmt: skip
+        monkeypatch.setattr(tables, "sys", SimpleNamespace(stdout=stream))
+        assert tables._width(argparse.Namespace(output=output)) == wide
 
 
 def test_the_heading_is_bold_in_colour() -> None:

@@ -107,6 +107,14 @@ NODES = {
     "the blackboard": ('<Spin server_name="{spin}" goal="{goal}" spin_dist="1.57"/>', {}),
     "nothing": ('<Spin server_name="" name="base_link" ID="odom"/>', {}),
     "placeholders": ('<Spin server_name="$(var x)/spin" robot_base_frame="${frame}"/>', {}),
+    "what stands for the robot": (
+        '<Spin server_name="${namespace}/spin" robot_base_frame="${namespace}/odom"/>',
+        {
+            "L1": '<Spin server_name="/amr/spin" robot_base_frame="odom"/>',
+            "L2": '<Spin server_name="/amr/spin" robot_base_frame="sp/odom"/>',
+            "L4": '<Spin server_name="/spin/amr" robot_base_frame="odom/sp"/>',
+        },
+    ),
     "escapes": (
         "<A robot_base_frame=\"base&#95;link\" global_frame='odom&quot;'/>",
         {
@@ -143,13 +151,13 @@ def test_a_port_that_is_set_is_not_inserted() -> None:
 SUBTREES = """<root BTCPP_format="4">
   <!-- service_name="/clear" -->
   <BehaviorTree ID="Main">
-    <SubTree ID="Clean" costmap="/clear" frame="base_link" other="/clear" robot_base_frame="tool"/>
+    <SubTree ID="Clean" costmap="/clear" spot="base_link" other="/clear" robot_base_frame="tool"/>
     <SetBlackboard value="odom" output_key="far"/>
     <SubTree ID="Deeper" where="{far}"/>
   </BehaviorTree>
   <BehaviorTree ID="Clean">
     <Sequence><ClearEntireCostmap service_name="{costmap}"/>
-    <SubTree ID="Deeper" where="{frame}"/></Sequence>
+    <SubTree ID="Deeper" where="{spot}"/></Sequence>
   </BehaviorTree>
   <BehaviorTree ID="Deeper"><GoalReached robot_base_frame="{where}"/></BehaviorTree>
 </root>
@@ -159,7 +167,7 @@ SUBTREES = """<root BTCPP_format="4">
 def test_literals_are_followed_into_subtrees() -> None:
     new, found = run(SUBTREES, context())
     wanted = SUBTREES.replace('costmap="/clear"', 'costmap="/amr/clear"')
-    wanted = wanted.replace('frame="base_link"', 'frame="sp/base_link"')
+    wanted = wanted.replace('spot="base_link"', 'spot="sp/base_link"')
     wanted = wanted.replace('="tool"', '="sp/tool"').replace('value="odom"', 'value="sp/odom"')
     assert new == wanted
     column = SUBTREES.splitlines()[3].index('other="') + len('other="') + 1
@@ -167,8 +175,8 @@ def test_literals_are_followed_into_subtrees() -> None:
 
 
 def test_subtrees_that_share_the_blackboard() -> None:
-    text = SUBTREES.replace('where="{frame}"', '_autoremap="true"').replace("{where}", "{frame}")
-    assert 'frame="sp/base_link"' in run(text, context())[0]
+    text = SUBTREES.replace('where="{spot}"', '_autoremap="true"').replace("{where}", "{spot}")
+    assert 'spot="sp/base_link"' in run(text, context())[0]
 
 
 def test_a_subtree_of_itself_ends() -> None:

@@ -98,6 +98,8 @@ def test_what_is_not_a_plain_string_is_only_reported(value: str) -> None:
         ('include "my_base.lua"', [("MB887", 1)]),
         ("\ninclude('my_base.lua')", [("MB887", 2)]),
         ('local frame = "base_link"', [("MB901", 1)]),
+        ("local frame = [[base_link]]", [("MB901", 1)]),
+        ("include [[my_base.lua]]", [("MB887", 1)]),
         ('-- "base_link"\nlocal a = "base"', []),
         ('x.published_frame == "base_link"', [("MB901", 1)]),
         ('my_published_frame = "base_link"', [("MB901", 1)]),

@@ -14,9 +14,9 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.file_kind import file_kind
+from multibot_rewrite.companions.moveit.file_kind import file_kind, find_kind, parameter_above
 from multibot_rewrite.companions.moveit.name_sites import kinds
-from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.moveit.rewrite import node_of, rewrite_moveit
 from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -99,6 +99,30 @@ def test_a_kind_is_found_from_the_content(kind: str) -> None:
 )
 def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
     assert file_kind(read_yaml(text.encode(), file)) == kind
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "above"),
+    [
+        ("kinematics.yaml", KINDS["kinematics"], "robot_description_kinematics."),
+        ("joint_limits.yaml", KINDS["joint_limits"], "robot_description_planning."),
+        ("servo.yaml", KINDS["servo"], "moveit_servo."),
+        ("a/ompl_planning.yaml", KINDS["planning"], "ompl."),
+        ("planners.yaml", KINDS["planning"], ""),
+        *(("p.yaml", f"{it}: x\n", "pipeline.") for it in
+          ("planning_plugin", "planning_plugins", "request_adapters")),
+        ("chomp_planning.yaml", "chomp: {planning_plugin: x}\n", ""),
+        ("c.yaml", "controller_names: [a]\n", "moveit_simple_controller_manager."),
+        ("m.yaml", "moveit_simple_controller_manager: {controller_names: [a]}\n", ""),
+        ("sensors.yaml", KINDS["sensors"], ""),
+    ],
+)  # fmt: skip
+def test_where_the_builder_puts_a_file(file: str, text: str, above: str) -> None:
+    """moveit_configs_utils/moveit_configs_builder.py; a pipeline has the word of its file."""
+    document = read_yaml(text.encode(), file)
+    kind = find_kind(document)
+    assert kind and parameter_above(kind, document) == above
+    assert node_of(kind) == ("servo_node" if file == "servo.yaml" else "move_group")
 
 
 @pytest.mark.parametrize(

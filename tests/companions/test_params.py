@@ -973,6 +973,21 @@ def test_a_calibration_below_a_camera_is_found() -> None:
             ("odom_frame: base_link", "world_frame: base_link"),
             ("odom_frame: r1/base_link", "world_frame: r1/base_link"),
         ),
+        (
+            ("base_frame: base_link", "joints: [elbow]", "tf_root: odom"),
+            ("base_frame: base_link", "joints: [r1_elbow]", "tf_root: odom"),
+        ),
+        (
+            ("base_frame: base_link", "tf_root: /base_link"),
+            ("base_frame: base_link", "tf_root: /base_link"),
+        ),
+        # Alone ``odom`` may be a topic.
+        (("joints: [elbow]", "tf_root: odom"), ("joints: [r1_elbow]", "tf_root: odom")),
+        (("joints: [elbow]", "root: elbow"), ("joints: [elbow]", "root: elbow")),
+        (
+            ("wheel_1_link_name: base_link", "root: base_link"),
+            ("wheel_1_link_name: base_link", "root: base_link"),
+        ),
     ],
 )
 def test_names_of_an_unknown_node_change_all_or_none(

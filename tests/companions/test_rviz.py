@@ -301,6 +301,12 @@ def test_views_that_follow_a_robot() -> None:
         ("robot2 Current View", "robot2/base_link"),
     ]
     assert "MF213" in codes()
+    first = (
+        "      - Class: rviz_default_plugins/Orbit\n"
+        '        Name: "robot1 Current View"\n'
+        "        Target Frame: robot1/base_link\n"
+    )
+    assert first in make()[0][0].text
 
 
 def test_saved_views_are_there_for_each_robot() -> None:
@@ -376,6 +382,18 @@ def test_a_tf_topic_for_each_robot_gives_a_config_for_each(layout: str) -> None:
     assert found.message.endswith("each robot has its own")
 
 
+def test_the_window_of_one_robot_has_a_colour_where_one_is_said() -> None:
+    for colour, painted in (("#102030", "16; 32; 48"), ("", "255; 0; 0")):
+        shown_ = shown(layout="L1", colour=colour)["Visualization Manager"]["Displays"]
+        assert shown_[1]["Color"] == painted
+
+
+def test_rules_of_an_rviz_of_its_own_come_behind_those_of_tf() -> None:
+    rules = (("__node", "rviz_1"), ("/tf", "/x"), ("/scan", "/robot1/scan"))
+    tf = (("/tf", "/robot1/tf"), ("/tf_static", "/robot1/tf_static"))
+    assert make(layout="L1", rules=rules)[0][0].remaps == (*tf, rules[0], rules[2])
+
+
 def test_how_the_window_of_one_robot_is_started() -> None:
     bare, posted = make(layout="L1")[0][0], make(layout="L4")[0][1]
     assert start_command(bare, "a.rviz") == [
@@ -420,6 +438,84 @@ def test_relayed_tf_shows_all_robots_in_one_window() -> None:
     assert [
         one["Name"] for one in yaml.safe_load(made[0].text)["Visualization Manager"]["Displays"]
     ][-2:] == ["robot1", "robot2"]
+
+
+NO_RVIZ = "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
+RULE_OF_EACH = (
+    "its topics are absolute: delete it here, and open it in an rviz2 that has a rule for each of"
+    " them, one for each robot"
+)
+FRAME = (
+    "Fixed Frame: odom", "MF201", "Fixed Frame 'odom' differs from robot to robot; it is 'map' now",
+    "publish a transform from it to each robot, see pose:",
+)  # fmt: skip
+VIEW = (
+    "Target Frame: base_link", "MF213",
+    "the view follows 'base_link'; it now follows robot 'robot1'", "each robot has a saved view",
+)  # fmt: skip
+RELAY = (
+    'Class: ""', "MF203", "one window shows all robots only if each robot's tf is relayed to /tf",
+    "ros2 run topic_tools relay /tf/robot1 /tf, and the same for tf_static",
+)  # fmt: skip
+
+
+def alone(line: str, title: str, hint: str) -> tuple[str, ...]:
+    """What is said of an item that works for one process."""
+    why = "it works only for the robot whose namespace rviz2 runs in"
+    return line, "MF202", f"{title} is left out: {why}", hint
+
+
+PANEL = alone(
+    "- Class: slam_toolbox::SlamToolboxPlugin",
+    "slam_toolbox::SlamToolboxPlugin 'Slam'",
+    RULE_OF_EACH,
+)
+GOAL = alone("- Class: nav2_rviz_plugins/GoalTool", "nav2_rviz_plugins/GoalTool", NO_RVIZ)
+OTHERS = (
+    alone("- Class: nav2_rviz_plugins/Navigation 2", "nav2_rviz_plugins/Navigation 2 'Navigation 2'",
+          NO_RVIZ),
+    PANEL,
+    alone("- Class: moveit_rviz_plugin/MotionPlanning", "moveit_rviz_plugin/MotionPlanning 'Plan'",
+          NO_RVIZ),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("layout", "relayed", "said"),
+    [
+        ("L2", False, (PANEL, FRAME, VIEW)),
+        ("L4", True, (*OTHERS[:2], RELAY, OTHERS[2], FRAME, GOAL, VIEW)),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_a_window_for_all(
+    layout: str, relayed: bool, said: tuple[tuple[str, ...], ...]
+) -> None:
+    """Whole, in the order of the file."""
+    found = [it for it in make(layout=layout, relayed=relayed)[1] if it.code.startswith("MF2")]
+    lines = CONFIG.splitlines()
+    assert [(lines[it.line - 1].strip(), it.code, it.message, it.hint) for it in found] == [*said]
+
+
+def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
+    hidden = config("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false")
+    (reset,) = (it for it in make(hidden)[1] if it.code == "MF212")
+    assert (reset.line, reset.message, reset.hint) == (
+        6,
+        "Visibility of 'it' is reset: the displays are in groups now",
+        "choose the displays again in rviz2",
+    )
+    assert manager(text=hidden)["Displays"][0]["Displays"][0]["Visibility"] == {}
+    # An image has no window of another robot in its own.
+    assert "MF212" not in codes(hidden, "L1")
+    path = hidden.replace("Camera", "Path")
+    assert "MF212" not in codes(path)
+    (each,) = (it for it in make(path, "L1")[1] if it.code.startswith("MF2"))
+    assert (each.line, each.code, each.message, each.hint) == (
+        2,
+        "MF203",
+        "one rviz2 reads one tf topic, but in layout tf-per-robot each robot has its own",
+        "each robot gets its own config; start rviz2 with -r /tf:=/robot1/tf, see commands.md",
+    )
 
 
 def test_one_tf_topic_is_nothing_to_tell() -> None:

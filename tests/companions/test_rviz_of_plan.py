@@ -12,6 +12,7 @@ import yaml
 from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.companions.rviz import of_plan
 from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
 from multibot_rewrite.companions.rviz.read_config import read_config, rviz_data
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -84,6 +85,89 @@ def test_one_window_has_a_group_for_each_robot() -> None:
     assert len({*scans}) == 2
     goals = [it["Topic"]["Value"] for it in manager["Tools"] if "Topic" in it]
     assert goals == ["/robot1/goal_pose", "/robot2/goal_pose"]
+
+
+WHOLE = """\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Name: Grid
+      Enabled: true
+    - Class: rviz_default_plugins/TF
+      Name: TF
+      Enabled: true
+    - Class: rviz_common/Group
+      Name: robot1
+      Enabled: true
+      Displays:
+        - Class: rviz_default_plugins/RobotModel
+          Name: RobotModel
+          Enabled: true
+          Description Source: Topic
+          TF Prefix: ""
+          Description Topic:
+            Durability Policy: "Transient Local"
+            Value: /robot1/robot_description
+        - Class: rviz_default_plugins/Map
+          Name: /robot1/map
+          Enabled: true
+          Topic:
+            Durability Policy: "Transient Local"
+            Value: /robot1/map
+        - Class: rviz_default_plugins/Path
+          Name: /robot1/plan
+          Enabled: true
+          Topic:
+            Value: /robot1/plan
+          Color: "230; 159; 0"
+        - Class: rviz_default_plugins/LaserScan
+          Name: /robot1/scan
+          Enabled: true
+          Topic:
+            Reliability Policy: "Best Effort"
+            Value: /robot1/scan
+          Color: "230; 159; 0"
+          Color Transformer: FlatColor
+  Global Options:
+    Fixed Frame: map
+  Tools:
+    - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz_default_plugins/Select
+    - Class: rviz_default_plugins/SetGoal
+      Topic:
+        Value: /robot1/goal_pose
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Distance: 10
+"""
+
+
+def test_the_whole_config_of_a_robot() -> None:
+    """What rviz2 saves for these displays, in the first colour of Okabe and Ito."""
+    plan = two("frames-per-robot", "/tf")
+    about = planned_end("/robot1/nav", TOPIC, PUBLISHES, "/robot1/plan", "nav_msgs/msg/Path")
+    (made,) = windows_of_plan(plan._replace(ends=(*plan.ends[::2], about)), relayed=False)
+    assert made.text == WHOLE
+
+
+def test_every_type_has_its_display() -> None:
+    """rviz_default_plugins plugins_description.xml: what each subscribes to."""
+    assert {
+        **{f"sensor_msgs/msg/{it}": it for it in ("LaserScan", "PointCloud2", "Range")},
+        "nav_msgs/msg/OccupancyGrid": "Map", "nav_msgs/msg/Path": "Path",
+        "geometry_msgs/msg/PolygonStamped": "Polygon", "geometry_msgs/msg/PoseArray": "PoseArray",
+        **{f"visualization_msgs/msg/{it}": it for it in ("Marker", "MarkerArray")},
+    } == of_plan._DISPLAYS  # fmt: skip
+    assert {*of_plan._COLOURED} == {
+        "LaserScan", "PointCloud2", "Range", "Path", "Polygon", "PoseArray"
+    }  # fmt: skip
+    assert {*of_plan._QOS} == {"LaserScan", "PointCloud2", "Map"}
+    assert of_plan._TOOLS == {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
 
 
 def test_a_tf_topic_for_each_robot_is_a_window_for_each() -> None:

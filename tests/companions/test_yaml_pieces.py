@@ -65,6 +65,13 @@ def test_a_value_keeps_its_quotes_or_gets_those_that_it_needs(
     assert yaml.safe_load(text) == value
 
 
+def test_words_that_yaml_1_1_reads_as_something_else_are_quoted() -> None:
+    """yaml.org/type/bool.html, null.html; rcl reads as YAML 1.1."""
+    for word in ("~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"):
+        for it in (word, word.upper(), word.title()):
+            assert quoted(it) == f'"{it}"'
+
+
 def test_a_scalar_is_replaced_with_its_quotes() -> None:
     document = read("a: 'x'\nb: |\n  text\n")
     assert document.root is not None
@@ -141,6 +148,8 @@ def test_entries_are_whole_lines_with_the_comments_above_them() -> None:
         "- a: 1\n  b: |\n    text\n", "# about the second\n- {a: 2}\n", "\n- a: 3\n",
     ]  # fmt: skip
     assert {it.column for it in found} == {0}
+    after = read("\n- a: 1\n")
+    assert after.root is not None and blocks(after, after.root) == [(1, 8, 0)]
     flow = read("[a, b]")
     assert flow.root is not None and blocks(flow, flow.root) == [] and not is_block(flow.root)
     assert not is_block(None)

@@ -8,12 +8,14 @@ UR's launch files give to their xacros.
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from lxml import etree
 
 from multibot_rewrite import InputError
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.reports import xacro_arguments
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file import filled_arguments
@@ -245,3 +247,17 @@ def test_one_look_serves_all_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     )
     assert nobodys(outputs, "robot4") == "robot4_"
     assert len(looked) == 1
+
+
+def test_two_examples_of_names_with_different_separators_are_told() -> None:
+    """Links have ``/`` in frames-per-robot, joints and groups ``_``."""
+    uses = tuple(
+        xacro_arguments.Use(kind, "prefix", "", 1, 1, f"{{robot}}{name}")
+        for kind, name in (("link", "base"), ("joint", "elbow"), ("joint", "wrist"))
+    )
+    robot: Any = SimpleNamespace(name="r1", tag="r1", namespace="/r1")
+    made = xacro_arguments.Argument("tf_prefix", "", uses, 0, "")
+    found = filled_arguments._choice(made, make_naming("frames-per-robot", "prefix"), robot)
+    both = "{robot}base of a link and {robot}elbow of a joint"
+    said = f"it makes {both}, and these get different separators"
+    assert (found.value, found.reason) == ("", said)

@@ -8,7 +8,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -19,7 +19,7 @@ from paths import ROOT
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.file.checked_yaml import TYPES
+from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, schema
 from multibot_rewrite.fleet.file.fleet_file import (
     KINDS,
@@ -465,3 +465,35 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
 def test_an_empty_text_is_told_in_words(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="write some text"):
         read(tmp_path, "robots:\n  - {name: a, description: ''}\n")
+
+
+def fault(given: Any, validator: str, wanted: Any, **schema: Any) -> str:
+    """What is said of an error of jsonschema."""
+    return _in_words(
+        SimpleNamespace(
+            instance=given, validator=validator, validator_value=wanted, schema=schema,
+            message="'name' is a required property",
+        )
+    )  # fmt: skip
+
+
+def test_every_fault_has_its_sentence() -> None:
+    wrong = "is not valid; "
+    assert fault({}, "required", ["x", "name"]) == "the key 'name' is missing; add it"
+    assert fault(None, "type", "array") == "the value is missing; write one, or remove the key"
+    assert fault("bot", "enum", ["both", "x"]) == "'bot' is not known; did you mean 'both'?"
+    assert fault("qqq", "enum", ["a", 1]) == "'qqq' is not known; known are a, 1"
+    assert fault([], "minItems", 1) == "the list is empty; write at least one item"
+    assert fault([1], "minItems", 3) == f"[1] {wrong}write 3 items"
+    assert fault([1, 2], "maxItems", 1) == f"[1, 2] {wrong}write 1 items"
+    assert fault("", "minLength", 1) == f"'' {wrong}write some text"
+    assert fault(-1, "minimum", 0) == f"-1 {wrong}the minimum is 0"
+    assert fault(9, "maximum", 5) == f"9 {wrong}the maximum is 5"
+    assert fault("x", "oneOf", []) == f"'x' {wrong}correct it"
+    assert fault("x", "pattern", "^a", description="a word") == f"'x' {wrong}write a word"
+    for given in (1, True):
+        assert fault(given, "type", "string") == f"{given} {wrong}write it in quotes"
+    assert fault([1], "type", "string") == f"[1] {wrong}write text"
+    assert fault("a", "type", "object", properties={"name": {}}) == f"'a' {wrong}write {{name: a}}"
+    assert fault(1, "type", ["array", "boolean"]) == f"1 {wrong}write a list or true or false"
+    assert fault("y" * 60, "oneOf", []) == f"'{'y' * 59}... {wrong}correct it"

@@ -82,6 +82,28 @@ def test_as_jsonschema_says(seed: int) -> None:
     assert 50 < sum(said) < 350
 
 
+WORD = {"type": "string"}
+SMALL: list[dict[str, Any]] = [
+    *({"type": it} for it in ("array", "object", "string", "boolean", "number", "integer")),
+    {"type": ["string", "integer"]}, {"enum": ["a", "both"]}, {"required": ["name"]},
+    {"pattern": "^[a-z]"}, *({"minLength": it} for it in (1, 2)),
+    *({word: it} for word in ("minItems", "maxItems") for it in (1, 2, 3)),
+    *({word: it} for word in ("minimum", "maximum") for it in (0, 1, 2)),
+    {"items": WORD}, {"properties": {"name": WORD}}, {"properties": {"name": {"type": "number"}}},
+    {"properties": {"name": WORD}, "additionalProperties": False}, {"additionalProperties": WORD},
+    {"oneOf": [WORD, {"type": "array"}]}, {"oneOf": [{"type": "number"}, {"minimum": 1}]},
+    {"$ref": "#/$defs/a"}, {"title": "t", "description": "d", "$comment": "c"},
+]  # fmt: skip
+
+
+def test_each_keyword_as_jsonschema_says() -> None:
+    for it in SMALL:
+        whole_ = {**it, "$defs": {"a": {"minLength": 2}}}
+        judge = jsonschema.Draft202012Validator(whole_)
+        for data in ODD:
+            assert is_valid(data, whole_, whole_["$defs"]) is judge.is_valid(data), (it, data)
+
+
 def test_every_keyword_of_the_schema_has_a_rule() -> None:
     with pytest.raises(KeyError):
         is_valid("a", {"format": "date"}, {})

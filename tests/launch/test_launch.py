@@ -16,7 +16,7 @@ import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import launch_signatures
@@ -746,8 +746,14 @@ def test_a_path_in_a_word_may_have_what_parts_its_name(
 @pytest.mark.parametrize(
     ("text", "part"),
     [
-        ('<multibot_node node="amcl" exec="x" name="y"/>', "remove name="),
-        ('<multibot_node node="amcl" exec="x" namespace="y"/>', "remove namespace="),
+        *(
+            (
+                f'<{it} node="amcl" exec="x" {word}="y"/>',
+                f"^{it}: {word} comes from the fleet file; remove {word}=$",
+            )
+            for it in ("multibot_node", "multibot_lifecycle_node", "multibot_container")
+            for word in ("name", "namespace")
+        ),
         ('<multibot_node exec="x"/>', "node"),
         ("<multibot_robots/>", "fleet=FILE"),
         ("<multibot_spawn/>", "simulator"),
@@ -1008,6 +1014,26 @@ def test_files_of_robots_and_of_all_are_apart(fleet: str, context: Any) -> None:
     assert one.parts[-3:] == ("robot1", "nodes", "a.yaml") and all_.parts[-2:] == ("all", "a.yaml")
     assert one.parents[2] == all_.parents[1] and one.read_bytes() == "é\n".encode()
     assert one.parents[2].name.startswith("multibot_launch_")
+
+
+def test_substitutions_in_a_file_of_parameters_are_performed(
+    fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """launch reads quotes and backslashes of a text, so one without substitutions is none of its."""
+    door = launch_context.of_launch
+    parser = SimpleNamespace(
+        parse_substitution=lambda text: text.replace("$(find-pkg-share p)", "/p")
+    )
+    monkeypatch.setattr(
+        launch_context,
+        "of_launch",
+        lambda name: parser if name == "frontend.parse_substitution" else door(name),
+    )
+    of_robot = launch.RobotRef("robot1", fleet)
+    file = Path(fleet).with_name("params.yaml")
+    file.write_text(file.read_text().replace("}", ", map: $(find-pkg-share p)/m}"))
+    made = Path(launch_context.node_file_of(context, "params.yaml", of_robot))
+    assert "map: /p/m" in made.read_text()
 
 
 def test_a_substitution_needs_a_word(frontend: Any) -> None:

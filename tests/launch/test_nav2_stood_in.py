@@ -18,6 +18,7 @@ import yaml
 from launched_here import read_here
 from nav2_fleet import FILE, written
 
+from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.launch import nav2, nav2_programs
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
@@ -61,8 +62,8 @@ def by_name(graph: LaunchGraph) -> dict[str, LaunchedNode]:
 @pytest.fixture(scope="module")
 def each(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
     """Postfix: all in processes of their own, and all that can be asked for."""
-    more = {"rviz": "each", "robot_state_publisher": "true", "use_sim_time": "true"}
-    words = {"map": "/depot.yaml", **more}
+    more = {"rviz": " Each ", "robot_state_publisher": "true", "use_sim_time": "true"}
+    words = {"map": "/depot.yaml", "autostart": "false", **more}
     return read(tmp_path_factory.mktemp("fleet"), *words.items())
 
 
@@ -75,7 +76,7 @@ def nodes(each: LaunchGraph) -> dict[str, LaunchedNode]:
 def composed(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
     """Namespaces: in a container of each robot, with a map server for all and tf on one topic."""
     fleet = {"layout": "both", "stack": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
-    return read(tmp_path_factory.mktemp("fleet"), ("rviz", "one"), ("autostart", "false"), **fleet)
+    return read(tmp_path_factory.mktemp("fleet"), ("rviz", "one"), **fleet)
 
 
 def own(node: LaunchedNode) -> dict[str, object]:
@@ -99,7 +100,7 @@ def test_a_manager_has_the_nodes_that_it_manages_by_their_names(
     manager = nodes[f"/lifecycle_manager_localization_{robot}"]
     assert (manager.package, manager.executable) == ("nav2_lifecycle_manager", "lifecycle_manager")
     wanted = [f"{it}_{robot}" for it in BESIDE]
-    assert own(manager) == {"autostart": True, "node_names": wanted}
+    assert own(manager) == {"autostart": False, "node_names": wanted}
     moving = own(nodes[f"/lifecycle_manager_navigation_{robot}"])["node_names"]
     assert {"controller_server", f"bt_navigator_{robot}"} <= {*moving}  # type: ignore[misc]
 
@@ -187,14 +188,14 @@ def test_components_are_in_the_container_of_their_robot(composed: LaunchGraph) -
     amcl = hosted["/robot1/amcl"]
     assert (amcl.package, amcl.executable) == ("nav2_amcl", "nav2_amcl::AmclNode")
     manager = own(hosted["/robot1/lifecycle_manager_localization"])
-    assert manager == {"autostart": False, "node_names": ["amcl"]}
+    assert manager == {"autostart": True, "node_names": ["amcl"]}
 
 
 def test_what_all_share_has_a_manager_of_its_own(composed: LaunchGraph) -> None:
     nodes = by_name(composed)
     assert "/robot1/map_server" not in nodes and nodes["/map_server"].package == "nav2_map_server"
     manager = nodes["/lifecycle_manager_shared"]
-    assert own(manager) == {"autostart": False, "node_names": ["map_server"]}
+    assert own(manager) == {"autostart": True, "node_names": ["map_server"]}
     assert (manager.package, manager.executable) == ("nav2_lifecycle_manager", "lifecycle_manager")
     # No map was given: what parameter files say is not replaced.
     assert own(nodes["/map_server"]) == {}
@@ -234,6 +235,36 @@ def test_a_window_needs_a_config(tmp_path: Path) -> None:
         words = (("fleet", str(file)), ("rviz", "each"))
         notes = launch_graph(LaunchOrder(str(FILE), words, trusted=True)).notes
     assert any(f"rviz:=each: {file} has no rviz: under companions" in it.message for it in notes)
+
+
+@pytest.mark.parametrize("clock", [True, False, None])
+def test_what_nodes_of_all_and_windows_are_started_with(
+    clock: bool | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The options of launch_ros's Node, whole."""
+    fleet = SimpleNamespace(robots=["first", "second"])
+    monkeypatch.setattr(nav2, "_said", lambda word: word)
+    monkeypatch.setattr(nav2, "fleet_of", lambda _, said: {"fleet": fleet}[said])
+    monkeypatch.setattr(
+        nav2, "sim_time", lambda _, robot, told: {("first", None): clock}[robot, told]
+    )
+    monkeypatch.setattr(nav2, "node_class", lambda: dict)
+    monkeypatch.setattr(nav2, "written", lambda *it: it[1:])
+    clocks = [] if clock is None else [{"use_sim_time": clock}]
+    program = nav2_programs.program("map_server", "jazzy")
+    assert nav2._plain("map_server", program, None, [1]) == {
+        "name": "map_server", "package": "nav2_map_server", "executable": "map_server",
+        "output": "screen", "parameters": [1, *clocks],
+    }  # fmt: skip
+    usual = {"package": "rviz2", "executable": "rviz2", "parameters": clocks}
+    rules = (("/tf", "/robot1/tf"),)
+    assert nav2._window(None, "a.rviz", RvizText("robot1", "t", "/robot1", rules)) == {
+        **usual, "namespace": "/robot1", "remappings": [*rules],
+        "arguments": ["-d", (None, "robot1/a.rviz", "t")],
+    }  # fmt: skip
+    assert nav2._window(None, "a.rviz", RvizText("", "t")) == {
+        **usual, "namespace": None, "remappings": [], "arguments": ["-d", (None, "all/a.rviz", "t")],
+    }  # fmt: skip
 
 
 def test_arguments_and_their_defaults() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -22,10 +23,11 @@ from waiting import wait_until
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.launch import missing
-from multibot_rewrite.producers.launch import child
+from multibot_rewrite.producers.launch import child, snapshot
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.door import of_launch_ros
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End, Heard
 
 
 def without() -> str:
@@ -989,3 +991,19 @@ def runs(process: str) -> bool:
     with suppress(OSError):
         return bool(Path("/proc", process, "cmdline").read_bytes())
     return False
+
+
+def test_what_nodes_of_plugins_measure_has_their_frame() -> None:
+    def sent(role: str, name: str, type_: str, node: str = "/lidar") -> End:
+        return End(TOPIC, role, name, type_, "", node, None, "")
+
+    ends = (
+        sent(PUBLISHES, "/scan", "sensor_msgs/msg/LaserScan"),
+        sent(PUBLISHES, "/said", "std_msgs/msg/String"),
+        sent(SUBSCRIBES, "/joints", "sensor_msgs/msg/JointState"),
+    )
+    parts: list[Any] = [
+        SimpleNamespace(name="/lidar", endpoints=ends),
+        SimpleNamespace(name="/other", endpoints=(sent(PUBLISHES, "/s", ends[0].type, "/other"),)),
+    ]
+    assert [*snapshot._measured(parts, {"/lidar": "laser"})] == [Heard("/scan", "laser")]

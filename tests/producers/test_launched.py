@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
@@ -19,6 +21,7 @@ from multibot_rewrite.producers.launch.records import (
     graph_of,
     launch_order,
     order_of,
+    orders_in_words,
     to_json,
 )
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
@@ -305,3 +308,21 @@ def test_rules_of_a_manager_reach_its_controllers_where_the_release_forwards_the
     spawner = started("controller_manager", "spawner", namespace="/robot1", arguments=("wheels",))
     ends = runs(launched(manager, spawner, release=release))["wheels"].endpoints
     assert next(it.remapped for it in ends if it.name == "~/odom") == target
+
+
+def test_several_launch_files_get_the_same_arguments(tmp_path: Path) -> None:
+    """Words that are no files are those of one: a package with its file."""
+    first, second = (str(tmp_path / it) for it in ("a.launch.py", "b.launch.py"))
+    for it in (first, second):
+        Path(it).touch()
+    for words in ((), ("sim:=true", "name:=a=b")):
+        values = tuple(tuple(it.split(":=", 1)) for it in words)
+        found = orders_in_words([first, second, *words], "text", ("root",))
+        assert [(it.file, it.arguments, it.roots) for it in found] == [
+            (it, values, ("root",)) for it in (first, second)
+        ]
+    (alone,) = orders_in_words([first, "x:="], "text")
+    assert (alone.file, alone.arguments) == (first, (("x", ""),))
+    for wrong in (["a:=b"], [first, ":=b"], [first, "a=b"]):
+        with pytest.raises(UsageError, match=r"^launch "):
+            orders_in_words(wrong, "text")

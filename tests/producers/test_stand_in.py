@@ -3,16 +3,26 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import FIXTURES
 
-from multibot_rewrite.producers.launch import places
+from multibot_rewrite.producers.launch import includes, places, visit
+from multibot_rewrite.producers.launch.entities import Entity
 from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
-from multibot_rewrite.producers.launch.stand_in import packages, parameters, values
+from multibot_rewrite.producers.launch.stand_in import (
+    frontend,
+    packages,
+    parameters,
+    parse,
+    standing_in,
+    values,
+)
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import LaunchConfiguration, LaunchContext
 from multibot_rewrite.system.records import Place
@@ -350,3 +360,158 @@ def test_texts_of_launch_files_in_xml_and_yaml(context: LaunchContext) -> None:
     for text in ("$(var n", "$(nope x)", "$(arg x)", "$(env HERE 'x)", "$(var 'n)"):
         with pytest.raises(ValueError, match=r"closed|needs launch|Unknown|substitution"):
             parse_substitution(text)
+
+
+# launch and launch_ros jazzy: what ``parse`` of each action reads of its element, and the argument that
+# it becomes where that has another name. ``!`` has to be there; ``<tag>`` are elements below.
+PROCESS = (
+    "cwd output respawn respawn_max_retries respawn_delay sigkill_timeout sigterm_timeout shell"
+    " emulate_tty launch-prefix=prefix on_exit <env>=additional_env"
+)
+PARTS = "<remap>=remappings <param>=parameters"
+NODE = (
+    f"{PROCESS} {PARTS} !exec=executable pkg=package name node-name=name namespace exec_name"
+    " args=arguments ros_args=ros_arguments"
+)
+INSIDE = "<composable_node>=composable_node_descriptions"
+KEEP = "<keep>=launch_configurations"
+ELEMENTS = {
+    "append_env": "AppendEnvironmentVariable: !name !value prepend separator",
+    "arg": "DeclareLaunchArgument: !name default=default_value description <choice>=choices",
+    "executable": f"ExecuteProcess: {PROCESS} !cmd name",
+    "group": f"GroupAction: scoped forwarding {KEEP} <*>=actions",
+    "include": "IncludeLaunchDescription: !file=launch_description_source <arg>=launch_arguments",
+    "let": "SetLaunchConfiguration: !name !value",
+    "load_composable_node": f"ros LoadComposableNodes: !target=target_container {INSIDE}",
+    "log": "LogInfo: !message=msg",
+    "node": f"ros Node: {NODE}",
+    "node_container": f"ros ComposableNodeContainer: {NODE} {INSIDE}",
+    "push-ros-namespace": "ros PushROSNamespace: !namespace",
+    "push_ros_namespace": "ros PushROSNamespace: !namespace",
+    "reset": f"ResetLaunchConfigurations: {KEEP}",
+    "reset_env": "ResetEnvironment:",
+    "ros_timer": "ros ROSTimer: !period <*>=actions",
+    "set_env": "SetEnvironmentVariable: !name !value",
+    "set_parameter": "ros SetParameter: !name !value",
+    "set_parameters_from_file": "ros SetParametersFromFile: !filename",
+    "set_remap": "ros SetRemap: !from=src !to=dst",
+    "set_ros_log_dir": "ros SetROSLogDir: !new_log_dir",
+    "set_use_sim_time": "ros SetUseSimTime: !value",
+    "shutdown": "Shutdown: reason",
+    "timer": "TimerAction: !period cancel_on_shutdown <*>=actions",
+    "unset_env": "UnsetEnvironmentVariable: !name",
+}
+COMPONENT = f"{PARTS} !pkg=package !plugin !name namespace <extra_arg>=extra_arguments"
+
+
+def read_of(form: frontend.Form) -> set[str]:
+    """What a form reads, as in ELEMENTS."""
+    values = {f"{'!' * (it in form.needs)}{it}={key}" for it, (key, _) in form.values.items()}
+    below = {f"<{it}>={key}" for it, (key, _) in form.below.items()}
+    return values | below | ({f"<*>={form.actions}"} if form.actions else set())
+
+
+def meant(words: str) -> set[str]:
+    return {it if "=" in it else f"{it}={it.strip('!')}" for it in words.split()}
+
+
+def test_every_element_of_launch_files_in_xml_and_its_attributes() -> None:
+    assert frontend._FORMS.keys() == ELEMENTS.keys()
+    for tag, text in ELEMENTS.items():
+        name, _, words = text.partition(":")
+        form, ros = frontend._FORMS[tag], name.startswith("ros ")
+        assert form.module == ("launch_ros.actions" if ros else "launch.actions"), tag
+        assert (form.name, read_of(form)) == (name.removeprefix("ros "), meant(words)), tag
+    component = frontend._COMPONENT
+    assert (component.module, component.name) == ("launch_ros.descriptions", "ComposableNode")
+    assert read_of(component) == meant(COMPONENT)
+
+
+def test_attributes_that_are_true_or_a_command_line() -> None:
+    readers = {
+        (word, read)
+        for form in (*frontend._FORMS.values(), frontend._COMPONENT)
+        for word, (_, read) in form.values.items()
+    }
+    truths = {word for word, read in readers if read is frontend._truth}
+    assert truths == {
+        "shell", "emulate_tty", "prepend", "scoped", "forwarding"
+    }  # fmt: skip
+    lines = {word for word, read in readers if read is frontend._words}
+    assert lines == {"args", "ros_args", "cmd"}
+    texts = ("true", "1", "on", "yes", "TRUE", True, "false", "0", "", False)
+    assert [frontend._truth(it) for it in texts] == [*[True] * 6, *[False] * 4]
+
+
+def test_elements_of_ros_1_are_refused_and_those_of_others_are_told() -> None:
+    for tag in ("env", "machine", "param", "remap", "rosparam", "test"):
+        with pytest.raises(RuntimeError, match=f"Unrecognized entity of the type: {tag}"):
+            frontend._made(Entity(tag, 1, {}, []))
+    with standing_in():
+        other = frontend._made(Entity("so_they_say", 1, {}, []))
+    with pytest.raises(NotImplementedError, match=r"^<so_they_say> is not read: it needs launch"):
+        other.execute(LaunchContext())
+
+
+def test_every_substitution_of_launch_files_in_xml() -> None:
+    """The words that launch and launch_ros jazzy expose, each with the class that it stands for."""
+    words = {
+        "all": "All", "and": "And", "any": "Any", "dirname": "ThisLaunchFileDir",
+        "env": "EnvironmentVariable", "equals": "Equals", "exec-in-pkg": "ExecutableInPackage",
+        "file-content": "FileContent", "filename": "ThisLaunchFile", "anon": "AnonName",
+        "find-exec": "FindExecutable", "find-pkg-prefix": "FindPackagePrefix",
+        "find-pkg-share": "FindPackageShare", "if": "IfElse", "launch_log_dir": "LaunchLogDir",
+        "log_dir": "LaunchLogDir", "not": "Not", "not-equals": "NotEquals", "or": "Or",
+        "param": "Parameter", "var": "LaunchConfiguration",
+    }  # fmt: skip
+    known = {**vars(packages), **vars(values)}
+    classes = {it: known.get(f"{name}Substitution") or known[name] for it, name in words.items()}
+    made = {it: kind for it, kind in parse._KNOWN.items() if it not in ("command", "eval")}
+    assert (made, parse._KNOWN.keys() - made.keys()) == (classes, {"command", "eval"})
+    for word in ("arg", "find", "optenv"):
+        with pytest.raises(ValueError, match=word):
+            parse_substitution(f"$({word} a)")
+
+
+def test_every_action_of_launch_is_visited() -> None:
+    """By the table made of the real one; what is not in it is of other releases, what is not named
+    here is visited as the class that it is one of."""
+    there = json.loads((FIXTURES / "launch_signatures.json").read_text())["names"]
+    names = {*there["launch.actions"], *there["launch_ros.actions"]}
+    named = {*visit._HANDLERS}
+    assert names - named == {"LifecycleNode", "OpaqueCoroutine", "ROSTimer", "RosTimer"}
+    others = {"LaunchDescription", "ForEach", "ForLoop", "ReplaceEnvironmentVariables"}
+    assert named - names == others
+    starts = {
+        "IncludeLaunchDescription", "ComposableNodeContainer", "LoadComposableNodes", "Node",
+        "ExecuteLocal", "ExecuteProcess", "RegisterEventHandler", "TimerAction",
+    }  # fmt: skip
+    passed = {
+        "SetUseSimTime", "LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition",
+        "UnregisterEventHandler",
+    }  # fmt: skip
+    assert {it for it, how in visit._HANDLERS.items() if how is visit._pass} == passed
+    executed = {it for it, how in visit._HANDLERS.items() if how is visit._execute}
+    assert executed == named - starts - passed
+
+
+def test_arguments_of_the_launch_files_of_gazebo() -> None:
+    """ros_gz_sim launch/gz_sim.launch.py and gz_spawn_model.launch.py; src/create.cpp has the words."""
+    same = ("world", "file", "string", "topic", "allow_renaming", "x", "y", "z", "R", "P", "Y")
+    words = {it: f"-{it}" for it in same}
+    assert {**words, "entity_name": "-name", "model_string": "-string"} == includes._SPAWN_WORDS
+    gz = ("gz_args", "ign_args", "gz_version", "ign_version", "debugger", "on_exit_shutdown")
+    assert (gz, ("gz_args", "ign_args", "world")) == (includes._GZ_WORDS, includes._WORLDS)
+    files = ("gz_sim", "ign_gazebo", "gz_server", "gazebo", "gzserver", "gzclient")
+    assert tuple(f"{it}.launch.py" for it in files) == includes._SIMULATES
+    given = {"gz_args": "-r 'a b.sdf'", "world": "w.sdf", "other": "x"}
+    assert [*includes._simulator_words(given)] == ["-r", "a b.sdf", "w.sdf"]
+    given = {"entity_name": "r1", "x": "1", "y": "", "other": "z"}
+    assert [*includes._spawner_words(given)] == ["-name", "r1", "-x", "1"]
+
+
+def test_types_of_parameters_in_xml() -> None:
+    """launch frontend/type_utils.py."""
+    simple = ("int", "float", "bool", "str")
+    assert {"yaml", *simple, *(f"list_of_{it}" for it in simple)} == frontend._KINDS
+    assert {it.__name__ for it in frontend._TYPES.values()} == {*simple} == {*frontend._TYPES}

@@ -131,10 +131,10 @@ def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, 
     for element in tree.iter("*"):
         for attribute, value in element.items():
             entry = _blackboard_entry(element, str(value), trees)
-            if entry and attribute not in ("ID", "name", *_SHARED):
-                kind = _port_kind(element, str(attribute), trees, (*above, name))
-                found |= {entry: kind} if kind and entry not in found else {}
+            if not entry or attribute in ("ID", "name", *_SHARED):
+                continue
+            if kind := _port_kind(element, str(attribute), trees, (*above, name)):
+                found.setdefault(entry, kind)
         if any(element.get(it) in ("true", "1") for it in _SHARED):
-            below = _entry_kinds(trees, str(element.get("ID", "")), (*above, name))
-            found = {**below, **found}
+            found = {**_entry_kinds(trees, str(element.get("ID", "")), (*above, name)), **found}
     return found

@@ -104,5 +104,5 @@ def _by_values(root: yaml.Node) -> FileKind | None:
 
 
 def _by_name(file: str) -> FileKind | None:
-    name = file.replace("\\", "/").rpartition("/")[2].lower()
+    name = os.path.basename(file).lower()
     return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)

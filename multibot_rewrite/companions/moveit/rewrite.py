@@ -23,6 +23,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.template import check_no_slots, make_template
+from multibot_rewrite.companions.yaml_blocks import newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 from multibot_rewrite.knowledge.records import NodeFacts
 
@@ -66,7 +67,7 @@ def inserted_namespace(document: YamlText, context: Context) -> Iterator[Splice]
         at = key.start_mark.index
         yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}, ")
         return
-    end = "\r\n" if "\r\n" in document.text else "\n"
+    end = newline(document)
     at = key.start_mark.index
     yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}{end}{' ' * key.start_mark.column}")
 

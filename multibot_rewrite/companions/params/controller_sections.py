@@ -31,6 +31,7 @@ from multibot_rewrite.companions.params.shared_defaults import (
 )
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.companions.yaml_blocks import inserted, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
 
 
@@ -46,10 +47,8 @@ def controller_sections(
         for line in _section(_key(path, job.context), lines)
     ]
     if made and takes_sections(job.document):
-        text, at = job.document.text, len(job.document.text)
-        end = "\r\n" if "\r\n" in text else "\n"
-        before = "" if text.endswith("\n") else end
-        yield Splice(at, at, before + "".join(f"{it}{end}" for it in made))
+        end, at = newline(job.document), len(job.document.text)
+        yield inserted(job.document, at, "".join(f"{it}{end}" for it in made))
 
 
 def takes_sections(document: YamlText) -> bool:

@@ -22,6 +22,7 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.companions.yaml_blocks import newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNode
@@ -146,7 +147,7 @@ def inserted(
         message = f"{names}: all robots would share the default, and no line can be inserted here"
         hint = "write each parameter on its own line"
         return found_at(document, body, NOT_INSERTED, message, hint)
-    end = ("\r\n" if "\r\n" in document.text else "\n") + before
+    end = newline(document) + before
     return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
 
 

@@ -198,15 +198,15 @@ def _about_topic(job: ParamsJob, site: Site, made: TopicText) -> Iterator[Findin
         message = f"{site.key}: remap rules turn {made.text} into {made.wrong_target}"
         hint = "remove the name from the remap rules of this node or from this file"
         yield found_in(job.document.file, site.slot, WRONG_TARGET, message, hint)
-    if made.made_absolute and made.text != site.text:
+    if site.param and made.made_absolute and made.text != site.text:
         message = "relative topics of a costmap are resolved below the costmap: made absolute"
         hint = f"{_others(site.param)} resolve them below the robot: set distro: if the file is for one"
         yield found_in(job.document.file, site.slot, MADE_ABSOLUTE, message, hint)
 
 
-def _others(param: Param | None) -> str:
+def _others(param: Param) -> str:
     """The releases that resolve a relative topic in the robot's namespace."""
-    found = [it for it in RELEASES if param and not is_absolute(param, it)]
+    found = [it for it in RELEASES if not is_absolute(param, it)]
     return f"{', '.join(found[:-1])} and {found[-1]}" if len(found) > 1 else "".join(found)
 
 

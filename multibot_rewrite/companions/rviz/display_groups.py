@@ -35,6 +35,7 @@ from multibot_rewrite.companions.yaml_blocks import (
     blocks,
     cut_out,
     end_of,
+    inserted,
     is_block,
     moved,
     newline,
@@ -301,9 +302,3 @@ def remark(document: YamlText, one: RvizItem) -> str:
     title = f" {one.name!r}" if one.name else ""
     why = "it serves the robot of its rviz2 process"
     return f"{' ' * one.block.column}# left out: {one.cls}{title}: {why}{newline(document)}"
-
-
-def inserted(document: YamlText, at: int, text: str) -> Splice:
-    """Lines inserted at the start of a line, or after a last line without a line end."""
-    unended = at == len(document.text) and not document.text.endswith("\n")
-    return Splice(at, at, (newline(document) if unended and text else "") + text)

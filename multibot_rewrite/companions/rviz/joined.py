@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.naming import PREFIX, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import companion_names
-from multibot_rewrite.companions.rviz.display_groups import group_text, inserted, leaves
+from multibot_rewrite.companions.rviz.display_groups import group_text, leaves
 from multibot_rewrite.companions.rviz.read_config import (
     GRAPH_NAMESPACE,
     TOPIC,
@@ -25,7 +25,7 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.rewrite import frame_splices
 from multibot_rewrite.companions.rviz.values import RvizRobot, item_splices
-from multibot_rewrite.companions.yaml_blocks import cut_out, moved
+from multibot_rewrite.companions.yaml_blocks import cut_out, inserted, moved
 from multibot_rewrite.companions.yaml_text import read_yaml, spliced
 from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.steps.collect import Inventory

@@ -20,7 +20,6 @@ from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
     has_own_windows,
-    inserted,
     leaves,
     make_rviz_job,
     panels,
@@ -45,7 +44,14 @@ from multibot_rewrite.companions.rviz.read_config import (
 from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, is_name, item_splices
 from multibot_rewrite.companions.rviz.window_checks import config_findings
 from multibot_rewrite.companions.sites import Site, site_at
-from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
+from multibot_rewrite.companions.yaml_blocks import (
+    as_item,
+    blocks,
+    cut_out,
+    inserted,
+    is_block,
+    newline,
+)
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,

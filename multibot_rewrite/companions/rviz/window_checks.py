@@ -16,23 +16,13 @@ from multibot_rewrite.companions.rviz.read_config import (
     PROCESS,
     RvizConfig,
     RvizItem,
+    fixed_frame,
     value,
+    views_of,
 )
 from multibot_rewrite.companions.rviz.values import frame_of
 from multibot_rewrite.companions.yaml_text import found_at, pairs
 from multibot_rewrite.spelling.plan import tf_topic
-
-
-def window_findings(
-    config: RvizConfig, robots: Robots, world: str, together: bool
-) -> Iterator[Finding]:
-    """What is wrong with the window as a whole; ``together`` if one shows all robots."""
-    yield from _tf_topic(config, robots, together)
-    if together:
-        yield from _fixed_frame(config, robots, world)
-        yield from _view(config, robots)
-    yield from _left_out(config, robots, together)
-
 
 ONE_TF_TOPIC = declare(
     "MF203",
@@ -99,17 +89,14 @@ Visualization Manager:
 
 
 def _fixed_frame(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
-    node = _global_frame(config)
-    if node is not None and any(frame_of(node, robot) != node.value for robot in robots):
+    node = fixed_frame(config)
+    if not isinstance(node, yaml.ScalarNode):
+        return
+    if any(frame_of(node, robot) != node.value for robot in robots):
         now = f"it is {world!r} now" if world else "no frame is shared by all robots"
         message = f"Fixed Frame {node.value!r} differs from robot to robot; {now}"
         hint = "publish a transform from it to each robot, see pose:" if world else "set world:"
         yield found_at(config.document, node, OWN_FIXED_FRAME, message, hint)
-
-
-def _global_frame(config: RvizConfig) -> yaml.ScalarNode | None:
-    node = value(value(config.manager, "Global Options"), "Fixed Frame")
-    return node if isinstance(node, yaml.ScalarNode) else None
 
 
 FIRST_ROBOT_VIEW = declare(
@@ -142,7 +129,7 @@ Visualization Manager:
 
 
 def _view(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
-    node = value(value(value(config.manager, "Views"), "Current"), "Target Frame")
+    node = value(views_of(config)[0], "Target Frame")
     if not isinstance(node, yaml.ScalarNode) or len(robots) < 2:
         return
     if any(frame_of(node, robot) != node.value for robot in robots):
@@ -182,7 +169,7 @@ Visualization Manager:
 )
 
 
-def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
+def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
     everywhere = all(it.has_process for it in robots)
     for one in (*leaves(config.displays), *config.tools, *config.panels):
         if for_one_process(one) and not (everywhere and one.flag == PROCESS):
@@ -199,27 +186,6 @@ def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
                     " for each of them, one for each robot"
                 )
             yield found_at(config.document, one.node, LEFT_OUT, message, hint)
-
-
-def config_findings(
-    config: RvizConfig, robots: Robots, world: str, together: bool
-) -> Iterator[Finding]:
-    """The findings, each once, in the order of the file.
-
-    ``together``: one window shows all ``robots``, in the frame ``world``.
-    """
-    found = [*window_findings(config, robots, world, together)]
-    for one in leaves(config.displays):
-        found += display_findings(config, one, robots, together)
-    yield from sorted(dict.fromkeys(found), key=lambda it: (it.line, it.column, it.code))
-
-
-def display_findings(
-    config: RvizConfig, one: RvizItem, robots: Robots, together: bool
-) -> Iterator[Finding]:
-    """What is wrong with one display; ``together`` if one window shows all robots."""
-    if together and one.flag == DOCK:
-        yield from _visibility(config, one)
 
 
 VISIBILITY_RESET = declare(
@@ -251,8 +217,22 @@ Visualization Manager:
 
 
 def _visibility(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:
-    for key, there in pairs(one.node):
+    for key, there in pairs(one.node) if one.flag == DOCK else ():
         if key.value == "Visibility" and pairs(there):
             message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
             hint = "choose the displays again in rviz2"
             yield found_at(config.document, key, VISIBILITY_RESET, message, hint)
+
+
+def config_findings(
+    config: RvizConfig, robots: Robots, world: str, together: bool
+) -> Iterator[Finding]:
+    """The findings, in the order of the file.
+
+    ``together``: one window shows all ``robots``, in the frame ``world``.
+    """
+    found = [*_tf_topic(config, robots, together), *_left_out(config, robots)]
+    if together:
+        found += [*_fixed_frame(config, robots, world), *_view(config, robots)]
+        found += [it for one in leaves(config.displays) for it in _visibility(config, one)]
+    yield from sorted(found, key=lambda it: (it.line, it.column, it.code))

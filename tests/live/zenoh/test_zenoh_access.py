@@ -146,6 +146,88 @@ def test_files_and_certificates() -> None:
     assert "access_control" not in files["ops_desk.json5"]
 
 
+# rmw_zenoh 30f3030 DEFAULT_RMW_ZENOH_SESSION_CONFIG.json5: the values with "ROS setting".
+FOR_ROS = {
+    "scouting": {"multicast": {"enabled": False}},
+    "timestamping": {"enabled": {"router": True, "peer": True, "client": True}},
+    "queries_default_timeout": 60000,
+    "transport": {
+        "unicast": {
+            "open_timeout": 60000, "accept_timeout": 60000, "accept_pending": 10000,
+            "max_sessions": 10000,
+        },
+        "link": {
+            "tx": {
+                "lease": 60000, "keep_alive": 2,
+                "queue": {"congestion_control": {"block": {"wait_before_close": 60000000}}},
+            }
+        },
+    },
+}  # fmt: skip
+SENDS = ["put", "delete", "reply", "declare_queryable"]
+ASKS = ["declare_subscriber", "query"]
+ALIVE = ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber", "reply"]
+
+
+def test_the_whole_file_of_a_robot() -> None:
+    """zenoh DEFAULT_CONFIG.json5 has the words of access_control and of its messages."""
+    plan = made(("robot1", "/robot1/a", "/robot1/tf"))
+    files = dict(configurations(plan, Setup("tcp/host:7447", 3)))
+    about, _, text = files["robot1.json5"].decode().partition("\n")
+    uri = "export ZENOH_SESSION_CONFIG_URI=robot1.json5 (its full path)"
+    assert about == f"// The nodes of robot1: {uri}."
+    config = json.loads(text)
+    control = config.pop("access_control")
+    assert config == {"mode": "client", "connect": {"endpoints": ["tcp/host:7447"]}, **FOR_ROS}
+    rules = control.pop("rules")
+    ids = ["own", "sends", "is_asked", "hears", "asks", "graph"]
+    assert [it["id"] for it in rules] == [f"robot1_{it}" for it in ids]
+    said = [(it["messages"], it["flows"]) for it in rules]
+    both, out, back = ["egress", "ingress"], ["egress"], ["ingress"]
+    assert said == [
+        (SENDS + ASKS, both), (SENDS, out), (ASKS, back), (SENDS, back), (ASKS, out), (ALIVE, both),
+    ]  # fmt: skip
+    assert {it["permission"] for it in rules} == {"allow"}
+    assert rules[0].keys() == {"id", "messages", "flows", "permission", "key_exprs"}
+    assert rules[0]["key_exprs"] == ["3/robot1/**", "3/robot1/**/@adv/**"]
+    assert rules[-1]["key_exprs"] == ["@ros2_lv/3/**", "3/**/@adv/**"]
+    assert control == {
+        "enabled": True, "default_permission": "deny", "subjects": [{"id": "anybody"}],
+        "policies": [{"rules": [f"robot1_{it}" for it in ids], "subjects": ["anybody"]}],
+    }  # fmt: skip
+    router = json.loads(files["router.json5"].decode().partition("\n")[2])
+    assert router == {"mode": "router", "listen": {"endpoints": ["tcp/0.0.0.0:7447"]}, **FOR_ROS}
+
+
+def test_certificates_are_those_of_the_enclave() -> None:
+    """zenoh_security_tools; sros2 has these files in the folder of an enclave."""
+    plan = made(("robot1", "/robot1/a", "/robot1/tf"))
+    setup = Setup("tcp/host:7447", 0, "/keys", ("/ops/all",), own_routers=True)
+    files = {
+        name: json.loads(text.decode().partition("\n")[2])
+        for name, text in configurations(plan, setup)
+    }
+    for name, enclave, protocols in (
+        ("router.json5", "/router", ["tls"]), ("ops_all.json5", "/ops/all", ["tls"]),
+        ("robot1_router.json5", "/robot1", ["tls", "tcp"]),
+    ):  # fmt: skip
+        link = files[name]["transport"]["link"]
+        folder = f"/keys/enclaves{enclave}"
+        assert link["protocols"] == protocols
+        assert link["tls"] == {
+            "enable_mtls": True, "verify_name_on_connect": False,
+            "root_ca_certificate": f"{folder}/identity_ca.cert.pem",
+            **{f"{it}_private_key": f"{folder}/key.pem" for it in ("listen", "connect")},
+            **{f"{it}_certificate": f"{folder}/cert.pem" for it in ("listen", "connect")},
+        }  # fmt: skip
+    subjects = [{"id": it, "cert_common_names": [it]} for it in ("/robot1", "/ops/all")]
+    control = files["router.json5"]["access_control"]
+    assert control["subjects"] == subjects
+    keys = ["0/**", "0/**/@adv/**", "@ros2_lv/**"]
+    assert (control["rules"][-1]["id"], control["rules"][-1]["key_exprs"]) == ("/ops/all", keys)
+    assert control["rules"][-1]["messages"] == [*SENDS, *ASKS, *ALIVE[:-1]]
+
+
 def test_robots_with_routers_of_their_own() -> None:
     setup = Setup("tcp/10.0.0.1:7000", 0, "/keys", (), True)
     files = {

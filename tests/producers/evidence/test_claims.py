@@ -10,7 +10,7 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.producers.evidence.claims import claimed, claims_of
+from multibot_rewrite.producers.evidence.claims import Claimed, claimed, claimed_twice, claims_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.system.records import Place
@@ -442,3 +442,18 @@ def test_an_empty_text_is_a_value_and_no_default() -> None:
     assert names("<speed=a/b>", speed="") == []
     assert names("<type=fr3>/state", type="") == ["/state"]
     assert names("j/<interfaces=position>", interfaces=[]) == []
+
+
+def test_a_command_that_two_parameters_name_is_told_with_both_places() -> None:
+    """A state may be claimed by several (hardware_interface resource_manager.cpp)."""
+    text = (
+        "controller_manager:\n  ros__parameters:\n"
+        "    it: {type: diff_drive_controller/DiffDriveController}\n"
+        "it:\n  ros__parameters:\n    left_wheel_names: [w]\n    right_wheel_names: [w]\n"
+    )
+    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    (it,) = (node for node in given if node.manager)
+    found = [*claimed_twice(load_nodes("jazzy")[it.known].claims, it)]
+    assert found == [
+        (Claimed("command", "w/velocity", Place("c.yaml", 7)), Place("c.yaml", 6)),
+    ]
