@@ -172,8 +172,8 @@ def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
     if not found:
         # Nothing of a module of data is called: files that name it ask for what it holds.
         module = bug.file.removesuffix(".py").replace("/", ".")
-        files = (bench.copy / "tests").rglob("test_*.py")
-        found.update(str(it.relative_to(bench.copy)) for it in files if module in it.read_text())
+        every = (bench.copy / "tests").rglob("test_*.py")
+        found.update(str(it.relative_to(bench.copy)) for it in every if module in it.read_text())
     name = Path(bug.file).stem if Path(bug.file).stem != "__init__" else Path(bug.file).parent.name
     # Notes of an earlier run may name files that are gone.
     files = {it for test in found if (bench.copy / (it := test.partition("::")[0])).exists()}
