@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small systems without a plan: all that is said of them, and where an exception ends."""
+
+from __future__ import annotations
+
+import pytest
+from graph_examples import read_system
+
+from multibot_rewrite.rules.check import judge
+
+TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+SCAN, IMU, TEXT = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "std_msgs/msg/String"
+CLOCK = "rosgraph_msgs/msg/Clock"
+POSE, TRIGGER = "geometry_msgs/msg/PoseStamped", "std_srvs/srv/Trigger"
+OF_TWO = "two robots were started without a namespace"
+
+
+def said(*lines: str) -> list[str]:
+    """Code, level, node or else robot, and message of each finding."""
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    return [f"{it.code} {it.level} {it.node or it.robot}: {it.message}" for it in found]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            ["/a", "/a", "/b", "/b"],
+            [f"MG301 error /{it}: 2 nodes have the name /{it}" for it in "ab"],
+        ),
+        (
+            ["/a", "/a", "/b", "/b", "/c", "/c"],
+            ["MG301 error /a: 3 nodes run more than once: /a, /b, /c"],
+        ),
+        (["/rviz2", "/rviz2"], []),
+    ],
+)
+def test_nodes_of_one_name(lines: list[str], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+@pytest.mark.parametrize(
+    ("reader", "senders", "meant"),
+    [
+        # What chooses is idle without an input, unless that is misspelt.
+        ("twist_mux cmd_vel_joyy", "x cmd_vel_joy", "error x cmd_vel_joy"),
+        ("twist_mux cmd_vel_joyy", "x cmd_vel_joy, y cmd_vel_nav", "error x cmd_vel_joy"),
+        ("twist_mux cmd_vel_nav", "x cmd_vel_joy", ""),
+        ("driver cmd_vel", "x velocity", "warning x velocity"),
+        ("driver cmd_vel", "x velocity, y speed", ""),
+        # It reads that already.
+        ("driver cmd_vel", "driver velocity", ""),
+    ],
+)
+def test_which_command_a_reader_may_have_meant(reader: str, senders: str, meant: str) -> None:
+    def line(words: str, does: str) -> str:
+        node, name = words.split()
+        return f"/robot1/{node} {does} /robot1/{name} {TWIST} as /{name}"
+
+    sent = [line(it, "publishes") for it in senders.split(", ")]
+    found = [it for it in said(line(reader, "subscribes"), *sent) if it.startswith("MG303")]
+    (node, name), (level, sender, other) = reader.split(), meant.split() or ("", "", "")
+    miss = f"subscribes to /robot1/{name}, which no node publishes"
+    there = f"/robot1/{sender} publishes /robot1/{other}"
+    assert found == [f"MG303 {level} /robot1/{node}: {miss}; {there}"] * bool(meant)
+
+
+PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")
+BRIDGE = f"/ros_gz_bridge publishes /clock {CLOCK}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            PAIR,
+            [
+                f"MG501 error /{it}/amcl: on simulated time (use_sim_time), but no node publishes"
+                f" /clock: /{it}/amcl"
+                for it in ("robot1", "robot2")
+            ],
+        ),
+        (
+            (PAIR[0], f"/robot1/gz publishes /robot1/clock {CLOCK}"),
+            [
+                "MG501 error /robot1/amcl: on simulated time (use_sim_time), but no node publishes"
+                " /clock: /robot1/amcl; /robot1/gz publishes /robot1/clock"
+            ],
+        ),
+        # Tools subscribe to whatever there is.
+        ((f"/rviz2 subscribes /clock {CLOCK}",), []),
+        ((*PAIR, BRIDGE), []),
+        (
+            (*PAIR, BRIDGE, BRIDGE.replace("ros_gz_bridge", "player")),
+            ["MG502 error /player: /player and /ros_gz_bridge publish /clock"],
+        ),
+        (
+            (*PAIR, BRIDGE, "/robot1/ekf_node"),
+            ["MG503 error /robot1/ekf_node: not on simulated time, as /robot1/amcl is:"
+             " /robot1/ekf_node"],
+        ),
+        # A node that is not known to go by time, and one that only looks.
+        ((*PAIR, BRIDGE, "/robot1/driver", "/robot1/rviz2"), []),
+        (
+            (PAIR[0], BRIDGE, "/robot2/ekf_node"),
+            ["MG503 warning /robot2/ekf_node: robot2 is on the machine's time, /robot1/amcl on"
+             " simulated time"],
+        ),
+        (
+            (PAIR[0], BRIDGE, "/clock goes back 2.5 s"),
+            ["MG504 warning /ros_gz_bridge: the time on /clock went back by 2.5 s; /ros_gz_bridge"
+             " sends it"],
+        ),
+    ],
+)  # fmt: skip
+def test_clocks(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+DRIVERS = tuple(f"/robot{it}/driver subscribes /cmd_vel {TWIST}" for it in (1, 2))
+OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            DRIVERS,
+            ["MG310 error /robot1/driver: robot1 and robot2 all obey /cmd_vel: /robot1/driver,"
+             " /robot2/driver"],
+        ),
+        (DRIVERS[:1], []),
+        (
+            tuple(it.replace("/cmd_vel", "/joy").replace(TWIST, "sensor_msgs/msg/Joy")
+                  for it in DRIVERS),
+            ["MG310 warning /robot1/driver: robot1 and robot2 all obey /joy: /robot1/driver,"
+             " /robot2/driver"],
+        ),
+        (tuple(it.replace(TWIST, TEXT) for it in DRIVERS), []),
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/robot1/b publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel beside /robot1/a, and"
+             " /robot1/driver obeys both"],
+        ),
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel beside /robot1/a,"
+             " and /robot1/driver obeys both"],
+        ),
+        # A bridge in both directions orders nothing itself.
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/bridge publishes /robot1/cmd_vel {TWIST}",
+             f"/bridge subscribes /robot1/cmd_vel {TWIST}"),
+            [],
+        ),
+        (
+            (OWN, f"/rosbag2_player publishes /robot1/cmd_vel {TWIST}"),
+            ["MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system"],
+        ),
+        (
+            (f"/robot1/amcl subscribes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}"),
+            [],
+        ),
+        (
+            (OWN, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}",
+             f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG311 error /robot2/teleop: publishes /robot1/cmd_vel, a name of robot1"],
+        ),
+        (
+            (OWN, f"/rviz2 publishes /cmd_vel {TWIST}"),
+            ["MG303 note /robot1/driver: subscribes to /robot1/cmd_vel, which no node publishes;"
+             " /rviz2 publishes /cmd_vel"],
+        ),
+    ],
+)  # fmt: skip
+def test_commands(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+ODOM = "nav_msgs/msg/Odometry"
+MORE = {"lidar": ("scan", SCAN), "imu": ("imu/data", IMU), "driver": ("odom", ODOM)}
+BOTH = tuple(
+    f"/robot{at}/{node} publishes /robot{at}/{name} {type_}"
+    for node, (name, type_) in MORE.items()
+    for at in (1, 2)
+)
+FRAMES = tuple(f"transform robot{it}/base -> robot{it}/laser on /tf" for it in (1, 2))
+LIDAR = "/robot{}/lidar has range_max {}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (*BOTH, LIDAR.format(1, 10), LIDAR.format(2, 20)),
+            ["MG328 warning /robot2/lidar: has range_max 20, not 10 as /robot1/lidar"],
+        ),
+        ((*BOTH, LIDAR.format(1, 10), LIDAR.format(2, 10)), []),
+        # Each robot's own.
+        ((*BOTH, "/robot1/lidar has serial_port 1", "/robot2/lidar has serial_port 2"), []),
+        ((*BOTH, "/robot1/lidar has x 1", "/robot2/lidar has x 2"), []),
+        ((*BOTH, "/robot1/lidar has frame robot1/l", "/robot2/lidar has frame robot2/l"), []),
+        ((*BOTH, LIDAR.format(1, 10)), []),
+        ((*BOTH[:4], LIDAR.format(1, 10), LIDAR.format(2, 20)), []),
+        (
+            (BOTH[0], BOTH[1].replace(SCAN, "sensor_msgs/msg/PointCloud2"), *BOTH[2:]),
+            ["MG328 warning /robot2/lidar: has /robot2/scan sensor_msgs/msg/PointCloud2, not"
+             " sensor_msgs/msg/LaserScan as /robot1/lidar (/robot1/scan)"],
+        ),
+        (
+            (*BOTH, "/robot1/scan came 600 times", "/robot2/scan came 200 times"),
+            ["MG326 warning robot2: /robot2/scan came at 3.3 Hz, /robot1/scan at 10.0 Hz"],
+        ),
+        ((*BOTH, "/robot1/scan came 600 times", "/robot2/scan came 201 times"), []),
+        ((*BOTH, "/robot1/scan came 9 times", "/robot2/scan came 0 times"), []),
+        (
+            (*BOTH, "/robot1/scan came 10 times", "/robot2/scan came 0 times"),
+            ["MG326 warning robot2: /robot2/scan has no message, /robot1/scan has 10"],
+        ),
+        (
+            (*BOTH, *FRAMES, "frame_id robot2/laser on /robot1/scan"),
+            ["MG411 error /robot1/lidar: frame_id of /robot1/scan is robot2/laser, a frame of"
+             " robot2; sent by /robot1/lidar"],
+        ),
+    ],
+)  # fmt: skip
+def test_robots_beside_each_other(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
