@@ -8,11 +8,10 @@ from graph_examples import read_system
 
 from multibot_rewrite.rules.check import judge
 
-TWIST, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+TWIST = "geometry_msgs/msg/Twist"
 SCAN, IMU, TEXT = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "std_msgs/msg/String"
 CLOCK = "rosgraph_msgs/msg/Clock"
-POSE, TRIGGER = "geometry_msgs/msg/PoseStamped", "std_srvs/srv/Trigger"
-OF_TWO = "two robots were started without a namespace"
+TRIGGER = "std_srvs/srv/Trigger"
 
 
 def said(*lines: str) -> list[str]:
@@ -230,3 +229,121 @@ LIDAR = "/robot{}/lidar has range_max {}"
 )  # fmt: skip
 def test_robots_beside_each_other(lines: tuple[str, ...], found: list[str]) -> None:
     assert said(*lines) == found
+
+
+TF, CHANGE = "tf2_msgs/msg/TFMessage", "lifecycle_msgs/srv/ChangeState"
+DOOR = "acme_msgs/srv/Door"
+MANAGER = f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {CHANGE}"
+LISTED = (
+    "MG304 calls /robot1/amcl/change_state, which no node serves: /robot1/amcl is in its list, and"
+    " does not run{}; it waits for /robot1/amcl and activates nothing after it: start it, or leave"
+    " it out of node_names"
+)
+SENDS = {it: f"{it} publishes /tf {TF}" for it in ("/robot1/a", "/robot1/b", "/robot2/b")}
+TWICE = (
+    "transform map -> {0} on /tf by /robot1/a",
+    "transform odom -> {0} on /tf by {1}",
+)
+RULES = "/tf:=tf and /tf_static:=tf_static"
+SAME = "MB412 has the same as /robot1/a: "
+WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (f"/robot1/rsp publishes /robot1/tf {TF}", f"/rviz2 subscribes /tf {TF}"),
+            ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it with"
+             " -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
+        ),
+        (
+            (f"/x publishes /robot1/tf {TF}", "transform robot2/a -> robot2/b on /robot1/tf",
+             "transform robot1/a -> robot1/b on /robot1/tf"),
+            ["MG405 robot2/b of robot2 on /robot1/tf, which is of robot1; start its nodes in its own"
+             f" namespace, with the rules {RULES}"],
+        ),
+        (
+            (f"/robot1/rsp publishes /robot1/tf {TF}", f"/x publishes /tf {TF}",
+             "transform robot1/a -> robot1/b on /robot1/tf by /robot1/rsp",
+             "transform robot1/b -> robot1/c on /tf by /x"),
+            ["MG405 /x sends robot1/c on /tf, but the tf of robot1 is on /robot1/tf; start it in the"
+             f" namespace of robot1, with the rules {RULES}"],
+        ),
+        (
+            (SENDS["/robot1/a"], SENDS["/robot1/b"],
+             *(it.format("robot1/base", "/robot1/b") for it in TWICE)),
+            ["MG401 frame robot1/base has 2 parents on /tf: map and odom; two of the nodes that send"
+             " on /tf: /robot1/a, /robot1/b"],
+        ),
+        (
+            (SENDS["/robot1/a"], SENDS["/robot2/b"],
+             *(it.format("robot1/base", "/robot2/b") for it in TWICE)),
+            ["MG401 frame robot1/base has 2 parents on /tf: map and odom; two of the nodes that send"
+             " on /tf: /robot1/a, /robot2/b; a node of another robot that has the names of robot1?"],
+        ),
+        (
+            (f"/robot1/lidar publishes /robot1/scan {SCAN}",
+             "transform robot1/a -> robot1/laser on /tf",
+             "frame_id robot1/laser on /robot1/scan 9 s old"),
+            ["MG417 the stamps on /robot1/scan are 9 s old; see the clock of /robot1/lidar:"
+             " use_sim_time, or that of its machine"],
+        ),
+        (
+            (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a stack or nodes that do, if"
+             " no driver of its own does"],
+        ),
+        (
+            (WAITS, WAITS.replace("robot1", "robot2"),
+             f"/robot2/lidar publishes /robot2/scan {SCAN}"),
+            ["MG316 no node sends /robot1/scan, and one sends /robot2/scan; start what sends it for"
+             " the other robot"],
+        ),
+        ((MANAGER,), [LISTED.format("")]),
+        ((MANAGER, "/robot1/amlc"), [LISTED.format("; /robot1/amlc runs")]),
+        ((MANAGER, "/amcl"), [LISTED.format("; /amcl runs")]),
+        (
+            (f"/own calls /door {DOOR}", "/x"),
+            ["MG304 calls /door, which no node serves; start the node that serves it, or leave out"
+             " what calls it"],
+        ),
+        (
+            (f"/own calls /door {DOOR}", f"/x serves /gate {DOOR}"),
+            ["MG304 calls /door, which no node serves; /x serves /gate; pass the rule /door:=/gate,"
+             " or start it in the namespace of the robot"],
+        ),
+        # What it serves itself it does not call; many have a service of such a type.
+        ((f"/own calls /door {TRIGGER}", "/x"), []),
+        (
+            ("/robot1/a holds device port 1", "/robot1/a holds device ip 2",
+             "/robot2/b holds device port 1", "/robot2/b holds device ip 2"),
+            [f"{SAME}port 1, ip 2; one device has one driver: give each robot its own"],
+        ),
+        (
+            ("/robot1/a holds computer port 1", "/robot2/b holds computer port 1"),
+            [f"{SAME}port 1; the second one on a computer cannot open it: give each robot its own,"
+             " or a computer"],
+        ),
+        (("/robot1/a holds device port 1", "/robot1/b holds device port 1"), []),
+        (("/robot1/a holds device port 1", "/robot2/b holds device port 2"), []),
+        (
+            (f"/teleop_twist_keyboard publishes /robot1/out_vel {TWIST}",
+             f"/robot1/driver subscribes /robot1/wheels/speed {TWIST}",
+             f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
+            ["MG308 publishes /robot1/out_vel, which no node reads; /robot1/driver reads"
+             " /robot1/wheels/speed; start it in the robot's namespace, or pass the rule"
+             " /robot1/out_vel:=/robot1/wheels/speed"],
+        ),
+        # Who is no person's hand may send for somebody else.
+        (
+            (f"/robot1/program publishes /robot1/out_vel {TWIST}",
+             f"/robot1/driver subscribes /robot1/wheels/speed {TWIST}",
+             f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
+            [],
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_and_what_to_do(lines: tuple[str, ...], found: list[str]) -> None:
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [f"{it.code} {it.message}; {it.hint}" for it in judge(system)] == found
