@@ -160,12 +160,14 @@ def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
     there.write_text("")
     elsewhere = tmp_path / "no" / "folder.yaml"
     for key in ("config_file", "yaml_filename"):
-        for path, count in ((gone, 1), (there, 0), (elsewhere, 0), ("gone.yaml", 0)):
+        for path, count in ((gone, 1), (there, 0), (elsewhere, 0), ("./gone.yaml", 0)):
             node = UNKNOWN._replace(parameters=with_values({key: str(path)}))
             assert len(judged(known, "MG713", node)) == count, (key, path)
-    for flag, count in (("-d", 1), ("-file", 1), ("-x", 0)):
-        (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=(flag, str(gone))))
-        assert len(found) == count
+            (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=("-d", str(path))))
+            assert len(found) == count, path
+    for flag, path, count in (("-file", gone, 1), ("-x", gone, 0), ("-d", "/tmp/gone.rviz", 0)):
+        (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=(flag, str(path))))
+        assert len(found) == count, (flag, path)
     twice = (*with_values({"config_file": str(gone)}),)
     (one,) = judged(known, "MG713", UNKNOWN._replace(parameters=twice, arguments=("-d", str(gone))))
     assert one.message == f"/driver is given {gone}, which is not there"
