@@ -208,7 +208,9 @@ def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> Non
     assert bare.message == (
         "nodes without any endpoint: /arm, /camera, /driver; the view is not complete, look again"
     )
-    assert unknown.message == "endpoints whose node is not known yet: /imu, /odom, /scan; look again"
+    assert (
+        unknown.message == "endpoints whose node is not known yet: /imu, /odom, /scan; look again"
+    )
     (served,) = unfinished([Node("/driver")], [], "h:1")
     assert served.message.endswith("set ROS_SUPER_CLIENT=TRUE")
     assert (bare.incomplete, unknown.incomplete, served.incomplete) == (True, True, True)
