@@ -347,3 +347,26 @@ WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
 def test_what_is_wrong_and_what_to_do(lines: tuple[str, ...], found: list[str]) -> None:
     system = read_system("\n".join(f"running: {it}" for it in lines))
     assert [f"{it.code} {it.message}; {it.hint}" for it in judge(system)] == found
+
+
+@pytest.mark.parametrize(
+    ("type_", "called"),
+    [
+        ("LaserScan", "laser lidar scan"),
+        ("PointCloud2", "lidar velodyne ouster depth"),
+        ("Imu", "imu"),
+        ("Image", "optical"),
+        ("NavSatFix", "gps gnss navsat"),
+    ],
+)
+def test_a_frame_that_is_called_as_such_a_sensors_is_may_be_meant(type_: str, called: str) -> None:
+    for word in called.split():
+        lines = (
+            f"/robot1/driver publishes /robot1/out sensor_msgs/msg/{type_}",
+            f"transform robot1/base -> robot1/front_{word}_link on /tf",
+            "frame_id sensor on /robot1/out",
+        )
+        system = read_system("\n".join(f"running: {it}" for it in lines))
+        (found,) = (it for it in judge(system) if it.code == "MG412")
+        assert found.level == "warning"
+        assert found.hint == f"set the frame of /robot1/driver to robot1/front_{word}_link"
