@@ -205,7 +205,7 @@ BELOW = "has a namespace; it is placed below each robot's namespace"
             f"2 warning topic 'my-scan' {NO_NAME} character 3, '-', {LETTERS}",
         ),
         ("MB312", parameters("amcl", "scan_topic: scan"), ""),
-        ("MB312", parameters('"${ns}/my-amcl"', "scan_topic: scan"), ""),
+        ("MB312", parameters('"${ns}/amcl"', "scan_topic: scan"), ""),
         ("MB883", parameters("rover/amcl", "a: 1"), f"1 warning section rover/amcl {BELOW}"),
         (
             "MB883",
