@@ -44,8 +44,8 @@ from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import NOWHERE, Place
 
-# What a program refuses or leaves out: references, what is missing, names that ROS refuses.
-_REFUSED = ("MB10", "MB11", "MB12", "MB2", "MB312")
+# What a program refuses: values, what is missing, references.
+_REFUSED = ("MB11", "MB12", "MB2")
 # What Gazebo leaves out.
 _LEFT_OUT = ("MB603", "MB610")
 # What is wrong as soon as a second model has it, too.

@@ -24,6 +24,7 @@ from multibot_rewrite.system.json_values import (
     WrongValue,
     read_full_name,
     read_list,
+    read_nothing,
     read_plain,
     read_seconds,
     read_transform,
@@ -250,7 +251,7 @@ def _field_reader(kind: Any, name: str, hint: Any) -> Reader:
     if MAYBE_FULL_NAMES.get(kind) == name:
         return lambda value: value if value == "" else read_full_name(value)
     if LEFT_OUT.get(kind) == name:
-        return partial(read_word, (kind._field_defaults[name],))
+        return read_nothing
     return read_full_name if (kind, name) in FULL_NAMES else _reader(hint)
 
 

@@ -45,6 +45,13 @@ def read_word(words: tuple[str, ...], value: object) -> object:
     return value
 
 
+def read_nothing(value: object) -> object:
+    """What no file has: the empty default of its key."""
+    if value != ():
+        raise WrongValue("not a key of a file; leave it out")
+    return value
+
+
 def read_full_name(value: object) -> object:
     """A name with a slash in front."""
     if not isinstance(value, str) or not value.startswith("/"):

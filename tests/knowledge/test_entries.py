@@ -112,6 +112,7 @@ nodes:
       map_frame: {kind: frame, default: map, releases: jazzy, source: acme/driver@1.0 d.cpp}
       topic: topic
       other: {kind: topic, absolute: rolling}
+      third: {kind: topic}
       names: {kind: joint, deprecated: kilted+, own: true, instead: [x], note: n}
 stacks:
   cell:
@@ -215,6 +216,7 @@ def test_the_whole_record_of_its_parameters() -> None:
                 ),
                 Param("topic", "topic", absolute="<=jazzy"),
                 Param("other", "topic", absolute="rolling"),
+                Param("third", "topic", absolute="<=jazzy"),
                 Param(
                     "names",
                     "joint",
@@ -299,6 +301,7 @@ nodes:
     assert [(it.path, it.kind) for it in own.params] == [
         ("map_frame", "frame"),
         ("other", "topic"),
+        ("third", "topic"),
         ("names", "joint"),
         ("topic", "service"),
         ("extra", "link"),

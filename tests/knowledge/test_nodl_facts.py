@@ -215,14 +215,17 @@ def test_an_image_and_its_transports_are_one_and_tf_may_be_a_helpers(tmp_path: P
         f"  - {{name: image, type: {image}, {QOS}}}\n"
         f"  - {{name: image/compressed, type: {packed}, {QOS}}}\n"
         f"  - {{name: map/compressed, type: {packed}, {QOS}}}\n"
-        f"subscriptions: [{{name: /tf, type: tf2_msgs/msg/TFMessage, {QOS}}}]\n"
+        f"subscriptions:\n  - {{name: /tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
+        f"  - {{name: /tf_static, type: {image}, {QOS}}}\n"
+        f"  - {{name: other/tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
     )
     node = node_of("lens", written(tmp_path, "lens.nodl.yaml", text))
     assert {name: end.transport for name, end in ends(node).items()} == {
         "image": True,
         "map/compressed": False,
     }
-    assert ends(node, SUBSCRIBES)["/tf"].helper
+    assert [name for name, end in ends(node, SUBSCRIBES).items() if end.helper] == ["/tf"]
+    assert not any(end.helper for end in ends(node).values())
 
 
 def test_frames_are_the_defaults_of_parameters(tmp_path: Path) -> None:

@@ -436,3 +436,15 @@ def test_an_example_of_the_page_suppresses(
     monkeypatch.setitem(RULES, "MB501", REAL)
     assert linted(tmp_path, text) == []
     assert reported(linted(tmp_path, re.sub("<!--.*?-->", "", text))) != []
+
+
+@pytest.mark.parametrize(
+    ("call", "silent"), [(2, False), (3, True), (4, True), (6, True), (7, False)]
+)
+def test_a_comment_reaches_what_is_called_in_the_element_below_it(call: int, silent: bool) -> None:
+    """The comment is in line 3, its element in lines 4 to 6."""
+    text = '<robot name="r">\n\n  <!-- urdf-lint: ignore MB501 - known -->\n'
+    text += '  <link name="a">\n    <visual/>\n  </link>\n</robot>\n'
+    within = Finding("MB501", "error", "m", "", "b.xacro", 9, 9, (f"a.xacro:{call}: part",))
+    left = unsuppressed([within], {"a.xacro": text.encode()}, Settings(select=("MB501",)))
+    assert left == ([] if silent else [within])

@@ -16,6 +16,7 @@ from launched_nodes import AT, started
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -160,12 +161,14 @@ def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
     there.write_text("")
     elsewhere = tmp_path / "no" / "folder.yaml"
     for key in ("config_file", "yaml_filename"):
-        for path, count in ((gone, 1), (there, 0), (elsewhere, 0), ("gone.yaml", 0)):
+        for path, count in ((gone, 1), (there, 0), (elsewhere, 0), ("./gone.yaml", 0)):
             node = UNKNOWN._replace(parameters=with_values({key: str(path)}))
             assert len(judged(known, "MG713", node)) == count, (key, path)
-    for flag, count in (("-d", 1), ("-file", 1), ("-x", 0)):
-        (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=(flag, str(gone))))
-        assert len(found) == count
+            (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=("-d", str(path))))
+            assert len(found) == count, path
+    for flag, path, count in (("-file", gone, 1), ("-x", gone, 0), ("-d", "/tmp/gone.rviz", 0)):
+        (*found,) = judged(known, "MG713", UNKNOWN._replace(arguments=(flag, str(path))))
+        assert len(found) == count, (flag, path)
     twice = (*with_values({"config_file": str(gone)}),)
     (one,) = judged(known, "MG713", UNKNOWN._replace(parameters=twice, arguments=("-d", str(gone))))
     assert one.message == f"/driver is given {gone}, which is not there"
@@ -304,3 +307,60 @@ def test_a_manager_that_activates_nothing_by_itself(
     node = started(*LIFECYCLE, parameters=given)
     assert len(judged(known, "MG727", started(*AMCL), node)) == count
     assert judged(known, "MG727", started(*AMCL, parameters=given)) == []
+
+
+LINK = (
+    '<link name="a"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+)
+SHAPE = LINK.replace("</link>", "<visual><geometry>{}</geometry></visual></link>")
+PLUGIN = (
+    '<gazebo><plugin name="gz::sim::systems::{}" filename="gz-sim-{}-system">{}</plugin></gazebo>'
+)
+DRIVE, SYSTEM = (
+    PLUGIN.format("DiffDrive", "diff-drive", "{}"),
+    PLUGIN.format("Sensors", "sensors", ""),
+)
+JOINED = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
+
+
+@pytest.mark.parametrize(
+    ("text", "sent", "spawned"),
+    [
+        (LINK, [], []),
+        (SHAPE.format('<sphere radius="0,5"/>'), ["MB120 error"], ["MB120 error"]),
+        (SHAPE.format('<cylinder radius="1"/>'), ["MB115 error"], ["MB115 error"]),
+        (LINK + LINK, ["MB201 error"], ["MB201 error"]),
+        # What only a simulator leaves out, or does not read.
+        ('<link name="a"/>', [], ["MB610 error"]),
+        (LINK + '<link name="b"/>' + JOINED, [], ["MB603 error"]),
+        (LINK + DRIVE.format("<wheel_diameter>1</wheel_diameter>"), [], ["MB163 warning"]),
+        (LINK + DRIVE.format("<wheel_radius>1</wheel_radius>"), [], []),
+        # A warning of the lint is no fault of a launch.
+        (LINK + '<gazebo><mass value="1"/></gazebo>', [], []),
+        (LINK + SYSTEM, [], []),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_a_description_that_is_sent_or_spawned(
+    text: str, sent: list[str], spawned: list[str], known: Knowledge
+) -> None:
+    def told(*nodes: LaunchedNode) -> list[str]:
+        found = named_findings(launched(LaunchGraph(nodes, ()), known))
+        assert all((it.file, it.line, it.column) == (AT.file, AT.line, 1) for it in found)
+        assert all(it.message.startswith("in the description (line 1): ") for it in found)
+        return [f"{it.code} {it.level}" for it in found]
+
+    robot = f'<robot name="r">{text}</robot>'
+    create = ("ros_gz_sim", "create", "create")
+    assert told(started(*STATE, parameters=with_values({"robot_description": robot}))) == sent
+    assert told(started(*create, arguments=("-name", "r", "-string", robot))) == spawned
+
+
+def test_a_system_of_the_world_is_loaded_again_with_a_second_model(known: Knowledge) -> None:
+    robot = f'<robot name="r">{LINK}{SYSTEM}</robot>'
+    spawn = [
+        started("ros_gz_sim", "create", name, arguments=("-name", name, "-string", robot))
+        for name in ("r1", "r2")
+    ]
+    found = named_findings(launched(LaunchGraph(tuple(spawn), ()), known))
+    assert {it.code for it in found} == {"MB416"}

@@ -67,3 +67,75 @@ def test_topics_that_a_robot_needs_and_nobody_sends(lines: str, silent: set[str]
     plan = index(made, whose_by_plan(made))
     seen = beside(plan, graph)
     assert silent_topics(plan, seen, plan.declared["robot1"], TWIST) == silent
+
+
+ORDER = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
+SCAN = "/robot1/driver publishes {} sensor_msgs/msg/LaserScan"
+FRAMES = (
+    "planned: frames of robot1 on /robot1/tf: robot1/base_link, robot1/laser\n"
+    "as planned: /robot1/robot_state_publisher publishes /robot1/tf_static tf2_msgs/msg/TFMessage\n"
+    "running: transform {} -> {} on /robot1/tf_static by /robot1/robot_state_publisher"
+)
+TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (
+            f"planned: {ORDER}\nrunning: {ORDER}Stamped",
+            [f"MG306 uses /robot1/cmd_vel as {TWIST}Stamped, but the plan has it as {TWIST};"
+             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
+             " is right, correct the plan"],
+        ),
+        (
+            f"planned: {ORDER}Stamped\nrunning: {ORDER}",
+            [f"MG306 uses /robot1/cmd_vel as {TWIST}, but the plan has it as {TWIST}Stamped;"
+             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
+             " is right, correct the plan"],
+        ),
+        (
+            f"planned: {ORDER}\nrunning: {ORDER}X",
+            [f"MG306 uses /robot1/cmd_vel as {TWIST}X, but the plan has it as {TWIST};"
+             " another version or setting of the node? If this type is right, correct the plan"],
+        ),
+        (FRAMES.format("robot1/base_link", "robot1/laser"), []),
+        (
+            FRAMES.format("robot1/base_link", "robot1/lasr"),
+            ["MG204 frame robot1/lasr is not in the description of robot1; did you mean"
+             " robot1/laser? Otherwise add it to other_frames of the plan",
+             "MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
+             " /robot1/robot_state_publisher the description of robot1, or that of another robot?"],
+        ),
+        (
+            FRAMES.format("base_link", "laser"),
+            ["MG207 frames base_link, laser on /robot1/tf do not have the name of robot1; expected"
+             " robot1/base_link: load the rewritten description in /robot1/robot_state_publisher"],
+        ),
+        (
+            TWO + "running: /robot1/arm\nrunning: /robot1/driver",
+            ["MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
+             " this ROS_DOMAIN_ID? Only this machine is looked at: range LOCALHOST, no"
+             " ROS_STATIC_PEERS"],
+        ),
+        (
+            TWO + "running: /arm\nrunning: /robot1/driver\nrunning: /robot2/driver",
+            ["MG101 node /robot1/arm is in the plan, but not in the graph; /arm is running: it was"
+             " started without the robot's namespace; use namespace='robot1' in the launch file, or"
+             " --ros-args -r __ns:=/robot1"],
+        ),
+        (
+            f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/scn')}",
+            ["MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/scn"
+             " instead: is the name misspelled in a remap rule or parameter?"],
+        ),
+        (
+            f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/laser')}",
+            ["MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/laser of"
+             " that type: is that meant?"],
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_other_than_planned_and_why(lines: str, said: list[str]) -> None:
+    plan, graph = read_example(lines)
+    assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said

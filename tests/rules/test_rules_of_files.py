@@ -178,3 +178,76 @@ def test_a_comment_silences_both(tmp_path: Path) -> None:
     kind, text, _ = BROKEN["a misspelt parameter"]
     text = text.replace("30.0", "30.0  # urdf-lint: ignore MB110 - ours")
     assert by_both(kind, text, tmp_path, CODES) == ([], [])
+
+
+def parameters(node: str, text: str) -> str:
+    return f"{node}:\n  ros__parameters: {{{text}}}\n"
+
+
+NO_NAME = "is not a valid ROS name:"
+LETTERS = "is not a letter, a digit, or one of _ / ~ { }"
+FOR_ONE = "includes the robot name robot2, so the file is for that robot only"
+BELOW = "has a namespace; it is placed below each robot's namespace"
+
+
+@pytest.mark.parametrize(
+    ("code", "text", "said"),
+    [
+        (
+            "MB312",
+            parameters("a/my-node", "a: 1"),
+            f"1 warning node 'a/my-node' {NO_NAME} 'my-node': character 3, '-', is not a letter, a"
+            " digit or an underscore",
+        ),
+        (
+            "MB312",
+            parameters("amcl", "scan_topic: my-scan"),
+            f"2 warning topic 'my-scan' {NO_NAME} character 3, '-', {LETTERS}",
+        ),
+        ("MB312", parameters("amcl", "scan_topic: scan"), ""),
+        ("MB312", parameters('"${ns}/amcl"', "scan_topic: scan"), ""),
+        ("MB883", parameters("rover/amcl", "a: 1"), f"1 warning section rover/amcl {BELOW}"),
+        (
+            "MB883",
+            parameters("rover:\n  amcl", "a: 1").replace("\n  ros", "\n    ros"),
+            f"1 warning section rover/amcl {BELOW}",
+        ),
+        ("MB883", parameters("amcl", "a: 1"), ""),
+        ("MB883", parameters('"**/amcl"', "a: 1"), ""),
+        ("MB883", parameters("local_costmap/local_costmap", "a: 1"), ""),
+        (
+            "MB883",
+            parameters("rover/**", "a: 1"),
+            "1 error section rover/** is for one robot only: its name includes a namespace",
+        ),
+        ("MB863", parameters("x", "t: /robot2/scan"), f"2 error /robot2/scan {FOR_ONE}"),
+        ("MB863", parameters("x", "t: /scan/robot2"), f"2 error /scan/robot2 {FOR_ONE}"),
+        ("MB863", parameters("x", "t: /model/robot2/y"), f"2 error /model/robot2/y {FOR_ONE}"),
+        ("MB863", parameters("x", "t: /robot20/scan"), ""),
+        (
+            "MB110",
+            parameters("amcl", "max_particels: 20"),
+            "2 warning amcl has no parameter 'max_particels'",
+        ),
+        (
+            "MB120",
+            parameters("amcl", 'max_particles: "3"'),
+            "2 error amcl: max_particles is a string, not an int",
+        ),
+        # The code of a costmap is in a namespace of its name: this one may be read by nobody.
+        (
+            "MB120",
+            parameters("local_costmap", 'width: "3"'),
+            "2 warning local_costmap: width is a string, not an int",
+        ),
+        (
+            "MB120",
+            parameters("local_costmap/local_costmap", 'width: "3"'),
+            "2 error local_costmap/local_costmap: width is a string, not an int",
+        ),
+    ],
+)
+def test_what_is_said_of_a_parameter_file(code: str, text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text(text)
+    found = lint_file(str(tmp_path / "a.yaml"), Settings(select=(code,), robots=ROBOTS))
+    assert [f"{it.line} {it.level} {it.message}" for it in found] == [said] * bool(said)

@@ -41,6 +41,7 @@ def ends(*counts: int, start: str = "010f") -> tuple[End, ...]:
         ("0", 0),
         (" +42", 42),
         ("010", 8),
+        ("10", 10),
         ("0x1F", 31),
         ("0X1f", 31),
         ("232", 232),
@@ -122,6 +123,21 @@ def test_a_view_that_is_whole_has_no_caveat() -> None:
     assert codes() == codes(expected=("/driver",)) == []
 
 
+def test_a_caveat_names_what_came_or_went_last_and_what_did_not_come() -> None:
+    seen = [Node("/a"), Node("/b"), Node("/b"), Node("/bare")]
+    ends = [end("", "/a"), end("", "/b")]
+    still = "the graph was still changing when the timeout was over"
+    found = view_caveats(seen, ends, USUAL, "timeout", ("/y", "/x", "/a"), ("/q", "/p"))
+    assert [it.message.partition(";")[0] for it in found] == [
+        f"{still} (last came or went /p, /q)",
+        "expected nodes not in the graph: /x, /y",
+        "nodes without any endpoint: /bare",
+        "several nodes have the name /b",
+    ]
+    (first,) = view_caveats(seen[:2], ends, USUAL, "timeout")
+    assert first.message == f"{still}; give a longer --timeout"
+
+
 def test_a_view_says_what_it_may_not_have_seen() -> None:
     assert codes(settled="timeout") == codes(settled="changing") == [("not-settled", True)]
     assert codes(0, expected=("/driver",)) == [("nothing-seen", True)]
@@ -135,6 +151,7 @@ def test_a_view_says_what_it_may_not_have_seen() -> None:
         (ends(32), {"range": "LOCALHOST"}, ["participant-limit"]),
         (ends(31), {"range": "LOCALHOST"}, []),
         (ends(31, 31), {"range": "LOCALHOST"}, []),
+        (ends(1, 32), {"range": "LOCALHOST"}, ["participant-limit"]),
         (ends(32), {"range": "SUBNET"}, []),
         (ends(32), {"range": "LOCALHOST", "discovery_server": "h"}, []),
         (ends(4, 9), {"static_peers": ("h",)}, ["peer-limit"]),
@@ -155,7 +172,12 @@ def test_fast_dds_finds_so_many_participants_of_a_machine(
 @pytest.mark.parametrize(
     ("asked", "where", "remedy"),
     [
-        ({}, "(domain 0, range SUBNET)", "On other machines they may be hidden"),
+        (
+            {},
+            "(domain 0, range SUBNET)",
+            "On other machines they may be hidden: multicast is lost, or they are on range"
+            " LOCALHOST; set ROS_STATIC_PEERS, or take the snapshot there",
+        ),
         ({"domain": 7, "range": "LOCALHOST"}, "(domain 7, range LOCALHOST)", "For robots on other"),
         ({"static_peers": ("a", "b")}, "(domain 0, range SUBNET, peers a b)", "discovery range?"),
         (
@@ -180,12 +202,15 @@ def test_a_fast_dds_participant_shows_its_machine() -> None:
 
 
 def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> None:
-    seen = (end("", f"/{UNKNOWN_NODE}", "/odom"), end("", "/lidar"))
-    bare, unknown = unfinished([Node("/lidar"), Node("/driver")], seen, "")
+    hidden = (end("", f"/{UNKNOWN_NODE}", f"/{it}") for it in ("scan", "odom", "imu"))
+    nodes = [Node(it) for it in ("/lidar", "/driver", "/camera", "/arm")]
+    bare, unknown = unfinished(nodes, (*hidden, end("", "/lidar")), "")
     assert bare.message == (
-        "nodes without any endpoint: /driver; the view is not complete, look again"
+        "nodes without any endpoint: /arm, /camera, /driver; the view is not complete, look again"
     )
-    assert unknown.message == "endpoints whose node is not known yet: /odom; look again"
+    assert (
+        unknown.message == "endpoints whose node is not known yet: /imu, /odom, /scan; look again"
+    )
     (served,) = unfinished([Node("/driver")], [], "h:1")
     assert served.message.endswith("set ROS_SUPER_CLIENT=TRUE")
     assert (bare.incomplete, unknown.incomplete, served.incomplete) == (True, True, True)

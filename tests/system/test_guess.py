@@ -33,10 +33,13 @@ def end(node: str, role: str, name: str) -> End:
         # The way that most words are written in; one word alone may be a part.
         ("a/odom b/odom c/odom odom_x odom_y", [("a", "a/", ""), ("b", "b/", ""), ("c", "c/", "")]),
         ("left/base_link", []),
+        # What hangs on a frame of another word is a part of it, however far below.
+        ("a/base_link b/base_link a/base_link>x x>b/odom", []),
     ],
 )
 def test_robots_show_by_their_frames(frames: str, robots: list[tuple[str, str, str]]) -> None:
-    graph = System(edges=tuple(edge_of("world", it) for it in frames.split()))
+    pairs = (it.split(">") for it in frames.split())
+    graph = System(edges=tuple(edge_of(*(["world", *it][-2:])) for it in pairs))
     assert list(guess_robots(graph)) == [
         GuessedRobot(name, "", before, behind, True) for name, before, behind in robots
     ]
@@ -100,6 +103,7 @@ def test_a_service_is_no_topic_of_a_body() -> None:
         # A part has a base of its own, which hangs on that of a robot without a name.
         ("base_link>plate plate>a/base_link", []),
         ("/base_link>/a_base_footprint", []),
+        ("base_link>arm arm>a/base_link", []),
         ("odom>a/base_link", [("a", "a/", "")]),
         ("base_link>a/arm", [("a", "a/", "")]),
         ("a_odom>a_base_link a/x>a_y", [("a", "a_", "")]),

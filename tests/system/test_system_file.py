@@ -14,7 +14,7 @@ from paths import ROOT
 
 from multibot_rewrite import system_of_description
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
     MAY,
@@ -52,6 +52,16 @@ def test_the_published_schema_is_that_of_the_records() -> None:
 @pytest.mark.parametrize("path", [f"{it.stem}.json" for it in CASES])
 def test_what_is_written_is_valid(path: str) -> None:
     VALID.validate(json.loads((ROOT / path).read_bytes()))
+
+
+def test_what_fixes_a_file_is_not_in_the_file_of_a_system() -> None:
+    fixed = ALL.gaps[0]._replace(edits=(Edit(0, 1, b"a", b"b"),))
+    assert to_json(ALL._replace(gaps=(fixed,))) == to_json(ALL)
+    told = {"code": "MG102", "level": "warning", "message": "m", "edits": [[0, 1, "a", "b"]]}
+    wrong = {**json.loads(to_json(ALL)), "gaps": [told]}
+    assert not VALID.is_valid(wrong)
+    with pytest.raises(InputError, match=r"g: gaps\[0\].edits: not a key of a file; leave it out"):
+        from_json(json.dumps(wrong).encode(), "g")
 
 
 def test_every_kind_of_record_is_valid_and_comes_back() -> None:

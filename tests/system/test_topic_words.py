@@ -79,7 +79,8 @@ def test_what_sends_a_robot_somewhere(plain: str, type_: str, order: bool, start
         ("/a/my_urdf", TEXT, "robot_description"),
         ("/robot_description/says", TEXT, ""),
         ("/joint_states", JOINTS, JOINTS),
-        ("/joint_commands", JOINTS, ""),
+        *((f"/joint_{it}", JOINTS, "") for it in ("commands", "cmd", "goals", "targets")),
+        *((f"/joint_{it}", JOINTS, "") for it in ("desired", "reference")),
         ("/desired/joint_states", JOINTS, JOINTS),
         ("/camera", IMAGE, "image"),
         ("/camera/compressed", PACKED, "image"),
@@ -100,6 +101,8 @@ def test_data_of_one_kind_may_stand_for_each_other(name: str, type_: str, kind: 
     [
         (ODOMETRY, True, True),
         (JOINTS, True, False),
+        *((f"sensor_msgs/msg/{it}", False, True) for it in ("CameraInfo", "MagneticField", "Joy")),
+        ("sensor_msgs/msg/BatteryState", False, True),
         (SCAN, True, True),
         (IMU, True, True),
         (IMAGE, False, True),

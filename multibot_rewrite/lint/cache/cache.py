@@ -206,7 +206,7 @@ def _edit(value: Any) -> Edit:
 
 def among_written(settings: Settings, path: str = "") -> list[Any]:
     """What the settings say of the other files; with a ``path`` only what counts for that one."""
-    part = [path in settings.included] if path else sorted(settings.included)
+    part = sorted(settings.included & {path} if path else settings.included)
     known = settings.elsewhere
     return [part, settings.urdfs, None if known is None else [known.names, known.any]]
 

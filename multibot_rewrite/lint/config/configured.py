@@ -30,7 +30,6 @@ from multibot_rewrite.lint.config.values import (
 )
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings, matches
 
-__all__ = ["Configured", "check_lint_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
 MARKS = (b"urdf-lint", b"urdf_lint")
 NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics", "groups")

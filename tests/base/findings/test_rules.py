@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import pytest
-from paths import ROOT
+from paths import FIXTURES, ROOT
 from rule_examples import WITHOUT_FILE, found, is_built, whole
 
 from multibot_rewrite.base.findings.finding import LEVELS
@@ -24,6 +24,9 @@ WITHOUT_EXAMPLES = {
 }
 EXAMPLES = [code for code in RULES if code not in WITHOUT_EXAMPLES]
 BUILT = [code for code in EXAMPLES if is_built(RULES[code])]
+# Code -> level, and what the finding is about: judged by hand.
+ROWS = (FIXTURES / "example_findings.tsv").read_text().splitlines()
+TOLD = {code: told for code, *told in (it.split("\t") for it in ROWS)}
 
 
 @pytest.mark.parametrize("code", [code for code in EXAMPLES if code not in BUILT])
@@ -53,6 +56,18 @@ def judge_examples(rule: Rule, tmp_path: Path) -> None:
         return
     assert finding.line == rule.line
     assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"
+
+
+@pytest.mark.parametrize("code", [code for code in EXAMPLES if code not in BUILT])
+def test_the_level_of_an_example_and_what_it_is_about(code: str, tmp_path: Path) -> None:
+    (it,) = found(RULES[code], RULES[code].bad, tmp_path)
+    level, about = TOLD[code]
+    assert it.level == level
+    if set(WITHOUT_FILE) & set(RULES[code].formats):
+        assert " ".join(filter(None, (it.robot, it.node, *it.names))) == about
+    elif about:
+        lines = Path(it.file).read_text().splitlines()
+        assert lines[it.line - 1][it.column - 1 :].lstrip().startswith(about)
 
 
 @pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].fixed])

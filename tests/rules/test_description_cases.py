@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small descriptions: what is said of them in whole sentences, and what is right and stays unsaid."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.rules.settings import Settings
+
+A, LASER = '<link name="a"/>', '<link name="laser"/>'
+FRAME = (
+    '<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
+    "<frame_name>robot1/laser</frame_name></plugin></gazebo>"
+)
+SENSOR = '<gazebo reference="a"><sensor name="s" type="imu"/></gazebo>'
+NO_MASS = (
+    '<link name="base"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<joint name="j" type="continuous"><parent link="base"/><child link="a"/></joint>'
+)
+GONE = "link 'a' and the links fixed to it have no mass: Gazebo leaves it out"
+SDF = (
+    '<sdf version="1.9"><model name="m"><link name="a"><inertial{}><mass>{}</mass><inertia>'
+    "<ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model></sdf>"
+)
+MESH = '<visual><geometry><mesh filename="file:///home/me/{}.stl"/></geometry></visual>'
+BOX = '<collision><origin xyz="2 0 0"/><geometry><box size="1 1 1"/></geometry></collision>'
+JOINT = '<link name="b"/><joint name="j" type="revolute"><parent link="{}"/><child link="b"/>'
+LIMIT = '<limit lower="-1" upper="1" effort="{}" velocity="{}"/></joint>'
+LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("code", "text", "said"),
+    [
+        (
+            "MB404",
+            LASER + FRAME,
+            "frame 'robot1/laser' has a robot's name in front, the link is called 'laser'",
+        ),
+        ("MB404", LASER + '<link name="robot1/laser"/>' + FRAME, ""),
+        # Of two sensors of one name in one link the second one.
+        ("MB201", A + SENSOR + SENSOR, "'a' has another sensor 's'"),
+        ("MB201", A + SENSOR + SENSOR.replace('"s"', '"t"'), ""),
+        ("MB201", A + LASER + SENSOR + SENSOR.replace('"a"', '"laser"'), ""),
+        ("MB603", A + NO_MASS, GONE),
+        ("MB603", A + NO_MASS + SENSOR, f"{GONE}; sensor 's' goes with it"),
+        ("MB603", A + NO_MASS + SENSOR.replace('"a"', '"base"'), GONE),
+        # sdformat parser.cc: with auto="true" or "1" the values are computed.
+        ("MB606", SDF.format("", 0), "mass of link 'a' is 0, and has to be above 0"),
+        ("MB606", SDF.format("", -1), "mass of link 'a' is -1, and has to be above 0"),
+        ("MB606", SDF.format("", 1), ""),
+        ("MB606", SDF.format(' auto="1"', 0), ""),
+        ("MB606", SDF.format(' auto="TRUE"', 0), ""),
+        (
+            "MB606",
+            SDF.format(' auto="false"', 0),
+            "mass of link 'a' is 0, and has to be above 0",
+        ),
+        # What is not drawn is not apart from what bumps.
+        ("MB631", f'<link name="a"><visual><geometry/></visual>{BOX}</link>', ""),
+        (
+            "MB704",
+            f'<link name="a">{MESH.format("a")}</link>',
+            "'file:///home/me/a.stl' is a path of one machine",
+        ),
+        (
+            "MB704",
+            f'<link name="a">{MESH.format("a")}{MESH.format("b")}</link>',
+            "'file:///home/me/a.stl' is a path of one machine (and 1 more)",
+        ),
+        (
+            "MB160",
+            A + LIBRARY.format("gz-sim-imuu-system"),
+            "no library of Gazebo is called 'gz-sim-imuu-system'; gz::sim::systems::Imu is in"
+            " another one",
+        ),
+        ("MB160", A + LIBRARY.format("gz-sim-imu-system"), ""),
+        ("MB221", A + JOINT.format("a ") + "</joint>", "parent@link is 'a ', the link is 'a'"),
+        ("MB221", '<link name="a "/>' + JOINT.format("a ") + "</joint>", ""),
+        ("MB515", A + JOINT.format("a") + LIMIT.format(1, 0), "joint 'j': velocity is 0"),
+        (
+            "MB515",
+            A + JOINT.format("a") + LIMIT.format(0, 0),
+            "joint 'j': effort and velocity are 0",
+        ),
+        ("MB515", A + JOINT.format("a") + LIMIT.format(1, 1), ""),
+    ],
+)
+def test_what_is_said_of_a_description(code: str, text: str, said: str) -> None:
+    whole = text if text.startswith("<sdf") else f'<robot name="r">{text}</robot>'
+    found = lint_data("a.urdf", whole.encode(), Settings(select=(code,)))
+    assert [it.message for it in found] == [said] * bool(said)

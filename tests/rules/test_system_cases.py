@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small systems without a plan: all that is said of them, and where an exception ends."""
+
+from __future__ import annotations
+
+import pytest
+from graph_examples import read_system
+
+from multibot_rewrite.rules.check import judge
+
+TWIST = "geometry_msgs/msg/Twist"
+SCAN, IMU, TEXT = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "std_msgs/msg/String"
+CLOCK = "rosgraph_msgs/msg/Clock"
+TRIGGER = "std_srvs/srv/Trigger"
+
+
+def said(*lines: str) -> list[str]:
+    """Code, level, node or else robot, and message of each finding."""
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    return [f"{it.code} {it.level} {it.node or it.robot}: {it.message}" for it in found]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            ["/a", "/a", "/b", "/b"],
+            [f"MG301 error /{it}: 2 nodes have the name /{it}" for it in "ab"],
+        ),
+        (
+            ["/a", "/a", "/b", "/b", "/c", "/c"],
+            ["MG301 error /a: 3 nodes run more than once: /a, /b, /c"],
+        ),
+        (["/rviz2", "/rviz2"], []),
+    ],
+)
+def test_nodes_of_one_name(lines: list[str], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+@pytest.mark.parametrize(
+    ("reader", "senders", "meant"),
+    [
+        # What chooses is idle without an input, unless that is misspelt.
+        ("twist_mux cmd_vel_joyy", "x cmd_vel_joy", "error x cmd_vel_joy"),
+        ("twist_mux cmd_vel_joyy", "x cmd_vel_joy, y cmd_vel_nav", "error x cmd_vel_joy"),
+        ("twist_mux cmd_vel_nav", "x cmd_vel_joy", ""),
+        ("driver cmd_vel", "x velocity", "warning x velocity"),
+        ("driver cmd_vel", "x velocity, y speed", ""),
+        # It reads that already.
+        ("driver cmd_vel", "driver velocity", ""),
+    ],
+)
+def test_which_command_a_reader_may_have_meant(reader: str, senders: str, meant: str) -> None:
+    def line(words: str, does: str) -> str:
+        node, name = words.split()
+        return f"/robot1/{node} {does} /robot1/{name} {TWIST} as /{name}"
+
+    sent = [line(it, "publishes") for it in senders.split(", ")]
+    found = [it for it in said(line(reader, "subscribes"), *sent) if it.startswith("MG303")]
+    (node, name), (level, sender, other) = reader.split(), meant.split() or ("", "", "")
+    miss = f"subscribes to /robot1/{name}, which no node publishes"
+    there = f"/robot1/{sender} publishes /robot1/{other}"
+    assert found == [f"MG303 {level} /robot1/{node}: {miss}; {there}"] * bool(meant)
+
+
+PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")
+BRIDGE = f"/ros_gz_bridge publishes /clock {CLOCK}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            PAIR,
+            [
+                f"MG501 error /{it}/amcl: on simulated time (use_sim_time), but no node publishes"
+                f" /clock: /{it}/amcl"
+                for it in ("robot1", "robot2")
+            ],
+        ),
+        (
+            (PAIR[0], f"/robot1/gz publishes /robot1/clock {CLOCK}"),
+            [
+                "MG501 error /robot1/amcl: on simulated time (use_sim_time), but no node publishes"
+                " /clock: /robot1/amcl; /robot1/gz publishes /robot1/clock"
+            ],
+        ),
+        # Tools subscribe to whatever there is.
+        ((f"/rviz2 subscribes /clock {CLOCK}",), []),
+        ((*PAIR, BRIDGE), []),
+        (
+            (*PAIR, BRIDGE, BRIDGE.replace("ros_gz_bridge", "player")),
+            ["MG502 error /player: /player and /ros_gz_bridge publish /clock"],
+        ),
+        (
+            (*PAIR, BRIDGE, "/robot1/ekf_node"),
+            ["MG503 error /robot1/ekf_node: not on simulated time, as /robot1/amcl is:"
+             " /robot1/ekf_node"],
+        ),
+        # A node that is not known to go by time, and one that only looks.
+        ((*PAIR, BRIDGE, "/robot1/driver", "/robot1/rviz2"), []),
+        (
+            (PAIR[0], BRIDGE, "/robot2/ekf_node"),
+            ["MG503 warning /robot2/ekf_node: robot2 is on the machine's time, /robot1/amcl on"
+             " simulated time"],
+        ),
+        (
+            (PAIR[0], BRIDGE, "/clock goes back 2.5 s"),
+            ["MG504 warning /ros_gz_bridge: the time on /clock went back by 2.5 s; /ros_gz_bridge"
+             " sends it"],
+        ),
+    ],
+)  # fmt: skip
+def test_clocks(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+DRIVERS = tuple(f"/robot{it}/driver subscribes /cmd_vel {TWIST}" for it in (1, 2))
+OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            DRIVERS,
+            ["MG310 error /robot1/driver: robot1 and robot2 all obey /cmd_vel: /robot1/driver,"
+             " /robot2/driver"],
+        ),
+        (DRIVERS[:1], []),
+        (
+            tuple(it.replace("/cmd_vel", "/joy").replace(TWIST, "sensor_msgs/msg/Joy")
+                  for it in DRIVERS),
+            ["MG310 warning /robot1/driver: robot1 and robot2 all obey /joy: /robot1/driver,"
+             " /robot2/driver"],
+        ),
+        (tuple(it.replace(TWIST, TEXT) for it in DRIVERS), []),
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/robot1/b publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel beside /robot1/a, and"
+             " /robot1/driver obeys both"],
+        ),
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel beside /robot1/a,"
+             " and /robot1/driver obeys both"],
+        ),
+        # A bridge in both directions orders nothing itself.
+        (
+            (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
+             f"/bridge publishes /robot1/cmd_vel {TWIST}",
+             f"/bridge subscribes /robot1/cmd_vel {TWIST}"),
+            [],
+        ),
+        (
+            (OWN, f"/rosbag2_player publishes /robot1/cmd_vel {TWIST}"),
+            ["MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system"],
+        ),
+        (
+            (f"/robot1/amcl subscribes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}"),
+            [],
+        ),
+        (
+            (OWN, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}",
+             f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG311 error /robot2/teleop: publishes /robot1/cmd_vel, a name of robot1"],
+        ),
+        (
+            (OWN, f"/rviz2 publishes /cmd_vel {TWIST}"),
+            ["MG303 note /robot1/driver: subscribes to /robot1/cmd_vel, which no node publishes;"
+             " /rviz2 publishes /cmd_vel"],
+        ),
+    ],
+)  # fmt: skip
+def test_commands(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+ODOM = "nav_msgs/msg/Odometry"
+MORE = {"lidar": ("scan", SCAN), "imu": ("imu/data", IMU), "driver": ("odom", ODOM)}
+BOTH = tuple(
+    f"/robot{at}/{node} publishes /robot{at}/{name} {type_}"
+    for node, (name, type_) in MORE.items()
+    for at in (1, 2)
+)
+FRAMES = tuple(f"transform robot{it}/base -> robot{it}/laser on /tf" for it in (1, 2))
+LIDAR = "/robot{}/lidar has range_max {}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (*BOTH, LIDAR.format(1, 10), LIDAR.format(2, 20)),
+            ["MG328 warning /robot2/lidar: has range_max 20, not 10 as /robot1/lidar"],
+        ),
+        ((*BOTH, LIDAR.format(1, 10), LIDAR.format(2, 10)), []),
+        # Each robot's own.
+        ((*BOTH, "/robot1/lidar has serial_port 1", "/robot2/lidar has serial_port 2"), []),
+        ((*BOTH, "/robot1/lidar has x 1", "/robot2/lidar has x 2"), []),
+        ((*BOTH, "/robot1/lidar has frame robot1/l", "/robot2/lidar has frame robot2/l"), []),
+        ((*BOTH, LIDAR.format(1, 10)), []),
+        ((*BOTH[:4], LIDAR.format(1, 10), LIDAR.format(2, 20)), []),
+        (
+            (BOTH[0], BOTH[1].replace(SCAN, "sensor_msgs/msg/PointCloud2"), *BOTH[2:]),
+            ["MG328 warning /robot2/lidar: has /robot2/scan sensor_msgs/msg/PointCloud2, not"
+             " sensor_msgs/msg/LaserScan as /robot1/lidar (/robot1/scan)"],
+        ),
+        (
+            (*BOTH, "/robot1/scan came 600 times", "/robot2/scan came 200 times"),
+            ["MG326 warning robot2: /robot2/scan came at 3.3 Hz, /robot1/scan at 10.0 Hz"],
+        ),
+        ((*BOTH, "/robot1/scan came 600 times", "/robot2/scan came 201 times"), []),
+        ((*BOTH, "/robot1/scan came 9 times", "/robot2/scan came 0 times"), []),
+        (
+            (*BOTH, "/robot1/scan came 10 times", "/robot2/scan came 0 times"),
+            ["MG326 warning robot2: /robot2/scan has no message, /robot1/scan has 10"],
+        ),
+        (
+            (*BOTH, *FRAMES, "frame_id robot2/laser on /robot1/scan"),
+            ["MG411 error /robot1/lidar: frame_id of /robot1/scan is robot2/laser, a frame of"
+             " robot2; sent by /robot1/lidar"],
+        ),
+    ],
+)  # fmt: skip
+def test_robots_beside_each_other(lines: tuple[str, ...], found: list[str]) -> None:
+    assert said(*lines) == found
+
+
+TF, CHANGE = "tf2_msgs/msg/TFMessage", "lifecycle_msgs/srv/ChangeState"
+DOOR = "acme_msgs/srv/Door"
+MANAGER = f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {CHANGE}"
+LISTED = (
+    "MG304 calls /robot1/amcl/change_state, which no node serves: /robot1/amcl is in its list, and"
+    " does not run{}; it waits for /robot1/amcl and activates nothing after it: start it, or leave"
+    " it out of node_names"
+)
+SENDS = {it: f"{it} publishes /tf {TF}" for it in ("/robot1/a", "/robot1/b", "/robot2/b")}
+TWICE = (
+    "transform map -> {0} on /tf by /robot1/a",
+    "transform odom -> {0} on /tf by {1}",
+)
+RULES = "/tf:=tf and /tf_static:=tf_static"
+SAME = "MB412 has the same as /robot1/a: "
+WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (f"/robot1/rsp publishes /robot1/tf {TF}", f"/rviz2 subscribes /tf {TF}"),
+            ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it with"
+             " -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
+        ),
+        (
+            (f"/x publishes /robot1/tf {TF}", "transform robot2/a -> robot2/b on /robot1/tf",
+             "transform robot1/a -> robot1/b on /robot1/tf"),
+            ["MG405 robot2/b of robot2 on /robot1/tf, which is of robot1; start its nodes in its own"
+             f" namespace, with the rules {RULES}"],
+        ),
+        (
+            (f"/robot1/rsp publishes /robot1/tf {TF}", f"/x publishes /tf {TF}",
+             "transform robot1/a -> robot1/b on /robot1/tf by /robot1/rsp",
+             "transform robot1/b -> robot1/c on /tf by /x"),
+            ["MG405 /x sends robot1/c on /tf, but the tf of robot1 is on /robot1/tf; start it in the"
+             f" namespace of robot1, with the rules {RULES}"],
+        ),
+        (
+            (SENDS["/robot1/a"], SENDS["/robot1/b"],
+             *(it.format("robot1/base", "/robot1/b") for it in TWICE)),
+            ["MG401 frame robot1/base has 2 parents on /tf: map and odom; two of the nodes that send"
+             " on /tf: /robot1/a, /robot1/b"],
+        ),
+        (
+            (SENDS["/robot1/a"], SENDS["/robot2/b"],
+             *(it.format("robot1/base", "/robot2/b") for it in TWICE)),
+            ["MG401 frame robot1/base has 2 parents on /tf: map and odom; two of the nodes that send"
+             " on /tf: /robot1/a, /robot2/b; a node of another robot that has the names of robot1?"],
+        ),
+        (
+            (f"/robot1/lidar publishes /robot1/scan {SCAN}",
+             "transform robot1/a -> robot1/laser on /tf",
+             "frame_id robot1/laser on /robot1/scan 9 s old"),
+            ["MG417 the stamps on /robot1/scan are 9 s old; see the clock of /robot1/lidar:"
+             " use_sim_time, or that of its machine"],
+        ),
+        (
+            (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a stack or nodes that do, if"
+             " no driver of its own does"],
+        ),
+        (
+            (WAITS, WAITS.replace("robot1", "robot2"),
+             f"/robot2/lidar publishes /robot2/scan {SCAN}"),
+            ["MG316 no node sends /robot1/scan, and one sends /robot2/scan; start what sends it for"
+             " the other robot"],
+        ),
+        ((MANAGER,), [LISTED.format("")]),
+        ((MANAGER, "/robot1/amlc"), [LISTED.format("; /robot1/amlc runs")]),
+        ((MANAGER, "/amcl"), [LISTED.format("; /amcl runs")]),
+        (
+            (f"/own calls /door {DOOR}", "/x"),
+            ["MG304 calls /door, which no node serves; start the node that serves it, or leave out"
+             " what calls it"],
+        ),
+        (
+            (f"/own calls /door {DOOR}", f"/x serves /gate {DOOR}"),
+            ["MG304 calls /door, which no node serves; /x serves /gate; pass the rule /door:=/gate,"
+             " or start it in the namespace of the robot"],
+        ),
+        # What it serves itself it does not call; many have a service of such a type.
+        ((f"/own calls /door {TRIGGER}", "/x"), []),
+        (
+            ("/robot1/a holds device port 1", "/robot1/a holds device ip 2",
+             "/robot2/b holds device port 1", "/robot2/b holds device ip 2"),
+            [f"{SAME}port 1, ip 2; one device has one driver: give each robot its own"],
+        ),
+        (
+            ("/robot1/a holds computer port 1", "/robot2/b holds computer port 1"),
+            [f"{SAME}port 1; the second one on a computer cannot open it: give each robot its own,"
+             " or a computer"],
+        ),
+        (("/robot1/a holds device port 1", "/robot1/b holds device port 1"), []),
+        (("/robot1/a holds device port 1", "/robot2/b holds device port 2"), []),
+        (
+            (f"/teleop_twist_keyboard publishes /robot1/out_vel {TWIST}",
+             f"/robot1/driver subscribes /robot1/wheels/speed {TWIST}",
+             f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
+            ["MG308 publishes /robot1/out_vel, which no node reads; /robot1/driver reads"
+             " /robot1/wheels/speed; start it in the robot's namespace, or pass the rule"
+             " /robot1/out_vel:=/robot1/wheels/speed"],
+        ),
+        # Who is no person's hand may send for somebody else.
+        (
+            (f"/robot1/program publishes /robot1/out_vel {TWIST}",
+             f"/robot1/driver subscribes /robot1/wheels/speed {TWIST}",
+             f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
+            [],
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_and_what_to_do(lines: tuple[str, ...], found: list[str]) -> None:
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [f"{it.code} {it.message}; {it.hint}" for it in judge(system)] == found
+
+
+@pytest.mark.parametrize(
+    ("type_", "called"),
+    [
+        ("LaserScan", "laser lidar scan"),
+        ("PointCloud2", "lidar velodyne ouster depth"),
+        ("Imu", "imu"),
+        ("Image", "optical"),
+        ("NavSatFix", "gps gnss navsat"),
+    ],
+)
+def test_a_frame_that_is_called_as_such_a_sensors_is_may_be_meant(type_: str, called: str) -> None:
+    for word in called.split():
+        lines = (
+            f"/robot1/driver publishes /robot1/out sensor_msgs/msg/{type_}",
+            f"transform robot1/base -> robot1/front_{word}_link on /tf",
+            "frame_id sensor on /robot1/out",
+        )
+        system = read_system("\n".join(f"running: {it}" for it in lines))
+        (found,) = (it for it in judge(system) if it.code == "MG412")
+        assert found.level == "warning"
+        assert found.hint == f"set the frame of /robot1/driver to robot1/front_{word}_link"
