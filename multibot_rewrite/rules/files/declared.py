@@ -195,7 +195,7 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
 
 
 def in_the_manager(file: NamedFile) -> Iterator[Remark]:
-    """Parameters of a controller in the section of its manager, which reads little more than its class."""
+    """Parameters of a controller in the section of its manager, which reads their class."""
     known = file.known
     for section in sections(file) if known else ():
         if section.node is None or section.node.name != MANAGER:

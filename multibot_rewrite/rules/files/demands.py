@@ -20,9 +20,10 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.declared import DEMANDED, Declared
+from multibot_rewrite.knowledge.declared import DEMANDED, YAML, Declared
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.parameter_facts import of_release
@@ -83,16 +84,26 @@ def _is_number(value: Value | None) -> TypeGuard[float]:
 def missing_parameters(file: NamedFile) -> Iterator[Remark]:
     """What a node asks for and has no default: by itself, in a block, or with another parameter."""
     for section in sections(file):
-        for fact in of_release(section.facts, file.context.distro):
-            for check, words in fact.checks:
-                if check == "required":
-                    yield from _required(file, section, fact, words)
-                elif check == "required_or":
-                    yield from _required_or(file, section, fact, words.split())
+        yield from _missing(file, section)
     for it in demands(file, "needs"):
         if it.given.value is True and value_of(it.section, it.words[0]) is None:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
+
+
+def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
+    found: list[Remark] = []
+    for fact in of_release(section.facts, file.context.distro):
+        for check, words in fact.checks:
+            if check == "required_or":
+                yield from _required_or(file, section, fact, words.split())
+            elif check == "required" and fact.how != YAML:
+                yield from _required(file, section, fact, words)
+            elif check == "required":
+                found += _required(file, section, fact, words)
+    # A class of another package that is called the same has other names for more of them.
+    unknown = [it for it, facts in section.known if not facts and it.name != TYPE]
+    yield from found if len(unknown) <= len(found) else ()
 
 
 def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Remark]:
