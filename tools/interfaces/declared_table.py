@@ -84,7 +84,7 @@ def linted_packages() -> frozenset[str]:
 
 
 def rows(fact: ParameterFact, alone: bool = False) -> Iterator[Row]:
-    """The rows of a fact: that of its package, and those of plugins; ``alone``: the package has one class."""
+    """The rows of a fact: that of its package, and those of plugins. ``alone``: it has one class."""
     known = plugin_owners()
     if fact.package in linted_packages():
         above = known.below.get(fact.package, "")

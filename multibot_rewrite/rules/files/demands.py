@@ -101,9 +101,9 @@ def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
                 yield from _required(file, section, fact, words)
             elif check == "required":
                 found += _required(file, section, fact, words)
-    # A class of another package that is called the same has other names for more of them.
+    # What is there under another name is misspelt, or of another class that is called the same.
     unknown = [it for it, facts in section.known if not facts and it.name != TYPE]
-    yield from found if len(unknown) <= len(found) else ()
+    yield from found if len(unknown) < len(found) else ()
 
 
 def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Remark]:
@@ -165,8 +165,8 @@ def value_of(section: Section, name: str) -> Value | None:
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
     "the node's source.",
-    bad=a_section("ekf_filter_node", "world_frame: world"),
-    good=a_section("ekf_filter_node", "world_frame: odom"),
+    bad=a_section("ekf_filter_node", "world_frame: world\n    odom0: odom"),
+    good=a_section("ekf_filter_node", "world_frame: odom\n    odom0: odom"),
     line=3,
     formats=(PARAMS, MOVEIT),
 )

@@ -118,10 +118,11 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB612",
     "mass-tiny",
-    WARNING,
-    what="A link that moves on its own weighs a milligram or less.",
-    why="Gazebo takes that for no mass, and leaves out the link with its joint and all below it "
-    "(parser_urdf.cc of sdformat). MuJoCo rejects a body below 1e-15 kg.",
+    NOTE,
+    what="A link that moves on its own weighs a milligram or less. It is a warning in Humble.",
+    why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
+    "rejects a body below 1e-15 kg. Humble's Gazebo takes that for no mass, and leaves out the link "
+    "with its joint and all below it (parser_urdf.cc of sdformat 12).",
     fix="Write the real mass, or make the joint fixed.",
     bad=moving_link(an_inertial("1e-8")),
     good=moving_link(an_inertial("0.01")),
@@ -136,7 +137,8 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
         inertial = robot.link[name].inertial if name in robot.link else None
         if 0 < mass <= TINY_MASS and moves(robot, name) and inertial is not None:
             message = f"link {name!r} moves and weighs {mass:g} kg"
-            yield Problem(inertial.element, message)
+            level = WARNING if subject.settings.distro == OF_OLD else ""
+            yield Problem(inertial.element, message, level=level)
 
 
 def _negative(link: Link) -> bool:
