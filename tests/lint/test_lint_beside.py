@@ -592,6 +592,26 @@ def test_controllers_of_moveit_are_those_of_the_parameters_beside_them(tmp_path:
     assert found(right.replace("arm", "amr"), tmp_path) == []
 
 
+def test_a_hint_has_the_path_from_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/controllers.yaml").write_text(CONTROLLERS)
+    file = tmp_path / "config/moveit.yaml"
+    file.write_text(
+        "moveit_simple_controller_manager:\n  controller_names: [drives]\n"
+        "  drives: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory}\n"
+    )
+    settings = Settings(select=("MB857",))
+    monkeypatch.chdir(tmp_path)
+    (below,) = lint_file(str(file), settings)
+    monkeypatch.chdir("/")
+    (elsewhere,) = lint_file(str(file), settings)
+    place = "config/controllers.yaml:4"
+    assert below.hint == f"did you mean drive ({place})?"
+    assert elsewhere.hint == f"did you mean drive ({tmp_path.relative_to('/')}/{place})?"
+
+
 def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
     (tmp_path / "urdf").mkdir()
     wide = (ROBOTS / "rover_gz.urdf").read_text().replace("0.17 0", "0.25 0")
