@@ -20,7 +20,7 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.declared import DEMANDED, YAML, Declared
+from multibot_rewrite.knowledge.declared import DEMANDED, Declared
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.claims import TYPE
@@ -92,18 +92,18 @@ def missing_parameters(file: NamedFile) -> Iterator[Remark]:
 
 
 def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
-    found: list[Remark] = []
-    for fact in of_release(section.facts, file.context.distro):
-        for check, words in fact.checks:
-            if check == "required_or":
-                yield from _required_or(file, section, fact, words.split())
-            elif check == "required" and fact.how != YAML:
-                yield from _required(file, section, fact, words)
-            elif check == "required":
-                found += _required(file, section, fact, words)
-    # What is there under another name is misspelt, or of another class that is called the same.
-    unknown = [it for it, facts in section.known if not facts and it.name != TYPE]
-    yield from found if len(unknown) < len(found) else ()
+    facts = of_release(section.facts, file.context.distro)
+    needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
+    found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+    # What a controller has under another name is misspelt, or it is of another class that is called the
+    # same; a section with nothing of it adds to one of another file.
+    unknown = [it for it, known in section.known if not known and it.name != TYPE]
+    is_whole = len(unknown) < len(found) < len(needed)
+    controller = section.node is not None and bool(section.node.facts.types)
+    yield from found if is_whole or not controller else ()
+    for fact in facts:
+        for words in (words for check, words in fact.checks if check == "required_or"):
+            yield from _required_or(file, section, fact, words.split())
 
 
 def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Remark]:
