@@ -51,7 +51,12 @@ class Declared(NamedTuple):
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
         """Each of its checks with its arguments."""
-        return tuple((it[1], it[2]) for it in _CHECK.finditer(self.bounds))
+        return checks_in(self.bounds)
+
+
+def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
+    """Each check in a text with its arguments."""
+    return tuple((it[1], it[2]) for it in _CHECK.finditer(bounds))
 
 
 @lru_cache(maxsize=8192)

@@ -31,6 +31,9 @@ _CODES = (
     (lazy_compile("xacro failed"), "MB103"),
     (_TEMPLATE, "MB105"),
 )
+# CMake's configure_file, Jinja, Ruby and empy make files of such files, and of parts of files.
+_TEMPLATES = (".in", ".jinja", ".jinja2", ".j2", ".erb", ".em")
+_MADE = "a template, in which another program fills in what is missing; lint what it makes"
 # What another file may make: a macro or property of the file that includes this one, or what an
 # argument names.
 _REFUSED = lazy_compile("DOCTYPE and entities|the encoding is")
@@ -45,6 +48,8 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
 
     code = next((code for said, code in _CODES if said.search(message)), "MB101")
+    if code == "MB101" and path.endswith(_TEMPLATES):
+        code, message = "MB105", f"{path}: {_MADE}"
     level = level_of(settings, code, _level(code, path, message) or RULES[code].level)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"

@@ -151,13 +151,14 @@ def test_target_frames_of_the_wrench_transformer_are_frames(node: str) -> None:
 
 
 def test_a_sensor_that_is_renamed_is_not_said_to_stay() -> None:
-    text, findings = made(section("imu_sensor_broadcaster", "sensor_name: mag"))
+    text, findings = made(section("imu_sensor_broadcaster", "sensor_name: mag", "frame_id: map"))
     assert "sensor_name: r1_mag" in text
     assert findings[0].code == "MB854"
 
 
 def test_a_joint_that_stays_is_said_to_stay() -> None:
-    text, findings = made(section("joint_trajectory_controller", "joints: [zzz]"))
+    interfaces = ("command_interfaces: [position]", "state_interfaces: [position]")
+    text, findings = made(section("joint_trajectory_controller", "joints: [zzz]", *interfaces))
     assert "joints: [zzz]" in text
     assert codes(findings) == ["MB854"]
 

@@ -148,6 +148,36 @@ joint_limits:
     has_velocity_limits: true
     max_velocity: 1.0
 """
+COSTMAPS = """\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [inflation_layer]
+      inflation_layer: {plugin: "nav2_costmap_2d::InflationLayer"}
+      static_layer: {map_subscribe_transient_local: true}
+global_costmap:
+  global_costmap:
+    ros__parameters:
+      plugins: [static_layer]
+      static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
+"""
+DOCKS = """\
+docking_server:
+  ros__parameters:
+    dock_plugins: [charger]
+    charger: {plugin: "opennav_docking::SimpleChargingDock"}
+    docks: [home]
+    home: {type: charger, frame: map, pose: [0.0, 0.0, 0.0]}
+"""
+FORWARD = """\
+controller_manager:
+  ros__parameters:
+    hand: {type: forward_command_controller/ForwardCommandController}
+hand:
+  ros__parameters:
+    joints: [left_wheel_joint]
+    interface_name: position
+"""
 # File, its text, what is put in place of what, and the codes and lines of it.
 PLANTED = {
     "a frame's parameter": (CONTROLLERS, "base_frame_id", "base_frame_idd", "MB110:12"),
@@ -244,6 +274,69 @@ PLANTED = {
         "MB855:2 MB855:3",
     ),
     "no type": (ROW, "  gz_type_name: gz.msgs.LaserScan\n", "", "MB855:1"),
+    # diff_drive_controller_parameter.yaml: 0.0 by default, which has to be above 0.
+    "no radius": (CONTROLLERS, "    wheel_radius: 0.07\n", "", "MB115:8"),
+    # joint_trajectory_controller_parameters.yaml: [] by default, with a size above 0.
+    "no joints": (
+        CONTROLLERS,
+        "    joints: [left_wheel_joint, right_wheel_joint]\n",
+        "",
+        "MB115:19",
+    ),
+    # controller_manager.cpp asks for NAME.type and NAME.params_file.
+    "a parameter in the manager": (
+        CONTROLLERS,
+        "    arm: {type: joint_trajectory_controller/JointTrajectoryController}\n",
+        "    arm: {type: joint_trajectory_controller/JointTrajectoryController, joints: [a]}\n",
+        "MB111:5",
+    ),
+    "a class in the controller's section": (
+        CONTROLLERS,
+        "arm:\n  ros__parameters:\n",
+        "spare:\n  ros__parameters:\n    type: diff_drive_controller/DiffDriveControler\narm:\n"
+        "  ros__parameters:\n",
+        "MB124:19",
+    ),
+    # parse.c of rcl_yaml_param_parser: Cannot have a value before ros__parameters.
+    "a section without its mark": (NAV, "amcl:\n  ros__parameters:", "amcl:\n  own:", "MB120:3"),
+    "a list without its mark": (NAV, "amcl:", "nodes: [amcl]\namcl:", "MB120:1"),
+    "a mark that lacks a letter": (
+        NAV,
+        "amcl:\n  ros__parameters:",
+        "amcl:\n  ros__paramters:",
+        "MB110:2",
+    ),
+    # controller_server.cpp and parameter_handler.cpp ask for the list of them.
+    "one goal checker": (
+        NAV,
+        "    controller_plugins",
+        "    goal_checker_plugin: precise\n    controller_plugins",
+        "MB894:11",
+    ),
+    # costmap_2d_ros.cpp asks for the class of each layer of that costmap.
+    "a layer that another costmap has": (
+        COSTMAPS,
+        "plugins: [inflation_layer]",
+        "plugins: [static_layer, inflation_layer]",
+        "MB115:4",
+    ),
+    "a dock of another type": (DOCKS, "type: charger", "type: charging", "MB894:6"),
+    # serialization.hpp of slam_toolbox adds the ending.
+    "a map with its ending": (
+        "slam_toolbox:\n  ros__parameters:\n    map_file_name: maps/hall\n",
+        "hall",
+        "hall.posegraph",
+        "MB125:3",
+    ),
+    # ros_filter.cpp: without an input there is no measurement, and nothing is sent.
+    "a filter without input": (
+        "ekf_filter_node:\n  ros__parameters:\n    frequency: 30.0\n    odom0: odom\n",
+        "    odom0: odom\n",
+        "",
+        "MB115:3",
+    ),
+    # forward_command_controller.cpp: 'interface_name' parameter was empty.
+    "no interface": (FORWARD, "    interface_name: position\n", "", "MB115:6"),
 }
 # Notes about what a rewrite for several robots would leave as it is.
 OF_REWRITES = ("MB901", "MB105")
@@ -260,6 +353,16 @@ HEALTHY = {
         "",
     ),
     "a separation a little larger": (CONTROLLERS, "0.34", "0.36"),
+    "the only goal checker by its default name": (
+        NAV,
+        "    controller_plugins",
+        "    goal_checker_plugin: goal_checker\n    controller_plugins",
+    ),
+    "what another namespace is given": (
+        FORWARD,
+        "hand:\n  ros__parameters:\n    joints: [left_wheel_joint]\n",
+        "front/hand:\n  ros__parameters:\n    joints: [left_wheel_joint]\nhand:\n  ros__parameters:\n",
+    ),
     "a separation with its multiplier": (
         CONTROLLERS,
         "wheel_separation: 0.34",
@@ -489,6 +592,26 @@ def test_controllers_of_moveit_are_those_of_the_parameters_beside_them(tmp_path:
     assert found(right.replace("arm", "amr"), tmp_path) == []
 
 
+def test_a_hint_has_the_path_from_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/controllers.yaml").write_text(CONTROLLERS)
+    file = tmp_path / "config/moveit.yaml"
+    file.write_text(
+        "moveit_simple_controller_manager:\n  controller_names: [drives]\n"
+        "  drives: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory}\n"
+    )
+    settings = Settings(select=("MB857",))
+    monkeypatch.chdir(tmp_path)
+    (below,) = lint_file(str(file), settings)
+    monkeypatch.chdir("/")
+    (elsewhere,) = lint_file(str(file), settings)
+    place = "config/controllers.yaml:4"
+    assert below.hint == f"did you mean drive ({place})?"
+    assert elsewhere.hint == f"did you mean drive ({tmp_path.relative_to('/')}/{place})?"
+
+
 def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
     (tmp_path / "urdf").mkdir()
     wide = (ROBOTS / "rover_gz.urdf").read_text().replace("0.17 0", "0.25 0")
@@ -565,6 +688,35 @@ def test_a_plugin_is_judged_by_its_release(tmp_path: Path) -> None:
     file.write_text(f"{head}nav2_mppi_controller::MPPIController\n      sgf_order: 2\n")
     (it,) = lint_file(str(file), Settings(distro="jazzy"))
     assert (it.code, it.level) == ("MB870", "note")
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy"])
+def test_a_trajectory_controller_without_joints_is_told_by_its_release(
+    release: str, tmp_path: Path
+) -> None:
+    """Humble warns (joint_trajectory_controller.cpp:682); from Jazzy on the library refuses it."""
+    file = tmp_path / "arm.yaml"
+    file.write_text(CONTROLLERS.replace("    joints: [left_wheel_joint, right_wheel_joint]\n", ""))
+    (it,) = lint_file(str(file), Settings(distro=release, select=("MB115",)))
+    assert it.message == "arm: joints is missing"
+
+
+def test_another_class_of_that_name_is_not_asked_for_what_this_one_needs(tmp_path: Path) -> None:
+    """A mecanum drive of before that of ros2_controllers, with its own names for the wheels."""
+    file = tmp_path / "drive.yaml"
+    head = "controller_manager:\n  ros__parameters:\n    drive: {type: mecanum_drive_controller/Mecanum"
+    own = "".join(f"    {it}_wheel_of_ours: a\n" for it in ("fl", "fr", "rl", "rr", "spare"))
+    file.write_text(f"{head}DriveController}}\ndrive:\n  ros__parameters:\n{own}")
+    assert lint_file(str(file), Settings(select=("MB115",))) == []
+
+
+def test_a_class_is_not_asked_for_what_another_one_of_its_package_needs(tmp_path: Path) -> None:
+    """JointGroupPositionController sets interface_name itself (joint_group_position_controller.cpp)."""
+    file = tmp_path / "hand.yaml"
+    class_ = "position_controllers/JointGroupPositionController"
+    text = FORWARD.replace("forward_command_controller/ForwardCommandController", class_)
+    file.write_text(text.replace("    interface_name: position\n", ""))
+    assert lint_file(str(file), Settings(distro="jazzy", select=("MB115",))) == []
 
 
 def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> None:

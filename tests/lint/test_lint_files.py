@@ -289,6 +289,9 @@ def test_files_that_include_each_other_are_no_parts(
         ("model.sdf", '<sdf version="1.9">\n<model name="{{ name }}"/></sdf>', 2),
         ("robot.urdf", '<robot name="r">\n{% for it in legs %}<link/>{% endfor %}</robot>', 2),
         ("nav.yaml", "amcl:\n  ros__parameters:\n    alpha1: {{ alpha }}\n", 3),
+        # A part of a file, which CMake fills in, or Jinja where it says so alone.
+        ("part.sdf.in", '<link name="@NAME@"/>\n<joint name="j"/>', 1),
+        ("part.sdf.jinja", '{# of a wing #}<link name="a"/><link name="b"/>', 1),
         # Of xacro, in a comment, of one brace.
         ("r.xacro", f'<robot name="r" {XACRO}><link name="${{{{1: 2}}[1]}}"/></robot>', 0),
         ("robot.urdf", '<robot name="r"><!-- {{ a }} --><link name="a"/></robot>', 0),

@@ -41,6 +41,13 @@ def control(plugin: str, low: str = "-1", high: str = "1") -> str:
     )
 
 
+def lidar(type_: str) -> str:
+    """A model with a lidar, in a world of gz-sim."""
+    plugin = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
+    sensor = f'<sensor name="s" type="{type_}"><topic>scan</topic></sensor>'
+    return world(f'{plugin}<model name="m"><link name="a">{sensor}</link></model>')
+
+
 JSP = ("gz-sim-joint-state-publisher-system", "gz::sim::systems::JointStatePublisher")
 DRIVE = ("gz-sim-diff-drive-system", "gz::sim::systems::DiffDrive")
 MOCK = "<plugin>mock_components/GenericSystem</plugin>"
@@ -50,6 +57,21 @@ PAIRS = {
         world('<model name="m"><pose>0 0 1 0 0</pose><link name="a"/></model>'),
         world('<model name="m"><pose>0 0 1 0 0 0</pose><link name="a"/></model>'),
         "MB120",
+    ),
+    # Param.cc: must have 6 values, but more than that were found; 7 are a quaternion's.
+    "a pose of seven numbers": (
+        world('<model name="m"><pose>0 0 1 0 0 0 1</pose><link name="a"/></model>'),
+        world(
+            '<model name="m"><pose rotation_format="quat_xyzw">0 0 1 0 0 0 1</pose>'
+            '<link name="a"/></model>'
+        ),
+        "MB120",
+    ),
+    # SdfEntityCreator.cc of gz-sim: Sensor type LIDAR not supported yet.
+    "a lidar of Classic in a model": (
+        lidar("ray"),
+        lidar("gpu_lidar"),
+        "MB637",
     ),
     "a word for true": (
         world('<model name="m"><static>yes</static><link name="a"/></model>'),

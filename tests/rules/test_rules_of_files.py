@@ -23,7 +23,7 @@ from multibot_rewrite.rules.files.judge import SHARED, THEMES
 from multibot_rewrite.rules.settings import Settings
 
 ROBOTS = ("robot1", "robot2")
-EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n"
+EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n    odom0: odom\n"
 AMCL = "amcl:\n  ros__parameters:\n    {}\n"
 ARM = "arm_controller:\n  ros__parameters:\n    joints: [{}, right_wheel_joint]\n"
 MANAGER = "moveit_simple_controller_manager:\n  controller_names: [a]\n  a:\n    {}\n"

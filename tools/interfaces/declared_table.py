@@ -18,8 +18,10 @@ from pathlib import Path
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as EVERY
-from multibot_rewrite.knowledge.declared import ANY, CHECKS, DECLARED, RELEASES
+from multibot_rewrite.knowledge.declared import ANY, CHECKS, DECLARED, RELEASES, YAML, checks_in
 from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.rules.files.bounds import beyond
+from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters
 from tools.interfaces.records import Place
 
@@ -81,17 +83,27 @@ def linted_packages() -> frozenset[str]:
     return frozenset(it for node in nodes for it in (node.package, *node.declared_in) if it)
 
 
-def rows(fact: ParameterFact) -> Iterator[Row]:
-    """The rows of a fact: that of its package, and those of plugins."""
+def rows(fact: ParameterFact, alone: bool = False) -> Iterator[Row]:
+    """The rows of a fact: that of its package, and those of plugins. ``alone``: it has one class."""
     known = plugin_owners()
     if fact.package in linted_packages():
         above = known.below.get(fact.package, "")
         path = f"{above}.{fact.path}" if above else fact.path
-        yield Row(fact.package, path, fact.type, fact.bounds, fact.how)
+        bounds = f"{fact.bounds} required()".lstrip() if alone and _is_needed(fact) else fact.bounds
+        yield Row(fact.package, path, fact.type, bounds, fact.how)
     for plugin in known.owners.get((fact.package, fact.owner), ()):
         path = _below(fact, plugin, known)
         if path:
             yield Row(plugin, path, fact.type, "", fact.how)
+
+
+def _is_needed(fact: ParameterFact) -> bool:
+    """Does generate_parameter_library refuse what the parameter is where nobody sets it?"""
+    if fact.how != YAML or fact.type == "none" or "<" in fact.path:
+        return False
+    value = load_yaml(fact.default)
+    said = (beyond(*check, value) for check in checks_in(fact.bounds))
+    return fact.default == NO_DEFAULT or any(said)
 
 
 def _below(fact: ParameterFact, plugin: str, known: PluginOwners) -> str:
@@ -108,8 +120,10 @@ def table(folder: Path) -> str:
     """The table of a folder's facts."""
     found: dict[Row, dict[str, Place]] = {}
     for release in EVERY:
-        for fact in read_parameters((folder / f"parameters_{release}.tsv").read_text()):
-            for row in rows(fact):
+        facts = read_parameters((folder / f"parameters_{release}.tsv").read_text())
+        owners = Counter(package for package, _ in {(it.package, it.owner) for it in facts})
+        for fact in facts:
+            for row in rows(fact, owners[fact.package] == 1):
                 found.setdefault(row, {})[release] = fact.place
     sections: dict[str, list[Row]] = {}
     for row in sorted(found):

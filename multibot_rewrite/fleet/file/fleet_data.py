@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -126,6 +127,11 @@ SCHEMA = "fleet.schema.json"
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 # What a dict is called where a file would be named.
 DICT = "the fleet's dict as YAML"
+
+
+def without_dict(message: str) -> str:
+    """A message about a dict without its place in the dict, which nobody has seen as YAML."""
+    return re.sub(rf"^{DICT}(:\d+)*: ", "", message)
 
 
 class FleetData(NamedTuple):

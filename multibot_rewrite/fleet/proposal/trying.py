@@ -12,7 +12,7 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_data import DICT
+from multibot_rewrite.fleet.file.fleet_data import DICT, without_dict
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.choosing import Undecided
@@ -124,7 +124,7 @@ def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, s
         if not any(it.level == ERROR for it in found):
             found |= {*read_back(plan, made, folder)}
     except MultibotError as error:
-        return [("", str(error))]
+        return [("", without_dict(str(error)))]
     errors = (it for it in found if it.level == ERROR)
     return [(_file(it), f"{it.code} {it.message}") for it in sorted(errors, key=lambda it: it.code)]
 

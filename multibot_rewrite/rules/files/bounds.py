@@ -131,6 +131,11 @@ def _some(_: Any, value: Any) -> str:
     return "true in one place or more" if none else ""
 
 
+def _stem(endings: Any, value: Any) -> str:
+    ended = isinstance(value, str) and value.endswith(tuple(endings))
+    return f"without {' or '.join(endings)}, which its reader adds" if ended else ""
+
+
 _EACH = ("lower_bounds", "upper_bounds")
 _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "limits": _limits,
@@ -138,6 +143,7 @@ _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "polygon": _polygon,
     "unique": _unique,
     "some": _some,
+    "stem": _stem,
 }
 
 

@@ -13,7 +13,7 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.rcl_parameters import Value
-from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import (
     DECLARED,
@@ -24,7 +24,7 @@ from multibot_rewrite.knowledge.declared import (
     stands_for,
 )
 from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_facts import of_parameter, of_release
+from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_parameter, of_release
 from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
@@ -192,6 +192,26 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
             if not near:
                 message = f"{section.title} declares no parameter {it.name!r}"
                 yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+
+
+def in_the_manager(file: NamedFile) -> Iterator[Remark]:
+    """Parameters of a controller in the section of its manager, which reads their class."""
+    known = file.known
+    for section in sections(file) if known else ():
+        if section.node is None or section.node.name != MANAGER:
+            continue
+        for it in section.given:
+            name, _, rest = it.name.partition(".")
+            class_ = section.whole.get(f"{name}.type")
+            node = known.types.get(str(class_.value)) if known and class_ else None
+            facts = (
+                facts_of_node(known.nodes[node], "", file.file, file.roots)
+                if known and node
+                else ()
+            )
+            if any(fact.how == YAML and fact.has_name(rest) for fact in facts):
+                message = f"{section.title}: {it.name} is a parameter of {name}, and not read here"
+                yield remark_at(it.key, message, f"move it to {name}: {PARAMETERS}:", WARNING)
 
 
 def _are_all(facts: Sequence[Declared]) -> bool:

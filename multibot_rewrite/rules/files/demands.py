@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from typing import TypeGuard
 
 import yaml
@@ -23,7 +23,9 @@ from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED, Declared
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.examples import a_section
+from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
@@ -82,24 +84,48 @@ def _is_number(value: Value | None) -> TypeGuard[float]:
 def missing_parameters(file: NamedFile) -> Iterator[Remark]:
     """What a node asks for and has no default: by itself, in a block, or with another parameter."""
     for section in sections(file):
-        for fact in of_release(section.facts, file.context.distro):
-            for _, words in (it for it in fact.checks if it[0] == "required"):
-                yield from _required(section, fact, words)
+        yield from _missing(file, section)
     for it in demands(file, "needs"):
         if it.given.value is True and value_of(it.section, it.words[0]) is None:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
 
 
-def _required(section: Section, fact: Declared, words: str) -> Iterator[Remark]:
+def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
+    facts = of_release(section.facts, file.context.distro)
+    needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
+    found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+    # What a controller has under another name is misspelt, or it is of another class that is called the
+    # same; a section with nothing of it adds to one of another file.
+    unknown = [it for it, known in section.known if not known and it.name != TYPE]
+    is_whole = len(unknown) < len(found) < len(needed)
+    controller = section.node is not None and bool(section.node.facts.types)
+    yield from found if is_whole or not controller else ()
+    for fact in facts:
+        for words in (words for check, words in fact.checks if check == "required_or"):
+            yield from _required_or(file, section, fact, words.split())
+
+
+def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Remark]:
     listed = value_of(section, words) if words else None
     for block, first in _blocks(section, fact.path):
         _, _, word = block.rpartition(".")
         name = f"{block}.{fact.path.rpartition('.')[2]}" if block else fact.path
         there = f"{section.at}{name}" in section.whole
+        there = there or is_set_beside(file, section.title, f"{section.at}{name}")
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
             yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
+
+
+def _required_or(
+    file: NamedFile, section: Section, fact: Declared, others: Sequence[str]
+) -> Iterator[Remark]:
+    names = (fact.path, *others)
+    there = any(it in section.whole or is_set_beside(file, section.title, it) for it in names)
+    if section.given and not there:
+        message = f"{section.title}: there is none of {', '.join(names)}"
+        yield remark_at(section.given[0].key, message, f"add one; see {fact.source}", WARNING)
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:
@@ -139,8 +165,8 @@ def value_of(section: Section, name: str) -> Value | None:
     "transform.",
     fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
     "the node's source.",
-    bad=a_section("ekf_filter_node", "world_frame: world"),
-    good=a_section("ekf_filter_node", "world_frame: odom"),
+    bad=a_section("ekf_filter_node", "world_frame: world\n    odom0: odom"),
+    good=a_section("ekf_filter_node", "world_frame: odom\n    odom0: odom"),
     line=3,
     formats=(PARAMS, MOVEIT),
 )
@@ -246,7 +272,8 @@ def _foreign(it: Demand) -> str:
 
 
 def _instead(it: Demand) -> str:
-    there = any(name == it.words[0] for name in it.section.whole)
+    """A value that is the default of the new one does no harm."""
+    there = it.words[0] in it.section.whole or it.given.value in it.words[1:]
     return "" if there else f"is not read; the node reads {it.words[0]}"
 
 
@@ -314,9 +341,11 @@ def _listed(it: Demand) -> str:
     other = it.section.whole.get(it.words[0])
     known = other.value if other else None
     value = it.given.value
-    if not isinstance(known, list) or not isinstance(value, list):
+    if not isinstance(known, list) or not value:
         return ""
-    strange = [word for word in value if word not in known]
+    strange = [
+        word for word in (value if isinstance(value, list) else [value]) if word not in known
+    ]
     return f"has {strange[0]!r}, which {it.words[0]} has not" if strange else ""
 
 

@@ -45,6 +45,16 @@ def given_in(file: NamedFile) -> tuple[GivenNode, ...]:
     return _given(file, [file.document] if file.document else [])
 
 
+def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
+    """Does a parameter file of the robot have it for the node of a section, or of its plugin?"""
+    node = _last(title.partition(":")[0])
+    return any(name in it.values for it in beside(file).given if _last(it.name) == node)
+
+
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
 def is_in(file: NamedFile, place: Place) -> bool:
     """Is the place in this file?"""
     return os.path.abspath(place.file) == os.path.abspath(file.file)

@@ -87,10 +87,13 @@ SHARED: tuple[Rule, ...] = (
             declared.unknown_parameters, rcl_rules.misspelt_marks, plugin_names.renamed_nodes
         )
     ),
-    shape.not_read._replace(check=_each(declared.not_read, declared.below_unknown_names)),
+    shape.not_read._replace(
+        check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
+    ),
     shape.missing._replace(check=_each(plugin_names.without_plugin, demands.missing_parameters)),
     values.unreadable_value._replace(
-        check=_each(declared.wrong_types, rcl_rules.rejected_values), level=WARNING
+        check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
+        level=WARNING,
     ),
     values.unknown_word._replace(check=plugin_names.unknown_classes),
     clocks.clocks_mixed._replace(check=rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),

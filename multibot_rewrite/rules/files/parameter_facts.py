@@ -42,8 +42,12 @@ def facts_of_node(
         return own
     if node is None:
         return ()
-    packages = (node.package, *node.facts.declared_in)
-    known = (it for package in packages for it in declared_by(package))
+    # What one class of a package, or one of its nodes, demands beside the others.
+    one = (type_,) if named else (f"{node.package}/{node.name}",)
+    others = {it.partition("/")[0] for it in node.facts.types} - {node.package, named}
+    shared = (it for it in node.facts.declared_in if not named or it not in others)
+    owners = (node.package, *shared, *one)
+    known = (it for owner in owners for it in declared_by(owner))
     return (*_in_nodl(node), *known)
 
 

@@ -9,6 +9,7 @@ controller_manager.cpp ('type' param was not defined, controller type does not e
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
 
 import yaml
 
@@ -31,11 +32,13 @@ from multibot_rewrite.knowledge.plugin_classes import (
     packages,
     plugin_bases,
 )
+from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
-from multibot_rewrite.rules.files.given import beside
+from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.records import Remark, remark_at
-from multibot_rewrite.rules.files.section_facts import Given
+from multibot_rewrite.rules.files.section_facts import Given, sections
 
+_CONTROLLER = "controller_interface::ControllerInterface"
 _DWB, _CRITIC = "dwb_critics", "Critic"
 _CRITIC_SCOPES = {
     "dwb_core::TrajectoryCritic": _DWB,
@@ -56,6 +59,19 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
                     yield from _of_class(given.node, where, name, it.words[0], release)
     for it in demands(file, "critics"):
         yield from _critics(it)
+    for section in sections(file):
+        own = section.whole.get(TYPE) if section.node is None and not section.at else None
+        # A controller may say its class in its own section; whose class is known is a known node.
+        class_ = str(own.value) if own else ""
+        if own and canonical(class_).partition("::")[0] in _controller_packages():
+            where = f"{section.title}: {TYPE}"
+            yield from _of_class(own.node, where, class_, _CONTROLLER, release)
+
+
+@cache
+def _controller_packages() -> frozenset[str]:
+    known = plugin_bases()[_CONTROLLER].classes
+    return frozenset(canonical(it).partition("::")[0] for it in known)
 
 
 def _plugins(it: Demand) -> Iterator[Given]:
@@ -159,7 +175,7 @@ def without_plugin(file: NamedFile) -> Iterator[Remark]:
             found = f"{below}plugin" in it.section.whole or (
                 it.check == "blocks" and any(name.startswith(below) for name in it.section.whole)
             )
-            elsewhere = not found and _is_given_beside(file, f"{below}plugin")
+            elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
                 yield _without(it, word, below)
     yield from _without_type(file)
@@ -172,11 +188,6 @@ def _without(it: Demand, word: str, below: str) -> Remark:
     # Another parameter file, or the launch file, may have it.
     hint = f"add {name}, or take {word} off the list"
     return remark_at(it.given.node, message, hint, WARNING)
-
-
-def _is_given_beside(file: NamedFile, name: str) -> bool:
-    """Does another parameter file of the robot have it?"""
-    return any(name in node.values for node in beside(file).given)
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:

@@ -2,7 +2,8 @@
 """What rcl rejects in any parameter file, whatever node it is for, and what makes it skip a section.
 
 Source: rcl_yaml_param_parser parse.c (``parse_value``: a sequence is of one type and of single values;
-``PARAMS_KEY`` is ``ros__parameters``; what is above it is a name).
+``PARAMS_KEY`` is ``ros__parameters``; what is above it is a name; ``parse_file_events``: "Cannot have a
+value before ros__parameters").
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import typed, value_of
 from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, ParamSection, scalars
@@ -47,6 +50,26 @@ def rejected_values(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(node, f"rcl rejects the file: {message}", "", ERROR)
 
 
+def outside_of_marks(file: NamedFile) -> Iterator[Remark]:
+    """Values that are below no ``ros__parameters``: the first one of each top key."""
+    for key, below in pairs(file.document.root if file.document else None):
+        value = None if file.kind != PARAMS else next(_outside(key, below), None)
+        if value:
+            message = f"rcl rejects the file: {key.value} has values that are below no {PARAMETERS}"
+            hint = f"write {PARAMETERS}: above them, or take them out of the file"
+            yield remark_at(value, message, hint, ERROR)
+
+
+def _outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.ScalarNode]:
+    """The keys of such values; what is below another spelling of the mark is told there."""
+    if key.value == PARAMETERS or _is_nearly_mark(key):
+        return
+    if not isinstance(node, yaml.MappingNode):
+        yield key
+    for inner, below in pairs(node):
+        yield from _outside(inner, below)
+
+
 def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
     for _, value in pairs(node):
         if isinstance(value, yaml.SequenceNode):
@@ -65,7 +88,7 @@ def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
     """Keys that are nearly ``ros__parameters``: what is below is part of a name, and no parameter."""
     root = file.document.root if file.document else None
     for key in _keys(root, _DEEP):
-        if key.value != PARAMETERS and _NEARLY.fullmatch(str(key.value)):
+        if key.value != PARAMETERS and _is_nearly_mark(key):
             message = f"{key.value!r} is no {PARAMETERS}: no node gets what is below it"
             yield remark_at(key, message, f"write {PARAMETERS}, with two underscores", ERROR)
     for section, _ in file.pages:
@@ -73,6 +96,11 @@ def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
             if key.value == PARAMETERS:
                 message = f"a section below the {PARAMETERS} of {section.path}: no node reads it"
                 yield remark_at(key, message, "move it out, to where that section begins", WARNING)
+
+
+def _is_nearly_mark(key: yaml.ScalarNode) -> bool:
+    word = str(key.value)
+    return bool(_NEARLY.fullmatch(word) or slip_of(word, (PARAMETERS,)))
 
 
 def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:

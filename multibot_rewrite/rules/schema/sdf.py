@@ -23,7 +23,7 @@ from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
 from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
-from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
+from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own
 from multibot_rewrite.rules.schema.values import shortened
 from multibot_rewrite.rules.schema.versions import read_version
@@ -199,7 +199,8 @@ def _value(
     if row.type == "string":
         yield from _word(element, at, f"{known.name}/{row.name}", text, version)
         return
-    wrong = misread(row.type, text)
+    turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
+    wrong = misread(QUATERNION if turned else row.type, text)
     if wrong:
         level = ERROR if wrong.fails else WARNING
         yield Fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)

@@ -27,6 +27,8 @@ _ZEROS = lazy_compile(r"\.0*")
 _DIGITS = 20
 # No angle is as large; a little more than a turn is one that was rounded.
 TURN = tau * 1.001
+# The type of a pose with rotation_format="quat_xyzw".
+QUATERNION = "quat_xyzw"
 _TRUTHS = ("true", "false", "1", "0")
 
 
@@ -98,11 +100,11 @@ def _numbers(text: str, *, count: int) -> Misread | None:
     return None
 
 
-def _pose(text: str) -> Misread | None:
+def _pose(text: str, *, size: int) -> Misread | None:
     words = text.split()
     if not all(map(_REAL.match, words)):
-        return Misread("is not six numbers", True)
-    return None if len(words) in (6, 7) else Misread(f"has {len(words)} numbers of 6", True)
+        return Misread(f"is not {size} numbers", True)
+    return None if len(words) == size else Misread(f"has {len(words)} numbers of {size}", True)
 
 
 def _color(text: str) -> Misread | None:
@@ -127,7 +129,8 @@ CHECKS: dict[str, Callable[[str], Misread | None]] = {
     "vector2d": partial(_numbers, count=2),
     "vector3": partial(_numbers, count=3),
     "vector": partial(_numbers, count=3),
-    "pose": _pose,
+    "pose": partial(_pose, size=6),
+    QUATERNION: partial(_pose, size=7),
     "color": _color,
 }
 

@@ -216,6 +216,13 @@ def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None
     assert fleet["shared_frames"] == ["map"], "each real robot stands on a world of its own"
 
 
+def test_an_error_names_the_file_and_no_line_of_the_proposal(tmp_path: Path) -> None:
+    rover = str(ROBOTS / "rover.urdf")
+    lacking = str(tmp_path / "nav.yaml")
+    fleet = {"description": rover, "robots": [{"name": "a"}], "companions": {"params": [lacking]}}
+    assert trying.errors_of(fleet) == [("", f"{lacking} does not exist; correct the path")]
+
+
 def test_what_does_not_build_is_written_with_the_reason(tmp_path: Path, capsys: Any) -> None:
     (tmp_path / "r.urdf").write_text(
         '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'

@@ -29,7 +29,8 @@ ekf_filter_node:
 ARM = "    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}\n"
 OTHER = """\
 own_controller:
-  ros__parameters: {joints: [shoulder_joint], command_interfaces: [position]}
+  ros__parameters: {joints: [shoulder_joint], command_interfaces: [position],
+    state_interfaces: [position]}
 imu_broadcaster:
   ros"""
 PID = "    pid: {type: pid_controller/PidController}\n"

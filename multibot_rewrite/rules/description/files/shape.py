@@ -56,7 +56,8 @@ not_read = rule(
     NOTE,
     what="An element, attribute, parameter or text that nothing reads. It is in a URDF, below "
     "<gazebo>, in a known plugin, or in a node whose package declares all of its parameters. Below "
-    "<ros2_control> it is an error where it is no component.",
+    "<ros2_control> it is an error where it is no component. It is a warning for a parameter of a "
+    "controller that is in the section of its manager.",
     why="It has no effect: <gravity> works in a <gazebo reference> block and not in a link, <alwaysOn> "
     "in a sensor and not in its plugin. ros2_control's parser throws 'invalid tag name', and the "
     "controller manager has no hardware.",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
@@ -119,9 +120,10 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     "MB612",
     "mass-tiny",
     NOTE,
-    what="A link that moves on its own weighs less than a milligram.",
+    what="A link that moves on its own weighs a milligram or less. It is a warning in Humble.",
     why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
-    "rejects a body below 1e-15 kg.",
+    "rejects a body below 1e-15 kg. Humble's Gazebo takes that for no mass, and leaves out the link "
+    "with its joint and all below it (parser_urdf.cc of sdformat 12).",
     fix="Write the real mass, or make the joint fixed.",
     bad=moving_link(an_inertial("1e-8")),
     good=moving_link(an_inertial("0.01")),
@@ -130,13 +132,14 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
 def mass_tiny(subject: Subject) -> Iterator[Problem]:
     """Bodies of nearly no mass."""
     robot = subject.robot
-    if not any(it.mass is not None and 0 < it.mass < TINY_MASS for _, it in inertials(robot)):
+    if not any(it.mass is not None and 0 < it.mass <= TINY_MASS for _, it in inertials(robot)):
         return
     for name, mass in _masses(robot).items():
         inertial = robot.link[name].inertial if name in robot.link else None
-        if 0 < mass < TINY_MASS and moves(robot, name) and inertial is not None:
+        if 0 < mass <= TINY_MASS and moves(robot, name) and inertial is not None:
             message = f"link {name!r} moves and weighs {mass:g} kg"
-            yield Problem(inertial.element, message)
+            level = WARNING if subject.settings.distro == OF_OLD else ""
+            yield Problem(inertial.element, message, level=level)
 
 
 def _negative(link: Link) -> bool:

@@ -310,10 +310,10 @@ def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
     hardware = {simulator.name for _, _, simulator in simulated(subject)}
     gazebo = GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
     classic = CLASSIC.name in hardware or any(it.startswith(_CLASSICS) for it in libraries)
-    for it in sensors(subject) if gazebo and not classic else ():
-        if it.type in _RAYS and it.element.find("plugin") is None:
-            message = f"Gazebo simulates no sensor of type {it.type!r}"
-            yield Problem(it.element, message, "type", "write gpu_lidar")
+    for it in subject.elements.every("sensor") if gazebo and not classic else ():
+        if it.get("type") in _RAYS and it.find("plugin") is None:
+            message = f"Gazebo simulates no sensor of type {it.get('type')!r}"
+            yield Problem(it, message, "type", "write gpu_lidar")
 
 
 _RAYS, _GAZEBOS, _CLASSICS = ("ray", "lidar"), ("gz-sim-", "gz_ros2_control"), "gazebo_"
