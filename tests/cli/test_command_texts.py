@@ -375,11 +375,11 @@ def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
 
 def test_what_a_fleet_file_says_itself() -> None:
     names = (
-        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared-frames",
-        "shared-topics", "groups", "vocabulary", "launch", "roots",
+        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared",
+        "vocabulary", "launch", "roots",
     )  # fmt: skip
     assert {
-        "words": "ROBOT", **{it.replace("-", "_"): f"--{it}" for it in names},
+        "words": "ROBOT", **{it: f"--{it}" for it in names},
     } == commands_of_fleets.OF_FLEET_FILE  # fmt: skip
 
 

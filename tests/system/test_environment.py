@@ -130,7 +130,7 @@ def test_a_caveat_names_what_came_or_went_last_and_what_did_not_come() -> None:
     found = view_caveats(seen, ends, USUAL, "timeout", ("/y", "/x", "/a"), ("/q", "/p"))
     assert [it.message.partition(";")[0] for it in found] == [
         f"{still} (last came or went /p, /q)",
-        "expected nodes not in the graph: /x, /y",
+        "expected names not in the graph: /x, /y",
         "nodes without any endpoint: /bare",
         "several nodes have the name /b",
     ]
