@@ -16,18 +16,24 @@ from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.domains import by_domain
+from multibot_rewrite.system.domains import by_domain, named, side_by_side, unnamed
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
     TOPIC,
+    Caveat,
+    Controller,
     Domain,
+    Edge,
     End,
     Environment,
+    Heard,
     Node,
     Parameter,
+    Robot,
     System,
+    Topic,
 )
 
 ODOM, MAP = "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid"
@@ -54,6 +60,85 @@ def plan() -> System:
     made = planned("both", robots, ("/map_server",), ("/map",), ("map",), tuple(ends))
     domains = tuple(Domain(*it) for it in NUMBERS.items())
     return with_bridges(made._replace(domains=domains), ["odom"])
+
+
+def test_each_domain_has_its_part_of_a_plan() -> None:
+    """Robot ``a`` is in the domain of all; what is open in the plan is in none."""
+    nodes = {it: Node(f"{it}/n", robot=it.strip("/")) for it in ("/a", "/b", "")}
+    ends = {
+        it: End(TOPIC, PUBLISHES, f"{it}/odom", ODOM, "", node.name, None, "")
+        for it, node in nodes.items()
+    }
+    edges = {it: Edge("c", "p", "", False, (node.name,)) for it, node in nodes.items()}
+    both = Edge("c", "both", "", False, ("/a/n", "/b/n"))
+    rates = {it: Parameter(node.name, "rate", "1") for it, node in nodes.items()}
+    topics = {it: Topic(f"{it}/odom") for it in nodes}
+    robots = {"/a": Robot("a", tf_topic="/a/tf"), "/b": Robot("b", tf_topic="/b/tf")}
+    whole = System(
+        nodes=tuple(nodes.values()), ends=tuple(ends.values()), edges=(*edges.values(), both),
+        parameters=tuple(rates.values()), topics=tuple(topics.values()),
+        robots=tuple(robots.values()), layout="both", gaps=(Finding("MG102", "error", "m"),),
+        domains=(Domain("", 5), Domain("b", 7)),
+    )  # fmt: skip
+    here, there = by_domain(whole).values()
+    assert list(by_domain(whole)) == [5, 7]
+    assert by_domain(whole._replace(domains=(Domain("b", 7),))) == {0: here, 7: there}
+    assert by_domain(whole._replace(domains=())) == {}
+    assert here == System(
+        nodes=(nodes["/a"], nodes[""]), ends=(ends["/a"], ends[""]), edges=(edges["/a"], edges[""]),
+        parameters=(rates["/a"], rates[""]), topics=(topics["/a"], topics[""]),
+        robots=(robots["/a"],), layout="both",
+    )  # fmt: skip
+    assert there == System(
+        nodes=(nodes["/b"],), ends=(ends["/b"],), edges=(edges["/b"],), parameters=(rates["/b"],),
+        topics=(topics["/b"],), robots=(robots["/b"],), layout="both",
+    )  # fmt: skip
+
+
+def test_views_of_several_domains_are_one_with_the_worst_of_each() -> None:
+    def view(at: int, settled: str, seconds: float) -> System:
+        name = f"/n{at}"
+        return System(
+            nodes=(Node(name),), ends=(End(TOPIC, PUBLISHES, name, "", "", name, None, ""),),
+            edges=(Edge(name, "p", "/tf", False, (name,)),), heard=(Heard(name, "f"),),
+            parameters=(Parameter(name, "p", "1"),), controllers=(Controller(name, "c", "active"),),
+            environment=Environment(
+                at, "SUBNET", (), "rmw", participants=at, settled=settled, seconds=seconds,
+                caveats=(Caveat("c", True, f"m{at}"),),
+            ),
+        )  # fmt: skip
+
+    first, second = view(3, "quiet", 2.0), view(4, "timeout", 1.0)
+    assert side_by_side({3: first}) == first
+    found = side_by_side({3: first, 4: second})
+    assert found == System(
+        *(one + other for one, other in zip(first[:3], second[:3], strict=True)),
+        environment=Environment(
+            3, "SUBNET", (), "rmw", participants=7, settled="timeout", seconds=2.0,
+            caveats=(Caveat("c", True, "domain 3: m3"), Caveat("c", True, "domain 4: m4")),
+        ),
+        heard=first.heard + second.heard, parameters=first.parameters + second.parameters,
+        controllers=first.controllers + second.controllers,
+    )  # fmt: skip
+    below = named(first, 3)
+    assert below == first._replace(
+        nodes=(Node("/domain_3/n3"),),
+        ends=(End(TOPIC, PUBLISHES, "/domain_3/n3", "", "", "/domain_3/n3", None, ""),),
+        edges=(Edge("/n3", "p", "/domain_3/tf", False, ("/domain_3/n3",)),),
+        heard=(Heard("/domain_3/n3", "f"),), parameters=(Parameter("/domain_3/n3", "p", "1"),),
+        controllers=(Controller("/domain_3/n3", "c", "active"),),
+    )  # fmt: skip
+
+
+def test_a_finding_speaks_of_what_runs_in_its_domain() -> None:
+    told = Finding(
+        "MG102", "error", "/domain_3/a/b lacks domain_4, domain_34", "start /domain_4/c",
+        robot="domain_3", node="/domain_3/a", names=("/domain_3/x", "/y"),
+    )  # fmt: skip
+    assert unnamed(told) == Finding(
+        "MG102", "error", "/a/b of domain 3 lacks domain 4, domain 34", "start /c of domain 4",
+        robot="domain 3", node="/a", names=("/x", "/y"),
+    )  # fmt: skip
 
 
 def as_planned() -> dict[int, System]:

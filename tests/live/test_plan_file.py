@@ -68,6 +68,23 @@ def test_shared_nodes_may_be_names_alone() -> None:
 
 
 @pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"layout: a\n x: 1\n", "p.yaml:2:3: not valid YAML: "),
+        (b"layout: \x07\n", "p.yaml: not valid YAML: unacceptable character #x0007: "),
+        (b"layout: \xff\n", "p.yaml: not valid YAML: it is not UTF-8; "),
+        (b'{"layout": 1,\n "a"}', "p.yaml:2:5: not valid JSON: Expecting ':' delimiter; "),
+        (b'{"layout": "\xff"}', "p.yaml: not valid JSON: it is not UTF-8; "),
+    ],
+)
+def test_what_cannot_be_read_is_told_where(data: bytes, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read_plan(data, "p.yaml")
+    assert str(refused.value).startswith(said)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ("one_sender: true", "one_sender: 1", "topics./robot1/cmd_vel.one_sender: write true or"),

@@ -14,12 +14,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from graph_cases import qos
 
+from multibot_rewrite.producers.ros.assemble import TF_TYPES
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.zenoh import observe, tf
 from multibot_rewrite.producers.zenoh.observe import Router, look, watch
 from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession
-from multibot_rewrite.system.records import Node, System
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, End, Node, System
 
 SESSION = "aac3178e146ba6f1fc6e6a4085e77f21"
 HASH = f"RIHS01_{'0' * 64}"
@@ -231,3 +233,38 @@ def test_what_is_received_is_delivered_on_the_thread_that_asks() -> None:
     (kept,) = own.declared
     end()
     assert kept.ended and own.declared == []
+
+
+@pytest.mark.parametrize(
+    ("heard", "passed", "seconds", "waits"),
+    [
+        (True, 0.49, 9.0, True), (True, 0.5, 9.0, False), (False, 0.5, 9.0, True),
+        (False, 2.9, 9.0, True), (False, 3.0, 9.0, False), (False, 0.1, 0.1, False),
+    ],
+)  # fmt: skip
+def test_a_silent_publisher_of_tf_is_waited_for_longer(
+    heard: bool, passed: float, seconds: float, waits: bool
+) -> None:
+    session = Session(())
+    listener = tf.ZenohTf(RouterSession(ZENOH, session, deque(), []), 2)
+    ends = [End(TOPIC, PUBLISHES, "/tf", TF_TYPES[0], "", it, qos(), "") for it in ("/a", "/b")]
+    other = ends[0]._replace(name="/other", type="std_msgs/msg/String")
+    listener.update([*ends, other, ends[0]._replace(role=SUBSCRIBES, name="/read")])
+    assert list(session.subscribed) == ["2/tf/tf2_msgs::msg::dds_::TFMessage_/*"]
+    listener._spoken["/tf"].update((b"1", b"2") if heard else (b"1",))
+    assert listener._waiting(passed, seconds) is waits
+
+
+@pytest.mark.parametrize(("spoken", "deaf"), [((), True), (("/a/tf",), False)])
+def test_nobody_heard_at_all_makes_a_view_incomplete(spoken: tuple[str, ...], deaf: bool) -> None:
+    listener = tf.ZenohTf(RouterSession(ZENOH, Session(()), deque(), []), 2)
+    names = ("/b/tf", "/a/tf")
+    listener.update(End(TOPIC, PUBLISHES, it, TF_TYPES[0], "", "/n", None, "") for it in names)
+    for it in spoken:
+        listener._spoken[it].add(b"1")
+    silent = ", ".join(sorted({*names} - {*spoken}))
+    text = (
+        f"no transform was heard on {silent}: the publishers are silent, or access control keeps us"
+        " from listening"
+    )
+    assert [*listener.caveats()] == [Caveat("frames-not-heard", deaf, text)]

@@ -9,6 +9,9 @@ import pytest
 
 from multibot_rewrite import InputError, UsageError, rename_symbol
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.description.sources.pieces import Piece
+from multibot_rewrite.refactor import source_edits
+from multibot_rewrite.refactor.source_edits import Change, SourceEdit, edited, first_difference
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f"""<robot name="r" {SPACE}>
@@ -228,3 +231,51 @@ def test_a_name_that_a_file_of_the_folder_uses_is_taken(
     else:
         made = rename_symbol(old, new, str(tmp_path), kind=kind)
         assert [Path(it).name for it in made.after] == ["r.urdf"]
+
+
+@pytest.mark.parametrize(
+    ("touched", "why"),
+    [
+        ([], "an expression makes it"),
+        ([Piece("a", "expression")], "an expression makes it"),
+        ([Piece("a", "given argument")], "it is a given argument"),
+        ([Piece("a", "literal"), Piece("b", "property")], "it is put together from 'a' and 'b'"),
+    ],
+)
+def test_why_no_edit_makes_a_change(touched: list[Piece], why: str) -> None:
+    assert source_edits._why(touched) == why
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "new", "left"),
+    [
+        (0, 4, "abcd", (4, 4, "")), (0, 4, "xbcd", (0, 1, "x")), (0, 4, "abcx", (3, 4, "x")),
+        (0, 4, "ab", (2, 4, "")), (0, 4, "cd", (0, 2, "")), (0, 2, "abab", (2, 2, "ab")),
+        (1, 1, "x", (1, 1, "x")),
+    ],
+)  # fmt: skip
+def test_only_what_differs_is_changed(
+    start: int, end: int, new: str, left: tuple[int, int, str]
+) -> None:
+    assert source_edits._trimmed(Change(0, "name", "abcd", start, end, new)) == left
+
+
+def test_edits_are_made_in_their_order_and_do_not_meet() -> None:
+    """One edit may begin where another ends; the same one twice is one."""
+    edits = [SourceEdit("b", 2, 3, b"2"), SourceEdit("a", 0, 1, b""), SourceEdit("b", 0, 2, b"01")]
+    sources = {"a": b"abc", "b": b"abcd", "c": b"abc"}
+    assert edited(sources, [*edits, edits[0]]) == {"a": b"bc", "b": b"012d"}
+    with pytest.raises(ValueError, match="1"):
+        edited(sources, [*edits, SourceEdit("b", 1, 2, b"x")])
+
+
+@pytest.mark.parametrize(
+    ("made", "wanted", "line"),
+    [
+        (b"a\n b\nc", b"a\n x\nd", "b"), (b"a", b"a", ""), (b"a", None, ""), (b"\xff", b"a", "\ufffd"),
+    ],
+)  # fmt: skip
+def test_the_first_line_that_is_not_the_wanted_one(
+    made: bytes, wanted: bytes | None, line: str
+) -> None:
+    assert first_difference(made, wanted) == line

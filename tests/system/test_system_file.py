@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 from importlib.resources import files
 from typing import Any
 
@@ -16,6 +17,7 @@ from multibot_rewrite import system_of_description
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.json_values import read_seconds
 from multibot_rewrite.system.records import (
     MAY,
     Controller,
@@ -45,7 +47,9 @@ ALL = System(
 
 
 def test_the_published_schema_is_that_of_the_records() -> None:
-    assert json.loads(TEXT) == schema(), "python -m multibot_rewrite.system.schema > ...schema.json"
+    assert f"{json.dumps(schema(), indent=1)}\n" == TEXT, (
+        "python -m multibot_rewrite.system.schema > ...schema.json"
+    )
 
 
 @pytest.mark.sample(1)
@@ -99,6 +103,35 @@ def test_the_schema_refuses_what_the_reader_refuses(key: str, value: Any) -> Non
     assert not VALID.is_valid(wrong)
     with pytest.raises(InputError):
         from_json(json.dumps(wrong).encode(), "g")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("nodes", 1, "nodes: expected a list, not 1"),
+        ("nodes", [{"name": 7}], "nodes[0].name: expected a full name that starts with /, not 7"),
+        ("nodes", [{"name": "/a"}, {"name": "a"}],
+         'nodes[1].name: expected a full name that starts with /, not "a"'),
+        ("nodes", [{"name": "/a", "process": 7}], "nodes[0].process: expected text, not 7"),
+        ("environment", {"domain": True}, "environment.domain: expected a whole number, not true"),
+        ("environment", {"super_client": 1}, "environment.super_client: expected true or false, not 1"),
+        ("environment", {"seconds": "é"}, 'environment.seconds: expected a number or null, not "é"'),
+        ("environment", {"seconds": True}, "environment.seconds: expected a number or null, not true"),
+        ("environment", {"seconds": 1e301}, "environment.seconds: expected a number or null, not 1e+3"),
+        ("edges", [{"child": "a", "parent": "b", "topic": "/tf", "static": True, "publishers": [],
+                    "transform": [1]}],
+         "edges[0].transform: expected 7 numbers: x, y, z and a quaternion x, y, z, w, not [1]"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_with_its_keys(key: str, value: Any, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        from_json(json.dumps({**json.loads(to_json(ALL)), key: value}).encode(), "g")
+    assert str(refused.value).startswith(f"g: {said}")
+
+
+@pytest.mark.parametrize("largest", [1e300, -1e300])
+def test_a_time_may_be_large_or_without_a_limit(largest: float) -> None:
+    assert (read_seconds(largest), read_seconds(None)) == (largest, math.inf)
 
 
 def test_a_snapshot_of_schema_1_is_read() -> None:
