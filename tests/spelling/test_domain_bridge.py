@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What crosses between domains, and the files of ros2/domain_bridge."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.spelling.domain_bridge import (
+    Crossing,
+    beyond,
+    bridge_files,
+    crossings,
+    services_apart,
+    with_bridges,
+)
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Domain,
+    End,
+    Node,
+    Robot,
+    System,
+    Topic,
+)
+
+STRING, MAP = "std_msgs/msg/String", "nav_msgs/msg/OccupancyGrid"
+
+
+def end(node: str, role: str, name: str, type_: str = STRING, kind: str = TOPIC) -> End:
+    return End(kind, role, name, type_, "", node, None, "", name.rpartition("/")[2])
+
+
+def plan(*ends: End, topics: tuple[Topic, ...] = ()) -> System:
+    """Robot ``a/b`` in domain 5, ``c`` in 6, and ``d`` with a node of all in 4."""
+    nodes = (
+        Node("/a/n", robot="a/b"), Node("/c/n", robot="c"), Node("/d/n", robot="d"), Node("/all"),
+    )  # fmt: skip
+    domains = Domain("", 4), Domain("a/b", 5), Domain("c", 6)
+    robots = tuple(map(Robot, ("a/b", "c", "d")))
+    return System(nodes, ends, robots=robots, domains=domains, topics=topics)
+
+
+def sent(name: str, by: str, to: str, types: tuple[str, str] = (STRING, STRING)) -> list[End]:
+    return [end(by, PUBLISHES, name, types[0]), end(to, SUBSCRIBES, name, types[1])]
+
+
+@pytest.mark.parametrize(
+    ("ends", "found"),
+    [
+        (sent("/x", "/a/n", "/all"), [Crossing("a/b", "/x", STRING, True)]),
+        (sent("/x", "/all", "/a/n"), [Crossing("a/b", "/x", STRING, False)]),
+        (sent("/x", "/all", "/a/n", ("", STRING)), [Crossing("a/b", "/x", STRING, False)]),
+        (sent("/x", "/all", "/a/n", (STRING, "")), [Crossing("a/b", "/x", STRING, False)]),
+        # Of two robots none is in the domain of all, and robot d is in that of all.
+        (sent("/x", "/a/n", "/c/n"), []), (sent("/x", "/d/n", "/all"), []),
+        (sent("/x", "/a/n", "/a/n"), []), (sent("/rosout", "/a/n", "/all"), []),
+        ([*sent("/x", "/a/n", "/all"), end("/d/n", PUBLISHES, "/x")], []),
+        ([end("/all", CALLS, "/x", kind=SERVICE), end("/a/n", SERVES, "/x", kind=SERVICE)], []),
+        ([end("/all", SUBSCRIBES, "/x")], []), ([end("/a/n", PUBLISHES, "/x")], []),
+    ],
+)  # fmt: skip
+def test_what_is_read_in_a_domain_and_not_sent_there_crosses(
+    ends: list[End], found: list[Crossing]
+) -> None:
+    assert crossings(plan(*ends), ()) == found
+
+
+@pytest.mark.parametrize(
+    ("topic", "robots"),
+    [
+        (Topic("/clock", bridge=(PUBLISHES,)), ["a/b", "c"]),
+        (Topic("/clock", bridge=(SUBSCRIBES,)), []), (Topic("/x", bridge=(PUBLISHES,)), []),
+    ],
+)  # fmt: skip
+def test_the_time_of_the_simulator_goes_to_each_other_domain(
+    topic: Topic, robots: list[str]
+) -> None:
+    type_ = "rosgraph_msgs/msg/Clock"
+    found = crossings(plan(topics=(topic,)), ())
+    assert found == [Crossing(it, "/clock", type_, False) for it in robots]
+
+
+@pytest.mark.parametrize(
+    ("role", "name", "word", "out"),
+    [
+        (PUBLISHES, "/a/odom", "odom", True), (SUBSCRIBES, "/a/cmd_vel", "cmd_vel", False),
+        (SUBSCRIBES, "/a/scan", "/scan/", True), (SUBSCRIBES, "/a/cmd_vel", "/a/cmd_vel", False),
+        (PUBLISHES, "/a/cmd_vel", "cmd_vel", True),
+    ],
+)  # fmt: skip
+def test_what_is_asked_for_goes_to_who_sends_it_or_out(
+    role: str, name: str, word: str, out: bool
+) -> None:
+    """A command comes from outside; a sensor's driver need not be in the plan."""
+    found = crossings(plan(end("/a/n", role, name), end("/d/n", role, "/d/odom")), [word])
+    assert found == [Crossing("a/b", name, STRING, out)]
+
+
+@pytest.mark.parametrize(
+    ("word", "told"), [("odon", "did you mean 'odom'?"), ("zzz", "add the node that has it")]
+)
+def test_what_is_asked_for_and_no_robot_has_is_refused(word: str, told: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        crossings(plan(end("/a/n", PUBLISHES, "/a/odom")), [word])
+    said = f"crossing: no robot has a topic {word!r} by the plan; {told}"
+    assert str(refused.value) == said
+
+
+def test_a_bridge_has_a_node_in_each_domain_and_a_file() -> None:
+    """What is latched says so: the map and the fixed transforms. What has no type stays."""
+    made = with_bridges(
+        plan(
+            *sent("/map", "/all", "/a/n", (MAP, MAP)), *sent("/a/tf_static", "/a/n", "/all"),
+            *sent("/a/odom", "/a/n", "/all"), *sent("/y", "/c/n", "/all", ("", "")),
+        )
+    )  # fmt: skip
+    assert [(it.name, it.robot, it.stack) for it in made.nodes[4:]] == [
+        ("/a_b_bridge", "a/b", "domain_bridge"), ("/a_b_bridge_5", "a/b", "domain_bridge"),
+        ("/a_b_bridge_4", "", "domain_bridge"),
+    ]  # fmt: skip
+    assert [(it.node, it.role, it.name) for it in made.ends[8:]] == [
+        ("/a_b_bridge_5", SUBSCRIBES, "/a/odom"), ("/a_b_bridge_4", PUBLISHES, "/a/odom"),
+        ("/a_b_bridge_5", SUBSCRIBES, "/a/tf_static"), ("/a_b_bridge_4", PUBLISHES, "/a/tf_static"),
+        ("/a_b_bridge_4", SUBSCRIBES, "/map"), ("/a_b_bridge_5", PUBLISHES, "/map"),
+    ]  # fmt: skip
+    assert beyond(made) == {"/a_b_bridge_4": "a/b"}
+    kept = "    qos: {reliability: reliable, durability: transient_local, depth: 100}"
+    text = [
+        "name: a_b_bridge", "from_domain: 5", "to_domain: 4", "topics:",
+        "  /a/odom:", f"    type: {STRING}",
+        "  /a/tf_static:", f"    type: {STRING}", kept,
+        "  /map:", f"    type: {MAP}", "    from_domain: 4", "    to_domain: 5", kept, "",
+    ]  # fmt: skip
+    assert [*bridge_files(made)] == [("domain_bridge/a_b_bridge.yaml", "\n".join(text).encode())]
+
+
+def test_services_do_not_cross() -> None:
+    """One that is served in the domain of who calls it is not told, nor one that nobody serves."""
+    apart, near = end("/all", CALLS, "/x", kind=SERVICE), end("/all", CALLS, "/y", kind=SERVICE)
+    lost = end("/all", CALLS, "/z", kind=SERVICE)
+    served = (
+        end("/a/n", SERVES, "/x", kind=SERVICE), end("/c/n", SERVES, "/x", kind=SERVICE),
+        end("/a/n", SERVES, "/y", kind=SERVICE), end("/d/n", SERVES, "/y", kind=SERVICE),
+        end("/a/n", SERVES, "/z"),
+    )  # fmt: skip
+    found = plan(apart, near, lost, *served)
+    assert [*services_apart(found)] == [(apart, 4, 5)]
+    assert [*services_apart(found._replace(domains=()))] == []
