@@ -23,11 +23,14 @@ from multibot_rewrite.producers.ros.assemble import (
     LastChange,
     ObservationClock,
     ReceivedTransform,
+    cut_short,
     endpoints_with_process,
     frames,
     merged,
     nodes_with_process,
+    not_heard,
     processes_by_node,
+    so_far,
     topics_to_query,
     why_settled,
 )
@@ -351,6 +354,32 @@ def test_a_long_list_is_cut() -> None:
 
 
 # --- when to stop, what to ask, how it fits together
+
+
+def test_what_is_seen_so_far_is_said_with_its_namespaces() -> None:
+    assert so_far([]) == "0 nodes so far"
+    assert so_far(["/a"]) == "1 node so far"
+    assert so_far(["/r2/x/a", "/b", "/r1/a", "/r1/b"]) == "4 nodes in r1, r2 so far"
+
+
+def test_what_the_timeout_left_out_is_named() -> None:
+    """A topic that one node publishes and nobody reads is not asked for; nor is a service."""
+    said = "the timeout was over before the QoS of all topics was read"
+    ends = [
+        end("/a", "/x"),
+        end("/b", "/x", "subscribes"),
+        end("/a", "/one"),
+        end("/a", "/s", "serves"),
+    ]
+    (found,) = cut_short(["/a", "/b"], ends)
+    assert found == Caveat("cut-short", True, f"{said} (/x); give a longer --timeout")
+    (known,) = cut_short(["/a", "/b"], [it._replace(qos=QOS) for it in ends])
+    assert known == Caveat("cut-short", True, f"{said}; give a longer --timeout")
+    said = "the timeout was over before messages could come"
+    assert [*not_heard(["/tf"]), *not_heard([])] == [
+        Caveat("cut-short", True, f"{said} on /tf; give a longer --timeout"),
+        Caveat("cut-short", True, f"{said}; give a longer --timeout"),
+    ]
 
 
 @pytest.mark.parametrize(

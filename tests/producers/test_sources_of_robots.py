@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import (
     Claim,
     Endpoint,
@@ -21,7 +24,19 @@ from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.models import Model, Models
+from multibot_rewrite.producers.launch.records import LaunchNote, RunningNode
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.producers.launch.snapshot import (
+    _addresses,
+    _caveats,
+    _frames,
+    _measured,
+    _Part,
+    _refused,
+    _without_own_time,
+)
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import (
     edge,
@@ -41,7 +56,10 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     Address,
+    Caveat,
     Controller,
+    End,
+    Heard,
     Interface,
     Lookup,
     Place,
@@ -166,6 +184,91 @@ def test_the_devices_of_a_description(
     made = [*of_hardware(root, "/m", AT)]
     assert [(it.kind, it.value) for it in made] == found
     assert all(it == Address(it.kind, "robot_ip", it.value, "/m", AT) for it in made)
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "there"),
+    [
+        (None, None, True), (None, True, True), (True, None, False), (True, True, False),
+        (True, False, False), (False, True, True),
+    ],
+)  # fmt: skip
+def test_a_model_in_a_simulator_has_no_devices(
+    own: bool | None, other: bool | None, there: bool
+) -> None:
+    """``own`` and ``other``: whether this description, and another one, is put into a simulator."""
+    text = HARDWARE.format("acme/Arm", '<param name="robot_ip">10.0.0.2</param>')
+    reading: Any = None
+    found = tuple(
+        Model("m", it, reading, spawned, AT)
+        for it, spawned in ((text, own), ("<robot/>", other))
+        if spawned is not None
+    )
+    values = {"robot_description": Given(text, THERE)}
+    node = RunningNode("n", "/r", (), (), "/r", None, values, "p", (), "acme/arm", AT)
+    known = Knowledge({}, load_known_nodes("", "jazzy"), "jazzy")
+    made = [*_addresses(node, known, Models(found, ()))]
+    assert made == [Address("device", "robot_ip", "10.0.0.2", "/r/n", AT)] * there
+
+
+@pytest.mark.parametrize(
+    ("role", "type_", "node", "heard"),
+    [
+        (PUBLISHES, "sensor_msgs/msg/Imu", "/a", True), (SUBSCRIBES, "sensor_msgs/msg/Imu", "/a", False),
+        (PUBLISHES, "std_msgs/msg/String", "/a", False), (PUBLISHES, "sensor_msgs/msg/Imu", "/b", False),
+    ],
+)  # fmt: skip
+def test_the_frame_of_a_plugin_is_that_of_the_measurements_it_sends(
+    role: str, type_: str, node: str, heard: bool
+) -> None:
+    part = _Part(node, (End(TOPIC, role, "/imu", type_, "", node, None, ""),), ())
+    assert [*_measured([part], {"/a": "imu_link"})] == [Heard("/imu", "imu_link")] * heard
+
+
+def test_what_a_launch_does_not_say_is_told_once() -> None:
+    node = RunningNode("n", "/r", (), (), "/r", None, {}, "p", (), "acme/arm", AT)
+    viewer, bridge = (
+        node._replace(name="rviz2"), node._replace(program="ros_gz_bridge/parameter_bridge"),
+    )  # fmt: skip
+    tree = node._replace(name="rsp", facts=NodeFacts("rsp", "robot_state_publisher", ()))
+    notes = [
+        LaunchNote(AT, "x is lost"), LaunchNote(THERE, "x is lost"),
+        LaunchNote(AT, "it fails", fails=True),
+    ]  # fmt: skip
+    assert [*_caveats([], [viewer, bridge])] == [] == [*_refused([])]
+    assert [*_caveats(notes, [node, node._replace(name="m"), viewer, bridge, tree])] == [
+        Caveat("launch-not-whole", True, "p.yaml:3: x is lost"),
+        Caveat(
+            "node-not-known", True,
+            "2 nodes not known, with all topics and frames: /r/n (acme/arm), /r/m (acme/arm);"
+            " describe them in a file of nodes (--nodes, docs/stacks.md)",
+        ),
+        Caveat(
+            "description-not-known", True,
+            "the description is not known, so neither are its frames: /r/rsp",
+        ),
+    ]  # fmt: skip
+    assert [*_refused(["/a (x)"])] == [Caveat("rcl-refuses", True, "rcl refuses 1 node: /a (x)")]
+
+
+def test_a_clock_that_nobody_sends_is_not_waited_for_in_a_simulator() -> None:
+    reads = End(TOPIC, SUBSCRIBES, "/clock", "", "", "/n", None, "simulator")
+    apart, sends = reads._replace(process="p"), reads._replace(role=PUBLISHES)
+    other = reads._replace(name="/scan")
+    assert [*_without_own_time([reads, apart, other])] == [apart, other]
+    assert [*_without_own_time([reads, sends])] == [reads, sends]
+
+
+def test_a_transform_of_several_nodes_is_one() -> None:
+    one, other = edge_of("p", "c"), edge_of("p", "d")
+    parts = [
+        _Part("/a", (), (("/tf", one), ("/tf", one), ("/tf", other))),
+        _Part("/b", (), (("/tf", one),)),
+    ]
+    assert [*_frames(parts)] == [
+        one._replace(topic="/tf", publishers=("/a", "/b"), several=True),
+        other._replace(topic="/tf", publishers=("/a",)),
+    ]
 
 
 def test_what_a_parameter_holds_for_one_node_alone() -> None:
