@@ -190,10 +190,8 @@ def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -
         ("program: amcl | other", "it is started as amcl or other"),
         ("release: jazzy or run: simulated", "on jazzy or the robot is simulated"),
         ("unsent: scan and map set", "no other node sends scan and map is set"),
-        (
-            "open: chosen or open: moment",
-            "only where you start it or only for a time, or for one request",
-        ),
+        ("open: chosen", "only where you start it"),
+        ("open: moment", "only for a time, or for one request"),
         ("open: code", "only as its code was built"),
         ("open: file", "only if a file says so"),
         ("open: nodl", "its NoDL file does not have it"),

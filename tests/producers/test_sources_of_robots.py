@@ -214,10 +214,12 @@ def test_a_model_in_a_simulator_has_no_devices(
 @pytest.mark.parametrize(
     ("role", "type_", "node", "heard"),
     [
-        (PUBLISHES, "sensor_msgs/msg/Imu", "/a", True), (SUBSCRIBES, "sensor_msgs/msg/Imu", "/a", False),
-        (PUBLISHES, "std_msgs/msg/String", "/a", False), (PUBLISHES, "sensor_msgs/msg/Imu", "/b", False),
+        (PUBLISHES, "sensor_msgs/msg/Imu", "/a", True),
+        (SUBSCRIBES, "sensor_msgs/msg/Imu", "/a", False),
+        (PUBLISHES, "std_msgs/msg/String", "/a", False),
+        (PUBLISHES, "sensor_msgs/msg/Imu", "/b", False),
     ],
-)  # fmt: skip
+)
 def test_the_frame_of_a_plugin_is_that_of_the_measurements_it_sends(
     role: str, type_: str, node: str, heard: bool
 ) -> None:
