@@ -7,6 +7,7 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge import declared
 from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known, stands_for
 from multibot_rewrite.knowledge.node_library import (
@@ -23,7 +24,7 @@ from multibot_rewrite.knowledge.parameters import (
     is_called,
     load_known_nodes,
 )
-from multibot_rewrite.knowledge.plugin_classes import canonical, packages, plugin_bases
+from multibot_rewrite.knowledge.plugin_classes import Base, _base, canonical, packages, plugin_bases
 from multibot_rewrite.knowledge.programs import (
     NAV2,
     Program,
@@ -532,3 +533,71 @@ def test_a_word_in_brackets_stands_for_something() -> None:
     ):
         known = Declared(path, "double", "", "", "", "")
         assert [it for it in (*names, *others) if known.has_name(it)] == [*names], path
+
+
+def test_a_row_of_what_a_package_declares() -> None:
+    """Package, repository, tag and folder; path, type and place; how and since when, and its checks."""
+    section = "\n".join((
+        "nav2_x] ros/nav2 1.0 nav2_x src", "rate double a.cpp:3", "",
+        "<id>.on any b.cpp:4 releases=jazzy,kilted yaml 1.1 ! bounds([0, 1]) gt([0])",
+        "low int c.cpp:5 read",
+    ))  # fmt: skip
+    assert [*declared._rows("")] == []
+    first, second, third = declared._rows(section)
+    assert first == Declared(
+        "rate", "double", "", "", "declared", "ros/nav2@1.0 nav2_x/src/a.cpp:3"
+    )
+    assert second == Declared(
+        "<id>.on",
+        "",
+        "bounds([0, 1]) gt([0])",
+        "jazzy,kilted",
+        "yaml",
+        "ros/nav2@1.1 nav2_x/src/b.cpp:4",
+    )
+    assert third == Declared("low", "int", "", "", "read", "ros/nav2@1.0 nav2_x/src/c.cpp:5")
+
+
+@pytest.mark.parametrize(
+    ("bounds", "checks"),
+    [
+        ("", ()), ("gt([0.0])", (("gt", "[0.0]"),)),
+        ("a::b(1, f(2)) lt()", (("a::b", "1, f(2)"), ("lt", ""))),
+    ],
+)  # fmt: skip
+def test_checks_of_a_value_with_their_arguments(
+    bounds: str, checks: tuple[tuple[str, str], ...]
+) -> None:
+    assert declared.checks_in(bounds) == checks
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "words"),
+    [
+        ("rate", "rate", {}), ("rate", "rates", None), ("<a>.x", "b.x", {"<a>": "b"}),
+        ("<a>.x", ".x", None), ("<a>.x", "b.y", None), ("a.<b>", "a.c.d", {"<b>": "c.d"}),
+        ("a.<b>.c", "a.c", None), ("<a>.x.<b>", "c.x.d", {"<a>": "c", "<b>": "d"}),
+        ("<a>.x.<b>", "c.y.d", None),
+    ],
+)  # fmt: skip
+def test_a_path_stands_for_names(path: str, name: str, words: dict[str, str] | None) -> None:
+    has = Declared(path, "", "", "", "", "").has_name(name)
+    assert has is (words is not None)
+    assert declared.stands_for(path, name) == (words or {})
+
+
+def test_a_path_of_words_in_brackets_alone_says_nothing() -> None:
+    said = {it: declared.says_something(it) for it in ("<a>", "<a>.<b>", "<a>.x", "x", "")}
+    assert said == {"<a>": False, "<a>.<b>": False, "<a>.x": True, "x": True, "": False}
+
+
+def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
+    """A name that a migration guide of Nav2 has is of an older release of ROS 2."""
+    section = "\n".join((
+        "nav2_core::A]", "a::B ros/a x.xml", "a::C releases=jazzy,kilted ros/a x.xml", "",
+        "a/D -> a::B docs.nav2.org migration/Humble.html", "A -> a::B ros/a x.xml",
+    ))  # fmt: skip
+    assert _base(section) == Base(
+        {"a::B": "", "a::C": "jazzy,kilted"}, {"a/D": "a::B", "A": "a::B"}, frozenset({"a/D"})
+    )
+    assert canonical(" a/b::C\n") == "a::b::C"

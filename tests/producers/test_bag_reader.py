@@ -45,8 +45,9 @@ class Cdr:
         return b"\0\1\0\0" + self.data
 
 
-def clock(second: int) -> bytes:
-    return Cdr().put("i", second).put("I", 0).message
+def clock(seconds: float) -> bytes:
+    second = int(seconds)
+    return Cdr().put("i", second).put("I", round((seconds - second) * 1e9)).message
 
 
 def transform(parent: str, child: str, x: float, second: int = 1) -> bytes:
@@ -114,13 +115,13 @@ def test_a_type_has_a_header_by_its_definition_or_as_it_is_known(
 
 
 def test_joints_a_clock_and_a_pose_are_read() -> None:
-    """A clock goes back by two seconds; of poses one with a number that is none is kept."""
+    """A clock goes back by 1.96 seconds; of poses one with a number that is none is kept."""
 
     def odometry(x: float) -> bytes:
         return Cdr().header("odom").text("base").put("d", x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0).message
 
     found = recorded(
-        connection("/clock", CLOCK, *map(clock, (5, 6, 4, 7, 6))),
+        connection("/clock", CLOCK, *map(clock, (5, 6, 4.04, 7, 6))),
         connection("/joints", JOINTS, joints("a", "b"), joints(), joints("a", "b"), joints("c")),
         connection("/odom", ODOMETRY, odometry(1.0), odometry(float("nan")), odometry(2.0)),
     )  # fmt: skip
