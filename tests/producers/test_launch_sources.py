@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.producers.launch import commands
 from multibot_rewrite.producers.launch.failures import failure
 from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.install_rules import link_share
@@ -132,3 +133,38 @@ def test_a_path_of_a_variable_that_is_not_set() -> None:
         os.path.join(os.getenv("NOT_SET_HERE"), "a")  # type: ignore[arg-type]
     except TypeError as error:
         assert failure(error).startswith("the environment variable NOT_SET_HERE is not set here")
+
+
+def test_the_output_of_a_program_that_reads_is_known_without_it(tmp_path: Path) -> None:
+    """Of xacro with one file and its arguments; options are not its files."""
+    first, second = tmp_path / "a.txt", tmp_path / "b.txt"
+    first.write_bytes(b"a\xff")
+    second.write_text("b")
+    assert commands.output_of(f"/bin/cat {first} {second}").text == "a\ufffdb"
+    assert commands.output_of(f"other {first}") == commands.Output("")
+    robot = tmp_path / "r.xacro"
+    robot.write_text(
+        '<robot name="$(arg n)" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n"'
+        ' default="d"/></robot>'
+    )
+    assert 'name="x:=y"' in commands.output_of(f"xacro -v {robot} n:=x:=y").text
+    assert commands.output_of(f"xacro {robot} {robot}").text == ""
+    lost = commands.output_of(f"cat {tmp_path}/gone")
+    assert lost.text == ""
+    assert lost.fault.startswith(f"the output of 'cat {tmp_path}/gone' is not known: ")
+
+
+def test_a_program_that_is_not_there_is_read_and_any_other_is_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(commands, "which", lambda _: None)
+    (tmp_path / "a").write_text("b")
+    lost: list[str] = []
+    ran = commands._run(lambda line, **options: ("ran", line, options), lost)
+    assert ran(["ls", "x"], check=True) == ("ran", ["ls", "x"], {"check": True})
+    assert ran("cat x") == ("ran", "cat x", {}) and ran([]) == ("ran", [], {})
+    line = ["cat", tmp_path / "a"]
+    assert (ran(line).stdout, ran(line, text=True).stdout) == (b"b", "b")
+    assert (ran(line, encoding="utf-8").stderr, ran(line).returncode) == ("", 0)
+    assert [ran(["cat", "/no/such"]).stdout for _ in range(2)] == [b"", b""]
+    assert len(lost) == 1
