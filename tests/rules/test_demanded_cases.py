@@ -19,13 +19,15 @@ TYPE = "controller_manager {arm.type: "
 JTC = "joint_trajectory_controller {type: joint_trajectory_controller/JointTrajectoryController, "
 
 
-def said(code: str, text: str, folder: Path, distro: str = "jazzy") -> list[str]:
+def said(
+    code: str, text: str, folder: Path, distro: str = "jazzy", hints: bool = False
+) -> list[str]:
     """What is said of a file with a node in each line, its parameters in braces."""
     lines = [line.partition(" ") for line in text.splitlines()]
     file = folder / "a.yaml"
     file.write_text("".join(f"{node}:\n  ros__parameters: {its}\n" for node, _, its in lines))
     found = lint_file(str(file), Settings(select=(code,), distro=distro))
-    return [f"{it.level} {it.message}" for it in found]
+    return [f"{it.level} {it.message}{f'; {it.hint}' * hints}" for it in found]
 
 
 CONTRADICTIONS = {
@@ -151,40 +153,40 @@ def test_parameters_that_contradict_each_other(text: str, tmp_path: Path) -> Non
 WORDS = {
     TYPE + "diff_drive_controller/DiffDriveControler}": (
         "error controller_manager: arm.type is 'diff_drive_controller/DiffDriveControler', which"
-        " its package does not have"
+        " its package does not have; did you mean diff_drive_controller/DiffDriveController?"
     ),
     # An own class in the namespace of a package.
     TYPE + "diff_drive_controller/AcmeDrive}": (
         "note controller_manager: arm.type is 'diff_drive_controller/AcmeDrive', which its package"
-        " does not have"
+        " does not have; see the plugins of its package"
     ),
     TYPE + "diff_drive_controler/DiffDriveController}": (
         "error controller_manager: arm.type is 'diff_drive_controler/DiffDriveController', which"
-        " no known package has"
+        " no known package has; did you mean diff_drive_controller/DiffDriveController?"
     ),
     TYPE + "acme/DiffDriveController}": "",
     TYPE + "'diff_drive_controller::DiffDriveController'}": (
         "warning controller_manager: arm.type is 'diff_drive_controller::DiffDriveController',"
-        " which is written with other signs in jazzy"
+        " which is written with other signs in jazzy; write diff_drive_controller/DiffDriveController"
     ),
     TYPE + "joint_state_controller/JointStateController}": (
         "error controller_manager: arm.type is 'joint_state_controller/JointStateController',"
-        " which ROS 2 has under another name"
+        " which ROS 2 has under another name; write joint_state_broadcaster/JointStateBroadcaster"
     ),
     "controller_server {controller_plugins: [F], F.plugin: 'nav2_smac_planner::SmacPlanner2D'}": (
         "error controller_server: F.plugin is 'nav2_smac_planner::SmacPlanner2D', which is a"
-        " nav2_core::GlobalPlanner, not a nav2_core::Controller"
+        " nav2_core::GlobalPlanner, not a nav2_core::Controller; name a class of that kind"
     ),
     "controller_server {" + DWB + "D.critics: [GoalDits]}": (
         "error controller_server: D (dwb_core::DWBLocalPlanner): no critic of dwb_critics is called"
-        " 'GoalDits'"
+        " 'GoalDits'; did you mean GoalDist?"
     ),
     "controller_server {" + DWB + "D.critics: [GoalDist, GoalAlignCritic, 'acme::GoalDits']}": "",
     "controller_server {" + DWB + "D.critics: [GoalDits], D.GoalDits.class: acme::A}": "",
     "controller_server {" + DWB + "D.default_critic_namespaces: [a], D.critics: [GoalDits]}": "",
     "controller_server {" + MPPI + "M.critics: [CostCritc]}": (
         "error controller_server: M (nav2_mppi_controller::MPPIController): no critic of"
-        " mppi::critics is called 'CostCritc'"
+        " mppi::critics is called 'CostCritc'; did you mean CostCritic?"
     ),
     "controller_server {" + MPPI + "M.critics: [CostCritic]}": "",
 }
@@ -192,7 +194,7 @@ WORDS = {
 
 @pytest.mark.parametrize("text", WORDS)
 def test_classes_of_plugins(text: str, tmp_path: Path) -> None:
-    assert said("MB124", text, tmp_path) == [WORDS[text]] * bool(WORDS[text])
+    assert said("MB124", text, tmp_path, hints=True) == [WORDS[text]] * bool(WORDS[text])
 
 
 MISSING = {
