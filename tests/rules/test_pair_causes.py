@@ -13,6 +13,7 @@ from multibot_rewrite.rules.pair.causes import (
     how_to_pass,
     how_to_remap,
     name_without_rules,
+    names_without_rules,
     remap_rule,
     tf_rule,
     why_not_remapped,
@@ -62,6 +63,7 @@ def test_a_similar_name(name: str, known: list[str], found: str) -> None:
     [
         (["/lidar"], [], "/lidar"),
         (["/robot_1/lidar"], [], "/robot_1/lidar"),
+        (["/Robot1/lidar"], [], "/Robot1/lidar"),
         (["/robot1/lidar_node"], [], "/robot1/lidar_node"),
         (["/robot1/lidra"], [], "/robot1/lidra"),
         (["/robot2/lidar_node"], [], ""),
@@ -113,6 +115,8 @@ def test_of_a_robot_with_many_frames_half_have_the_prefix() -> None:
     plan = plan_of(SCAN + "\nframes of robot1 on /tf: a, b, c, d, e, f")
     robot = plan.declared["robot1"]
     assert added_prefixes(robot, ["x_a", "x_b"]) == {}
+    # With a slash it is no frame of its own.
+    assert added_prefixes(robot, ["x/a", "x/b"]) == {"x/a": "x/", "x/b": "x/"}
     assert added_prefixes(robot, ["x_a", "x_b", "x_c"]) == dict.fromkeys(
         ("x_a", "x_b", "x_c"), "x_"
     )
@@ -151,6 +155,24 @@ def test_the_rule_for_a_name_in_the_code(code: str, without: str, rule: str) -> 
     why = f"the remap rule {rule} is not applied"
     other = "another remap rule, or an absolute name in its parameters, changes it"
     assert why_not_remapped(plan, end) == (why if rule else other, "", 0)
+
+
+@pytest.mark.parametrize(
+    ("node", "code", "names"),
+    [
+        ("/robot1/lidar", "~/scan", ("/robot1/lidar/scan", "/scan", "/scan")),
+        ("/robot1/lidar", "laser", ("/robot1/laser", "/laser", "/scan")),
+        # A node of no robot, with a name of one.
+        ("/server", "laser", ("/laser", "/laser", "/scan")),
+        ("/robot1/lidar", "scan", ("/scan", "/scan")),
+    ],
+)
+def test_names_of_a_node_that_is_given_no_rule(
+    node: str, code: str, names: tuple[str, ...]
+) -> None:
+    plan = plan_of(f"{node} publishes /robot1/scan\n/robot1/driver")
+    end = plan.system.ends[0]._replace(code_name=code)
+    assert names_without_rules(plan, end) == names
 
 
 @pytest.mark.parametrize(
