@@ -197,7 +197,7 @@ def test_people_write_a_whole_number_either_way(value: str, count: int) -> None:
     plan, graph = read_example(HAS.format("a", "1", "a", "1"))
     (it,) = graph.parameters
     graph = graph._replace(parameters=(it._replace(value=value),))
-    assert [it.code for it in check(plan, graph)] == ["MG132"] * count
+    assert [it.code for it in check(plan, graph)].count("MG132") == count
 
 
 NODES = "as planned: /robot1/a\nas planned: /robot2/a\n"
