@@ -44,6 +44,8 @@ def read(name: str, text: str, folder: Path, **settings: object) -> list[str]:
     [
         ("r.urdf", robot(LINK), {}, ["urdf"]),
         ("r.xacro", robot(LINK), {}, [XACRO, "urdf"]),
+        # What includes a model of SDF is expanded all the same.
+        ("r.xacro", robot(LINK + "<include/>"), {}, [XACRO, "urdf"]),
         # By its elements, whatever it is called.
         ("r.urdf", robot(LINK + ARG), {}, [XACRO, "urdf"]),
         ("r.xacro", robot(ARG + LINK), {"arguments": SETS}, [XACRO, "urdf", "urdf side"]),

@@ -254,3 +254,39 @@ def test_a_name_that_the_plan_has_for_several_robots() -> None:
     said = "uses /x, which the plan has for several robots: robot1, robot2"
     found = [it for it in check(plan, graph) if it.message == said]
     assert [(it.node, it.hint) for it in found] == [("/robot1/a", cause), ("/robot2/a", cause)]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("/scan", "/robot1/scan, /robot2/scan"),
+        # Of a robot that is called otherwise.
+        ("/bot1/scan", "/robot1/scan, /robot2/scan"),
+        ("/scan/bot1", "/robot1/scan, /robot2/scan"),
+        ("/odom", ""),
+        ("/robot1/scan", ""),
+        ("/shared", ""),
+        ("/rosout", ""),
+        # A service is no topic.
+        ("/srv", ""),
+    ],
+)
+def test_a_topic_of_no_robot_where_no_nodes_are_known(name: str, meant: str) -> None:
+    line = f"planned: /robot{{0}}/a publishes /robot{{0}}/scan {TEXT}\n"
+    line += "planned: /robot{0}/a serves /robot{0}/srv std_srvs/srv/Trigger\n"
+    plan, graph = read_example(
+        f"{line.format(1)}{line.format(2)}planned: shared topic /shared\n"
+        f"running: /x publishes {name} {TEXT}"
+    )
+    ends = tuple(it._replace(node="") for it in graph.ends)
+    found = check(plan, graph._replace(nodes=(), ends=ends))
+    cause = "start its node in its robot's namespace, with the rules of multibot plan"
+    said = [f"{it.message}; {it.hint}" for it in found if "is of no robot" in it.message]
+    assert said == [f"{name} is of no robot; planned: {meant}; {cause}"] * bool(meant)
+
+
+def test_how_many_robots_use_a_name_of_none() -> None:
+    lines = NODES + USES.format("publishes", "/x", TEXT)
+    two = lines + USES.format("subscribes", "/x", TEXT).replace("robot1", "robot2")
+    said = {it.message for it in check(*read_example(two)) if "which is not" in it.message}
+    assert said == {f"uses /x, which is not a name of robot{it}: 2 robots use it" for it in (1, 2)}
