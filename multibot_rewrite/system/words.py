@@ -27,7 +27,7 @@ _BODY = (
 _SENSOR_PACKAGES = (
     "sensor_msgs/", "nav_msgs/", "trajectory_msgs/", "control_msgs/", "moveit_msgs/msg/PlanningScene",
     "stereo_msgs/", "radar_msgs/", "can_msgs/", "velodyne_msgs/", "ouster_sensor_msgs/",
-    "livox_ros_driver2/",
+    "livox_ros_driver2/", "mavros_msgs/",
 )  # fmt: skip
 MAP = "nav_msgs/msg/OccupancyGrid"
 ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"

@@ -1026,3 +1026,15 @@ def test_a_frame_of_mavlink_is_no_frame_of_the_robot() -> None:
     """mavros setpoint_position.cpp: ``mav_frame`` is one of MAV_FRAME."""
     text, findings = made(section("/**/setpoint_position", "mav_frame: LOCAL_NED"), L2)
     assert "mav_frame: LOCAL_NED" in text and not list(findings)
+
+
+@pytest.mark.parametrize(
+    ("beside", "line", "told"),
+    [("mav_frame: LOCAL_NED", "frame_id: base_link", False),
+     ("mav_frame: LOCAL_NED", "camera_name: eye", True),
+     ("rate: 1.0", "frame_id: base_link", True)],
+)  # fmt: skip
+def test_the_camera_of_mavros_is_no_realsense(beside: str, line: str, told: bool) -> None:
+    """mavros px4_config.yaml: ``/**/camera`` beside ``/**/setpoint_position``."""
+    text = section("/**/setpoint_position", beside) + section("/**/camera", line)
+    assert ("MB422" in codes(made(text, L4)[1])) == told

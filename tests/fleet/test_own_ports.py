@@ -149,3 +149,17 @@ def test_what_is_no_number_is_not_said_to_get_one() -> None:
     *_, last = rewrite_all(text, ["a", "b"], distro="jazzy")
     (hint,) = (it.hint for it in last.findings if it.code == "MB412")
     assert "in one call" not in hint
+
+
+def test_two_mavros_of_one_system_are_joined_by_topics_of_their_own(tmp_path: Path) -> None:
+    """mavros_node.cpp: router and UAS meet in /uas1, whatever the namespace of their process."""
+    (tmp_path / "p.yaml").write_text("mavros_node: {ros__parameters: {tgt_system: 1}}\n")
+    (tmp_path / "d.urdf").write_text('<robot name="d"><link name="base_link"/></robot>')
+    robots = "".join(f"  - {{name: uav{it}, description: d.urdf}}\n" for it in (1, 2))
+    text = f"layout: both\ndistro: jazzy\nrobots:\n{robots}companions: {{params: p.yaml}}\n"
+    (tmp_path / "fleet.yaml").write_text(text)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    files = {it.path: it.text for it in make_outputs(plan, "out").files}
+    for end in ("source", "sink"):
+        rule = f"[/uas1/mavlink_{end}, uas1/mavlink_{end}]"
+        assert files["remappings.yaml"].count(rule) == 2

@@ -746,6 +746,20 @@ def test_a_drive_is_given_the_name_of_another_program(
     assert (it.hint or "").startswith(hint)
 
 
+def test_whoever_sends_a_twist_by_nav2_reads_its_parameter(tmp_path: Path) -> None:
+    """nav2_util twist_publisher.hpp and twist_subscriber.hpp declare it on the node that has one."""
+    file = tmp_path / "nav.yaml"
+    nodes = "controller_server behavior_server velocity_smoother collision_monitor docking_server"
+    sections = (
+        f"{it}:\n  ros__parameters: {{enable_stamped_cmd_vel: false}}\n"
+        for it in (*nodes.split(), "following_server", "loopback_simulator")
+    )
+    file.write_text("".join(sections))
+    for distro in ("jazzy", "kilted", "lyrical"):
+        found = lint_file(str(file), Settings(distro=distro))
+        assert not [it for it in found if "enable_stamped_cmd_vel" in it.message]
+
+
 def test_an_empty_name_in_a_list_is_told_for_what_it_is(tmp_path: Path) -> None:
     file = tmp_path / "drive.yaml"
     file.write_text(CONTROLLERS.replace("[left_wheel_joint]", '[left_wheel_joint, ""]', 1))

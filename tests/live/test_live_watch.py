@@ -198,8 +198,9 @@ def test_robots_of_two_domains_are_watched_until_one_leaves(plan: Path) -> None:
     assert code == 1 and said.endswith(": not as planned\n")
 
 
-def test_a_snapshot_is_not_watched(plan: Path) -> None:
-    command = [*CHECK, str(plan), "--watch", "--from", "graph.json"]
+def test_a_snapshot_is_not_watched(plan: Path, tmp_path: Path) -> None:
+    (tmp_path / "graph.json").write_text("{}")
+    command = [*CHECK, str(plan), "--watch", "--from", str(tmp_path / "graph.json")]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=20)
     assert done.returncode == 2
     assert "--watch is for the live graph, leave out --from" in done.stderr

@@ -204,7 +204,7 @@ def test_a_wrong_plan_is_one_line(
 def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--from", str(plan)]) == 2
-    assert "not valid JSON" in capsys.readouterr().err
+    assert capsys.readouterr().err == f"multibot: {plan}: a plan; use multibot check\n"
 
 
 # ---------------------------------------------------------------- where a node comes from

@@ -18,6 +18,7 @@ CLOCKS = {
     "fleet/test_build.py",
     "live/test_frame_ids.py",
     "live/test_snapshot.py",
+    "producers/test_observing.py",
     "support/walk.py",
 }
 

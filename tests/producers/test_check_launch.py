@@ -569,3 +569,50 @@ def test_rules_of_the_process_are_those_of_the_first_robot(release: str, second:
     rules = {it.full_name: dict(it.rules).get("~/odom") for it in made}
     assert rules["/robot1/controller_manager"] == "/robot1/odom"
     assert rules["/robot2/controller_manager"] == second
+
+
+def mavros(space: str, **more: object) -> LaunchedNode:
+    return node("mavros/mavros_node", "", f"{space}/mavros", **more)
+
+
+def of_vehicles(*vehicles: LaunchedNode) -> Sequence[LaunchedNode]:
+    spaces = [it.namespace.removesuffix("/mavros") for it in vehicles]
+    return (*vehicles, *(publisher(it, frame_prefix=f"{it[1:]}/") for it in spaces))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "meet"),
+    [({}, {}, {"1"}), ({}, {"tgt_system": 1}, {"1"}), ({}, {"tgt_system": 2}, set()),
+     ({"tgt_system": 3}, {"tgt_system": 3}, {"3"}), ({"tgt_system": 1}, {"tgt_system": 2}, set())],
+)  # fmt: skip
+def test_two_vehicles_of_mavros_with_one_system_meet(
+    run: Graph, first: dict[str, int], second: dict[str, int], meet: set[str]
+) -> None:
+    """mavros_node.cpp: ``/uas%d`` of tgt_system, which is 1; router and UAS publish one topic each."""
+    made = run(*of_vehicles(mavros("/uav1", **first), mavros("/uav2", **second)))
+    found = [it for it in diagnose(made).findings if it.code == "MG320"]
+    topics = {name for it in found for name in it.names}
+    assert topics == {f"/uas{it}/mavlink_{end}" for it in meet for end in ("source", "sink")}
+
+
+def test_mavros_plugins_are_in_the_namespace_of_their_process(run: Graph) -> None:
+    """plugin.hpp makes a node for each; ``__ns`` is for all nodes of a process (rcl node.c)."""
+    found = {(it.role, it.name) for it in run(mavros("/uav1")).ends}
+    assert found >= {
+        ("publishes", "/uav1/mavros/state"),
+        ("publishes", "/uav1/mavros/local_position/pose"),
+        ("subscribes", "/uav1/mavros/setpoint_velocity/cmd_vel"),
+        ("serves", "/uav1/mavros/cmd/arming"),
+    }
+
+
+def test_one_vehicle_has_one_mavros(run: Graph) -> None:
+    """mavconn opens ``fcu_url``: a serial port or a bound UDP port."""
+    urls = [{"fcu_url": "udp://:14540@", "tgt_system": it} for it in (1, 2)]
+    other = {"fcu_url": "udp://:14541@", "tgt_system": 2}
+    assert "MB412" in codes(
+        run(*of_vehicles(mavros("/uav1", **urls[0]), mavros("/uav2", **urls[1])))
+    )
+    assert "MB412" not in codes(
+        run(*of_vehicles(mavros("/uav1", **urls[0]), mavros("/uav2", **other)))
+    )

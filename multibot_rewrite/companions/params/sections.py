@@ -173,7 +173,23 @@ def identify_sections(
     """The sections with their known nodes, and the names these run under."""
     found = list(found)
     types = controller_types(found)
-    return [_section(it, context, known, types) for it in found]
+    made = [_section(it, context, known, types) for it in found]
+    packages = {it.node.package for it in made if it.node and _is_by_words(it, known)}
+    return [it._replace(node=None) if _is_of(packages, it) else it for it in made]
+
+
+def _is_by_words(it: ParamSection, known: KnownNodes) -> bool:
+    """Is a section for a node in any namespace known by its parameters alone?"""
+    by_name = it.path.rpartition("/")[2] in known.names
+    return it.wild and it.node is not None and not by_name and not it.node.facts.types
+
+
+def _is_of(packages: Collection[str], it: ParamSection) -> bool:
+    """Is a known node only called like a node of the packages that the file is for? A name says less
+    than parameters: the plugins of mavros are called camera and imu."""
+    if not packages or not it.wild or it.node is None or it.node.package in packages:
+        return False
+    return all(name not in it.node.params for name, _ in flattened(it.body))
 
 
 def _section(
