@@ -139,3 +139,154 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
 def test_what_is_other_than_planned_and_why(lines: str, said: list[str]) -> None:
     plan, graph = read_example(lines)
     assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said
+
+
+AMCL = "as planned: /robot1/amcl\nas planned: /robot2/amcl\n"
+HAS = AMCL + "planned: parameter {} of /robot1/amcl: {}\nrunning: /robot1/amcl has {} {}\n"
+SET = "planned: parameter a of /robot2/amcl: {}\n"
+CHANGE = "change it, or states of the plan"
+LIDAR = "planned: host of /robot{0}/lidar: {1}\nrunning: /robot{0}/lidar on machine {2}\n"
+CAMERA = LIDAR.replace("lidar", "camera")
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (HAS.format("a", "x", "a", "x"), []),
+        (HAS.format("a", "1", "a", "2"), [f"MG132 a is 2, planned is 1; {CHANGE}"]),
+        (HAS.format("a", "1", "a", "true"), [f"MG132 a is true, planned is 1; {CHANGE}"]),
+        (HAS.format("a", "false", "a", "0"), [f"MG132 a is 0, planned is false; {CHANGE}"]),
+        # It does not have the parameter: not known.
+        (HAS.format("a", "x", "b", "y"), []),
+        (
+            HAS.format("a", "x", "a", "y") + SET.format("y"),
+            [f"MG132 a is \"y\", planned is \"x\"; has it the parameters of robot2? {CHANGE}"],
+        ),
+        (
+            HAS.format("a", "x", "a", "y") + SET.format("z"),
+            [f"MG132 a is \"y\", planned is \"x\"; {CHANGE}"],
+        ),
+        (LIDAR.format(1, "a", 1) + CAMERA.format(1, "a", 1), []),
+        (LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 2), []),
+        (
+            LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 1),
+            ["MG133 hosts a, b are one machine; is this a simulation? Then leave out host"],
+        ),
+        (
+            LIDAR.format(1, "a", 1) + LIDAR.format(2, "a", 1) + CAMERA.format(1, "a", 2),
+            ["MG133 not on a, where /robot1/lidar, /robot2/lidar runs: /robot1/camera; start it"
+             " there, or change host in the plan"],
+        ),
+        (
+            "planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is inactive",
+            ["MG511 is inactive, planned is active; ros2 lifecycle get /robot1/amcl; see the log of"
+             " its lifecycle manager"],
+        ),
+        ("planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is active", []),
+        ("planned: state of /robot1/amcl: active\n" + AMCL, []),
+    ],
+)  # fmt: skip
+def test_states_parameters_and_machines(lines: str, said: list[str]) -> None:
+    plan, graph = read_example(lines)
+    found = [it for it in check(plan, graph) if it.code in ("MG511", "MG132", "MG133")]
+    assert [f"{it.code} {it.message}; {it.hint}" for it in found] == said
+
+
+@pytest.mark.parametrize(("value", "count"), [("1.0", 0), ("1", 0), ("1.5", 1), ("true", 1)])
+def test_people_write_a_whole_number_either_way(value: str, count: int) -> None:
+    plan, graph = read_example(HAS.format("a", "1", "a", "1"))
+    (it,) = graph.parameters
+    graph = graph._replace(parameters=(it._replace(value=value),))
+    assert [it.code for it in check(plan, graph)].count("MG132") == count
+
+
+NODES = "as planned: /robot1/a\nas planned: /robot2/a\n"
+USES = "running: /robot1/a {} {} {}\n"
+NOT_SHARED = ", and is not in shared_topics: robots that do the same use one topic"
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (USES.format("publishes", "/robot1/x", TEXT), []),
+        (
+            USES.format("publishes", "/x", TEXT),
+            [f"MG103 uses /x, which is not a name of robot1{NOT_SHARED}; an absolute name in its"
+             " code or parameters; pass /x:=/robot1/x with --ros-args -r /x:=/robot1/x, or with"
+             " remappings=[('/x', '/robot1/x')] in the launch file"],
+        ),
+        ("planned: shared topic /x\n" + USES.format("publishes", "/x", TEXT), []),
+        # Everybody's.
+        (USES.format("publishes", "/rosout", "rcl_interfaces/msg/Log"), []),
+        (
+            USES.format("publishes", "/robot2/x", TEXT),
+            ["publishes /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
+             " robot2"],
+        ),
+        (
+            USES.format("subscribes", "/robot2/x", TEXT),
+            ["subscribes to /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
+             " robot2"],
+        ),
+        (
+            USES.format("calls", "/robot2/x", "std_srvs/srv/Trigger"),
+            ["has a client for /robot2/x, a name of robot2; a remap rule or parameter of robot1"
+             " names robot2"],
+        ),
+        (
+            f"planned: /robot1/a publishes /robot1/x {TEXT} as /x\n"
+            + USES.format("publishes", "/x", TEXT),
+            [f"uses /x, which is not a name of robot1{NOT_SHARED}; the remap rule /x:=x is not"
+             " applied"],
+        ),
+    ],
+)  # fmt: skip
+def test_names_of_the_wrong_robot(lines: str, said: list[str]) -> None:
+    plan, graph = read_example(NODES + lines)
+    found = [it for it in check(plan, graph) if "name" in it.message]
+    assert [f"{it.message}; {it.hint}" for it in found] == [it.split("MG103 ")[-1] for it in said]
+
+
+def test_a_name_that_the_plan_has_for_several_robots() -> None:
+    line = f"as planned: /robot{{}}/a publishes /x {TEXT}"
+    plan, graph = read_example("\n".join(line.format(it) for it in (1, 2)))
+    cause = "no remap rule changes it: set the node's parameter, or add it to shared_topics"
+    said = "uses /x, which the plan has for several robots: robot1, robot2"
+    found = [it for it in check(plan, graph) if it.message == said]
+    assert [(it.node, it.hint) for it in found] == [("/robot1/a", cause), ("/robot2/a", cause)]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("/scan", "/robot1/scan, /robot2/scan"),
+        # Of a robot that is called otherwise.
+        ("/bot1/scan", "/robot1/scan, /robot2/scan"),
+        ("/scan/bot1", "/robot1/scan, /robot2/scan"),
+        ("/odom", ""),
+        ("/robot1/scan", ""),
+        ("/shared", ""),
+        ("/rosout", ""),
+        # A service is no topic.
+        ("/srv", ""),
+    ],
+)
+def test_a_topic_of_no_robot_where_no_nodes_are_known(name: str, meant: str) -> None:
+    line = f"planned: /robot{{0}}/a publishes /robot{{0}}/scan {TEXT}\n"
+    line += "planned: /robot{0}/a serves /robot{0}/srv std_srvs/srv/Trigger\n"
+    plan, graph = read_example(
+        f"{line.format(1)}{line.format(2)}planned: shared topic /shared\n"
+        f"running: /x publishes {name} {TEXT}"
+    )
+    ends = tuple(it._replace(node="") for it in graph.ends)
+    found = check(plan, graph._replace(nodes=(), ends=ends))
+    cause = "start its node in its robot's namespace, with the rules of multibot plan"
+    said = [f"{it.message}; {it.hint}" for it in found if "is of no robot" in it.message]
+    assert said == [f"{name} is of no robot; planned: {meant}; {cause}"] * bool(meant)
+
+
+def test_how_many_robots_use_a_name_of_none() -> None:
+    lines = NODES + USES.format("publishes", "/x", TEXT)
+    two = lines + USES.format("subscribes", "/x", TEXT).replace("robot1", "robot2")
+    said = {it.message for it in check(*read_example(two)) if "which is not" in it.message}
+    assert said == {f"uses /x, which is not a name of robot{it}: 2 robots use it" for it in (1, 2)}

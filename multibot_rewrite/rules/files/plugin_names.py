@@ -115,7 +115,7 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     package, _, last = canonical(name).partition("::")
     if package in packages():
         # Whoever writes a class of his own may put it into the namespace of a package.
-        slip = _slip(last, [it for it in map(canonical, there) if it.startswith(f"{package}::")])
+        slip = _slip(last, [it for it in there if canonical(it).startswith(f"{package}::")])
         hint = f"did you mean {slip}?" if slip else "see the plugins of its package"
         return "which its package does not have", hint, ERROR if slip else NOTE
     slip = nearest(package, packages(), MISTYPED)
@@ -125,7 +125,7 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
 
 def _slip(last: str, known: Sequence[str]) -> str:
     """The class whose own name differs by a letter or two."""
-    by_last = {it.rpartition("::")[2]: it for it in known}
+    by_last = {canonical(it).rpartition("::")[2]: it for it in known}
     return by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
 
 

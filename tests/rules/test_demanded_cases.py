@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What nodes demand of their parameters: each demand where it is not met, and beside it where it is.
+
+The places of the demands in the nodes' sources are in ``knowledge/demanded.schema``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.rules.settings import Settings
+
+MPPI = "controller_plugins: [M], M.plugin: 'nav2_mppi_controller::MPPIController', "
+DWB = "controller_plugins: [D], D.plugin: 'dwb_core::DWBLocalPlanner', "
+TYPE = "controller_manager {arm.type: "
+JTC = "joint_trajectory_controller {type: joint_trajectory_controller/JointTrajectoryController, "
+
+
+def said(
+    code: str, text: str, folder: Path, distro: str = "jazzy", hints: bool = False
+) -> list[str]:
+    """What is said of a file with a node in each line, its parameters in braces."""
+    lines = [line.partition(" ") for line in text.splitlines()]
+    file = folder / "a.yaml"
+    file.write_text("".join(f"{node}:\n  ros__parameters: {its}\n" for node, _, its in lines))
+    found = lint_file(str(file), Settings(select=(code,), distro=distro))
+    return [f"{it.level} {it.message}{f'; {it.hint}' * hints}" for it in found]
+
+
+CONTRADICTIONS = {
+    "amcl {initial_pose.x: 1.0, set_initial_pose: false}": (
+        "warning amcl: initial_pose.x has no effect with set_initial_pose: false"
+    ),
+    # The default, written down.
+    "amcl {initial_pose.x: 0.0, set_initial_pose: false}": (
+        "note amcl: initial_pose.x has no effect with set_initial_pose: false"
+    ),
+    "amcl {initial_pose.x: 1.0, set_initial_pose: true}": "",
+    # A launch file may set the other.
+    "amcl {initial_pose.x: 1.0}": "",
+    "ekf_filter_node {imu0: imu, odom0_config: [true]}": (
+        "warning ekf_filter_node: odom0_config has no effect without odom0"
+    ),
+    "ekf_filter_node {imu0: imu, odom0_config: []}": "",
+    "ekf_filter_node {odom0: odom, odom0_config: [true]}": "",
+    "ekf_filter_node {odom0: odom, odom0_relative: true, odom0_differential: true}": (
+        "warning ekf_filter_node: odom0_relative cannot be true with odom0_differential: true"
+    ),
+    "ekf_filter_node {odom0: odom, odom0_relative: false, odom0_differential: true}": "",
+    "ekf_filter_node {odom0: odom, odom0_relative: true, odom0_differential: false}": "",
+    "ekf_filter_node {odom0: odom, odom0_relative: true}": "",
+    "ekf_filter_node {odom0: odom, map_frame: odom}": (
+        "warning ekf_filter_node: map_frame is 'odom', as odom_frame is; they have to differ"
+    ),
+    "ekf_filter_node {odom0: odom, map_frame: a, odom_frame: a}": (
+        "warning ekf_filter_node: map_frame is 'a', as odom_frame is; they have to differ"
+    ),
+    "ekf_filter_node {odom0: odom, map_frame: odom, odom_frame: wheels}": "",
+    "ekf_filter_node {odom0: odom, world_frame: world}": (
+        "warning ekf_filter_node: world_frame is 'world', neither map_frame (map) nor odom_frame"
+        " (odom)"
+    ),
+    "ekf_filter_node {odom0: odom, world_frame: earth, map_frame: earth}": "",
+    "ekf_filter_node {odom0: odom, world_frame: map, map_frame: earth}": (
+        "warning ekf_filter_node: world_frame is 'map', neither map_frame (earth) nor odom_frame"
+        " (odom)"
+    ),
+    "bt_navigator {plugin_lib_names: [acme, nav2_wait_action_bt_node]}": (
+        "warning bt_navigator: plugin_lib_names lists nav2_wait_action_bt_node, which is loaded"
+        " without it, so it is registered twice"
+    ),
+    "bt_navigator {plugin_lib_names: [acme_bt_node, nav2_wait_bt_node_of_acme]}": "",
+    "amcl {odom_alpha1: 0.1}": "warning amcl: odom_alpha1 is not read; the node reads alpha1",
+    "amcl {odom_alpha1: 0.1, alpha1: 0.1}": "",
+    "controller_server {goal_checker_plugin: precise}": (
+        "warning controller_server: goal_checker_plugin is not read; the node reads"
+        " goal_checker_plugins"
+    ),
+    "controller_server {goal_checker_plugin: goal_checker}": "",
+    # A parameter cannot be a number and have others below it: the node ends.
+    "teleop_twist_joy_node {axis_linear: 1}": (
+        "error teleop_twist_joy_node: axis_linear is not read; the node reads axis_linear.x"
+    ),
+    "teleop_twist_joy_node {axis_linear.w: 1}": (
+        "warning teleop_twist_joy_node: axis_linear.w is for 'w'; there are x, y, z"
+    ),
+    "teleop_twist_joy_node {axis_linear.y: 1}": "",
+    JTC + "state_interfaces: [velocity]}": (
+        "warning joint_trajectory_controller: state_interfaces has 'velocity' without 'position'"
+    ),
+    JTC + "state_interfaces: [position, acceleration]}": (
+        "warning joint_trajectory_controller: state_interfaces has 'acceleration' without"
+        " 'velocity'"
+    ),
+    JTC + "state_interfaces: [position, velocity]}": "",
+    "slam_toolbox {map_start_at_dock: true, map_start_pose: [0.0, 0.0, 0.0]}": (
+        "warning slam_toolbox: map_start_at_dock cannot be true with map_start_pose"
+    ),
+    "slam_toolbox {map_start_at_dock: false, map_start_pose: [0.0, 0.0, 0.0]}": "",
+    "slam_toolbox {map_start_at_dock: true}": "",
+    "controller_server {" + MPPI + "controller_frequency: 10.0, M.model_dt: 0.05}": (
+        "error controller_server: M (nav2_mppi_controller::MPPIController): model_dt is 0.05,"
+        " below the period of controller_frequency (10.0)"
+    ),
+    # Another file may have the frequency: with the default of 20 Hz it is too short.
+    "controller_server {" + MPPI + "M.model_dt: 0.04}": (
+        "warning controller_server: M (nav2_mppi_controller::MPPIController): model_dt is 0.04,"
+        " below the period of controller_frequency (20.0)"
+    ),
+    "controller_server {" + MPPI + "M.model_dt: 0.05}": "",
+    "controller_server {" + MPPI + "controller_frequency: 30.0, M.model_dt: 0.05}": "",
+    "twist_mux {topics.a.topic: cmd, topics.b.topic: cmd}": (
+        "warning twist_mux: topics.b.topic is 'cmd', as topics.a.topic is"
+    ),
+    "twist_mux {topics.a.topic: cmd, topics.b.topic: joy}": "",
+    "twist_mux {topics.a.topic: cmd, locks.b.topic: cmd}": "",
+    "lifecycle_manager {node_names: [recoveries_server]}": (
+        "warning lifecycle_manager: node_names lists recoveries_server, which is called"
+        " behavior_server since Humble"
+    ),
+    "lifecycle_manager {node_names: [behavior_server]}": "",
+    "lifecycle_manager {node_names: [robot1/amcl]}": (
+        "warning lifecycle_manager: node_names lists robot1/amcl, and waits for a bond of that name"
+    ),
+    "lifecycle_manager {node_names: [robot1/amcl], bond_timeout: 4.0}": (
+        "warning lifecycle_manager: node_names lists robot1/amcl, and waits for a bond of that name"
+    ),
+    "lifecycle_manager {node_names: [robot1/amcl], bond_timeout: 0.0}": "",
+    "lifecycle_manager {node_names: [map_sever]}\nmap_server {yaml_filename: a}": (
+        "warning lifecycle_manager: node_names has 'map_sever', and lacks 'map_server'"
+    ),
+    "lifecycle_manager {node_names: [map_sever, map_server]}\nmap_server {yaml_filename: a}": "",
+    "docking_server {dock_plugins: [a], a.plugin: x::Y, docks: [d], d.type: b}": (
+        "warning docking_server: d.type has 'b', which dock_plugins has not"
+    ),
+    "docking_server {dock_plugins: [a], a.plugin: x::Y, docks: [d], d.type: a}": "",
+    "docking_server {docks: [d], d.type: b}": "",
+    "amcl {odom_frame_id: map}": "warning amcl: global_frame_id and odom_frame_id are both 'map'",
+    "amcl {odom_frame_id: map, tf_broadcast: false}": "",
+    "amcl {odom_frame_id: map, global_frame_id: earth}": "",
+}
+
+
+@pytest.mark.parametrize("text", CONTRADICTIONS)
+def test_parameters_that_contradict_each_other(text: str, tmp_path: Path) -> None:
+    expected = CONTRADICTIONS[text]
+    assert said("MB894", text, tmp_path) == [expected] * bool(expected)
+
+
+WORDS = {
+    TYPE + "diff_drive_controller/DiffDriveControler}": (
+        "error controller_manager: arm.type is 'diff_drive_controller/DiffDriveControler', which"
+        " its package does not have; did you mean diff_drive_controller/DiffDriveController?"
+    ),
+    # An own class in the namespace of a package.
+    TYPE + "diff_drive_controller/AcmeDrive}": (
+        "note controller_manager: arm.type is 'diff_drive_controller/AcmeDrive', which its package"
+        " does not have; see the plugins of its package"
+    ),
+    TYPE + "diff_drive_controler/DiffDriveController}": (
+        "error controller_manager: arm.type is 'diff_drive_controler/DiffDriveController', which"
+        " no known package has; did you mean diff_drive_controller/DiffDriveController?"
+    ),
+    TYPE + "acme/DiffDriveController}": "",
+    TYPE + "'diff_drive_controller::DiffDriveController'}": (
+        "warning controller_manager: arm.type is 'diff_drive_controller::DiffDriveController',"
+        " which is written with other signs in jazzy; write diff_drive_controller/DiffDriveController"
+    ),
+    TYPE + "joint_state_controller/JointStateController}": (
+        "error controller_manager: arm.type is 'joint_state_controller/JointStateController',"
+        " which ROS 2 has under another name; write joint_state_broadcaster/JointStateBroadcaster"
+    ),
+    "controller_server {controller_plugins: [F], F.plugin: 'nav2_smac_planner::SmacPlanner2D'}": (
+        "error controller_server: F.plugin is 'nav2_smac_planner::SmacPlanner2D', which is a"
+        " nav2_core::GlobalPlanner, not a nav2_core::Controller; name a class of that kind"
+    ),
+    "controller_server {" + DWB + "D.critics: [GoalDits]}": (
+        "error controller_server: D (dwb_core::DWBLocalPlanner): no critic of dwb_critics is called"
+        " 'GoalDits'; did you mean GoalDist?"
+    ),
+    "controller_server {" + DWB + "D.critics: [GoalDist, GoalAlignCritic, 'acme::GoalDits']}": "",
+    "controller_server {" + DWB + "D.critics: [GoalDits], D.GoalDits.class: acme::A}": "",
+    "controller_server {" + DWB + "D.default_critic_namespaces: [a], D.critics: [GoalDits]}": "",
+    "controller_server {" + MPPI + "M.critics: [CostCritc]}": (
+        "error controller_server: M (nav2_mppi_controller::MPPIController): no critic of"
+        " mppi::critics is called 'CostCritc'; did you mean CostCritic?"
+    ),
+    "controller_server {" + MPPI + "M.critics: [CostCritic]}": "",
+}
+
+
+@pytest.mark.parametrize("text", WORDS)
+def test_classes_of_plugins(text: str, tmp_path: Path) -> None:
+    assert said("MB124", text, tmp_path, hints=True) == [WORDS[text]] * bool(WORDS[text])
+
+
+MISSING = {
+    "twist_mux {use_stamped: true, topics.a: {topic: cmd, timeout: 0.5}}": (
+        "warning twist_mux: topics.a.priority is missing"
+    ),
+    "twist_mux {use_stamped: true, topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
+    "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": (
+        "warning twist_mux: use_stamped is missing"
+    ),
+    "ekf_filter_node {frequency: 30.0}": (
+        "warning ekf_filter_node: there is none of odom0, pose0, twist0, imu0"
+    ),
+    "ekf_filter_node {twist0: twist}": "",
+    "controller_server {controller_plugins: [Follow]}": (
+        "warning controller_server: controller_plugins has Follow, which has no plugin"
+    ),
+    # The default of the list has a default class.
+    "controller_server {controller_plugins: [FollowPath]}": "",
+    "collision_monitor {observation_sources: [scan]}": (
+        "warning collision_monitor: observation_sources has scan, which has no parameters"
+    ),
+    "collision_monitor {observation_sources: [scan], scan.topic: scan}": "",
+    "controller_manager {arm: {params_file: a.yaml}}": (
+        "warning controller_manager: controller arm has no type"
+    ),
+    "r/controller_manager {arm: {params_file: a.yaml}}": (
+        "warning r/controller_manager: controller arm has no type"
+    ),
+    "controller_manager {arm: {params_file: a.yaml}}\nr/arm {type: acme/Arm}": "",
+    "controller_manager {arm: {type: acme/Arm}}": "",
+    "controller_manager {arm: {plugin: acme/Arm}}": "",
+    "controller_manager {hardware_components_initial_state: {inactive: [arm]}}": "",
+    "acme_manager {arm: {params_file: a.yaml}}": "",
+}
+
+
+@pytest.mark.parametrize("text", MISSING)
+def test_parameters_that_are_missing(text: str, tmp_path: Path) -> None:
+    assert said("MB115", text, tmp_path) == [MISSING[text]] * bool(MISSING[text])
+
+
+BOUNDS = {
+    "amcl {min_particles: 500, max_particles: 100}": (
+        "warning amcl: min_particles is 500, above max_particles (100)"
+    ),
+    "amcl {min_particles: 100, max_particles: 100}": "",
+    # No limit, or that of the sensor.
+    "amcl {laser_min_range: 0.1, laser_max_range: -1.0}": "",
+    "amcl {laser_min_range: 0.1, laser_max_range: 0.0}": (
+        "warning amcl: laser_min_range is 0.1, above laser_max_range (0.0)"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", BOUNDS)
+def test_ends_of_a_range(text: str, tmp_path: Path) -> None:
+    assert said("MB125", text, tmp_path) == [BOUNDS[text]] * bool(BOUNDS[text])
+
+
+@pytest.mark.parametrize(
+    ("distro", "expected"),
+    [
+        ("jazzy", []),
+        (
+            "lyrical",
+            ["warning controller_manager: arm.type is 'effort_controllers/GripperActionController',"
+             " which is not in lyrical, only in humble, jazzy"],
+        ),
+    ],
+)  # fmt: skip
+def test_a_class_of_other_releases(distro: str, expected: list[str], tmp_path: Path) -> None:
+    text = TYPE + "effort_controllers/GripperActionController}"
+    assert said("MB124", text, tmp_path, distro) == expected
+
+
+def test_a_node_of_another_name_since_humble(tmp_path: Path) -> None:
+    assert said("MB110", "recoveries_server {a: 1}", tmp_path) == [
+        "warning no supported release has a node recoveries_server: it is called behavior_server"
+    ]

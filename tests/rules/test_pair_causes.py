@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was probably meant, and what is to do about it: names beside names, and the whole sentences."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from graph_examples import read_example
+
+from multibot_rewrite.rules.pair.causes import (
+    caused,
+    how_to_pass,
+    how_to_remap,
+    name_without_rules,
+    names_without_rules,
+    remap_rule,
+    tf_rule,
+    why_not_remapped,
+    why_other_name,
+)
+from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
+from multibot_rewrite.rules.pair.name_variants import name_variants
+from multibot_rewrite.rules.pair.similar_names import probable_matches, similar
+from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
+from multibot_rewrite.system.index import Index, index
+from multibot_rewrite.system.ownership import whose_by_plan
+
+SCAN = "/robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan"
+PLACE = "arm.urdf:12"
+
+
+def plan_of(lines: str, **changes: Any) -> Index:
+    """The plan of an example, with what is changed in the node of its first line."""
+    plan, _ = read_example("\n".join(f"planned: {it}" for it in lines.splitlines()))
+    name = lines.partition(" ")[0]
+    nodes = tuple(it._replace(**changes) if it.name == name else it for it in plan.nodes)
+    plan = plan._replace(nodes=nodes)
+    return index(plan, whose_by_plan(plan))
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "found"),
+    [
+        ("/scan", ["/scan_raw", "/odom"], "/scan_raw"),
+        ("/scan_raw", ["/scan", "/odom"], "/scan"),
+        # The shorter step of two.
+        ("/scan", ["/scan_filtered", "/scan_raw"], "/scan_raw"),
+        ("/scna", ["/odom", "/scan"], "/scan"),
+        ("/scan", ["/odom"], ""),
+        ("/scan", [], ""),
+        ("/scan", ["/scan_raw", *(f"/other{it}" for it in range(49))], "/scan_raw"),
+        # Of so many one is always like it.
+        ("/scan", ["/scan_raw", *(f"/other{it}" for it in range(50))], ""),
+    ],
+)
+def test_a_similar_name(name: str, known: list[str], found: str) -> None:
+    assert similar(name, known) == found
+
+
+@pytest.mark.parametrize(
+    ("others", "tools", "found"),
+    [
+        (["/lidar"], [], "/lidar"),
+        (["/robot_1/lidar"], [], "/robot_1/lidar"),
+        (["/Robot1/lidar"], [], "/Robot1/lidar"),
+        (["/robot1/lidar_node"], [], "/robot1/lidar_node"),
+        (["/robot1/lidra"], [], "/robot1/lidra"),
+        (["/robot2/lidar_node"], [], ""),
+        (["/robot1/camera"], [], ""),
+        # A tool may have the name itself, and no similar one.
+        ([], ["/lidar"], "/lidar"),
+        ([], ["/robot1/lidar_node"], ""),
+    ],
+)
+def test_the_node_that_a_missing_one_probably_is(
+    others: list[str], tools: list[str], found: str
+) -> None:
+    plan = plan_of(SCAN + "\n/robot2/lidar")
+    missing = {"/robot1/lidar": "robot1"}
+    matches = probable_matches(missing, [*others, *tools], others, plan.of_names)
+    assert matches == ({"/robot1/lidar": found} if found else {})
+
+
+def test_nothing_is_missing() -> None:
+    assert probable_matches({}, ["/lidar"], ["/lidar"], plan_of(SCAN).of_names) == {}
+
+
+def test_usual_wrong_names_of_a_frame() -> None:
+    found = {*name_variants("laser", "robot1_laser", "robot1")}
+    assert {"laser", "robot1/robot1_laser", "robot1_robot1_laser", "robot1_laser/robot1"} <= found
+    assert "laser" not in {*name_variants("laser", "laser", "robot1")}
+
+
+@pytest.mark.parametrize(
+    ("names", "found"),
+    [
+        (["x/base", "x/laser"], {"x/base": "x/", "x/laser": "x/"}),
+        # One alone may be a frame of its own, with a slash as well.
+        (["x/base"], {}),
+        (["front_laser"], {}),
+        (["x_base", "x_laser"], {"x_base": "x_", "x_laser": "x_"}),
+        (["x_base", "y_laser"], {}),
+        (["base", "other"], {}),
+        # The longest: front_laser behind x/.
+        (["x/front_laser", "x/base"], {"x/front_laser": "x/", "x/base": "x/"}),
+    ],
+)
+def test_a_prefix_in_front_of_planned_frames(names: list[str], found: dict[str, str]) -> None:
+    plan = plan_of(SCAN + "\nframes of robot1 on /tf: base, laser, front_laser, tool")
+    assert added_prefixes(plan.declared["robot1"], names) == found
+
+
+def test_of_a_robot_with_many_frames_half_have_the_prefix() -> None:
+    plan = plan_of(SCAN + "\nframes of robot1 on /tf: a, b, c, d, e, f")
+    robot = plan.declared["robot1"]
+    assert added_prefixes(robot, ["x_a", "x_b"]) == {}
+    # With a slash it is no frame of its own.
+    assert added_prefixes(robot, ["x/a", "x/b"]) == {"x/a": "x/", "x/b": "x/"}
+    assert added_prefixes(robot, ["x_a", "x_b", "x_c"]) == dict.fromkeys(
+        ("x_a", "x_b", "x_c"), "x_"
+    )
+
+
+def test_whose_frame_it_is_behind_a_prefix() -> None:
+    of_frames = plan_of(SCAN + "\nframes of robot1 on /tf: robot1_tool").of_frames
+    assert robot_behind_prefix(of_frames, "x_robot1_tool") == "robot1"
+    assert robot_behind_prefix(of_frames, "robot1_tool") == ""
+    assert robot_behind_prefix(of_frames, "x_tool") == ""
+
+
+@pytest.mark.parametrize(
+    ("place", "file", "line"),
+    [("a.urdf:12", "a.urdf", 12), ("stack nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
+)
+def test_a_cause_has_its_place(place: str, file: str, line: int) -> None:
+    assert caused("why", place) == ("why", file, line)
+
+
+@pytest.mark.parametrize(
+    ("code", "without", "rule"),
+    [
+        ("/scan", "/scan", "/scan:=scan"),
+        ("scan", "/robot1/scan", ""),
+        ("laser", "/robot1/laser", "laser:=scan"),
+        ("~/scan", "/robot1/lidar/scan", "~/scan:=scan"),
+    ],
+)
+def test_the_rule_for_a_name_in_the_code(code: str, without: str, rule: str) -> None:
+    plan = plan_of(SCAN)
+    end = plan.system.ends[0]._replace(code_name=code)
+    assert (name_without_rules(end), remap_rule(end)) == (without, rule)
+    pass_it = f"; pass it with --ros-args -r {rule}, or with remappings=[{(code, 'scan')}] in the"
+    assert how_to_remap(plan, end) == (f"{pass_it} launch file" if rule else "")
+    why = f"the remap rule {rule} is not applied"
+    other = "another remap rule, or an absolute name in its parameters, changes it"
+    assert why_not_remapped(plan, end) == (why if rule else other, "", 0)
+
+
+@pytest.mark.parametrize(
+    ("node", "code", "names"),
+    [
+        ("/robot1/lidar", "~/scan", ("/robot1/lidar/scan", "/scan", "/scan")),
+        ("/robot1/lidar", "laser", ("/robot1/laser", "/laser", "/scan")),
+        # A node of no robot, with a name of one.
+        ("/server", "laser", ("/laser", "/laser", "/scan")),
+        ("/robot1/lidar", "scan", ("/scan", "/scan")),
+    ],
+)
+def test_names_of_a_node_that_is_given_no_rule(
+    node: str, code: str, names: tuple[str, ...]
+) -> None:
+    plan = plan_of(f"{node} publishes /robot1/scan\n/robot1/driver")
+    end = plan.system.ends[0]._replace(code_name=code)
+    assert names_without_rules(plan, end) == names
+
+
+@pytest.mark.parametrize(
+    ("code", "hint"),
+    [
+        ("/scan", f"no remap rule /scan:=scan of plugin lidar is applied, see {PLACE}"),
+        ("scan", f"plugin lidar has no namespace or remap rule for it, see {PLACE}"),
+    ],
+)
+def test_a_rule_that_a_plugin_should_have(code: str, hint: str) -> None:
+    plan = plan_of(SCAN, plugin=PLACE)
+    end = plan.system.ends[0]._replace(code_name=code)
+    assert why_not_remapped(plan, end) == (hint, "arm.urdf", 12)
+    assert how_to_remap(plan, end) == ""
+
+
+PAIR = "remappings=[('/a', 'b')]"
+ARGS = f"--ros-args -r /a:=b, or with {PAIR} in the launch file"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, f"it with {ARGS}"),
+        (
+            {"way": COMPONENT},
+            f"it where it is loaded into its container: {PAIR} of its ComposableNode",
+        ),
+        ({"way": SPAWNER}, 'it to its spawner: --controller-ros-args "-r /a:=b"'),
+        (
+            {"way": PLUGIN, "taker": "gazebo"},
+            "it in the description: <remapping>/a:=b</remapping> of the plugin of gazebo",
+        ),
+        (
+            {"way": HOST, "taker": "/robot1/host"},
+            "it to /robot1/host, whose process it is in: --ros-args -r lidar:/a:=b, or with"
+            " remappings=[('lidar:/a', 'b')] in the launch file",
+        ),
+    ],
+)
+def test_where_a_rule_stands(changes: dict[str, str], said: str) -> None:
+    plan = plan_of(SCAN, **changes)
+    assert how_to_pass(plan, "/robot1/lidar", "/a:=b", "it") == said
+    assert how_to_pass(plan, "/robot1/lidar", "/a:=b") == said.replace("it", "/a:=b", 1)
+
+
+NO_SPACE = "/lidar is running: it was started without the robot's namespace; use"
+NO_NAME = "/lidar is running: it was started without the robot's name; use"
+
+
+@pytest.mark.parametrize(
+    ("node", "match", "changes", "hint"),
+    [
+        (
+            "/robot1/lidar",
+            "/lidar",
+            {},
+            f"{NO_SPACE} namespace='robot1' in the launch file, or --ros-args -r __ns:=/robot1",
+        ),
+        (
+            "/robot1/lidar",
+            "/lidar",
+            {"way": COMPONENT},
+            f"{NO_SPACE} namespace='/robot1' of its ComposableNode",
+        ),
+        ("/lidar_robot1", "/lidar", {}, f"{NO_NAME} --ros-args -r __node:=lidar_robot1"),
+        (
+            "/lidar_robot1",
+            "/lidar",
+            {"way": COMPONENT},
+            f"{NO_NAME} name='lidar_robot1' of its ComposableNode",
+        ),
+        (
+            "/robot1/lidar",
+            "/robot1/laser",
+            {},
+            "/robot1/laser is running; is it this node under another name?",
+        ),
+        (
+            "/robot1/lidar",
+            "/lidar",
+            {"way": HOST, "taker": "/robot1/host"},
+            "/lidar is running: /robot1/host makes it; start that as the plan says",
+        ),
+        (
+            "/robot1/lidar",
+            "/lidar",
+            {"plugin": PLACE},
+            f"/lidar is running: plugin lidar has no namespace, see {PLACE}",
+        ),
+        (
+            "/lidar_robot1",
+            "/lidar",
+            {"plugin": PLACE},
+            f"/lidar is running: plugin lidar has no separate name for each robot, see {PLACE}",
+        ),
+    ],
+)
+def test_why_a_node_has_another_name(
+    node: str, match: str, changes: dict[str, str], hint: str
+) -> None:
+    plan = plan_of(f"{node} publishes /robot1/scan", **changes)
+    place = ("arm.urdf", 12) if "plugin" in changes else ("", 0)
+    assert why_other_name(plan, node, match) == (hint, *place)
+
+
+@pytest.mark.parametrize(
+    ("node", "topic", "rule"),
+    [
+        ("/robot1/lidar", "/robot1/tf", "/tf:=tf"),
+        ("/lidar_robot1", "/robot1/tf", "/tf:=/robot1/tf"),
+        ("/robot1/lidar", "/tf", "/tf:=/tf"),
+    ],
+)
+def test_the_rule_for_tf(node: str, topic: str, rule: str) -> None:
+    plan = plan_of(f"{node} publishes /robot1/scan\nframes of robot1 on {topic}: robot1/base")
+    robot = plan.declared["robot1"]
+    assert tf_rule(plan, robot, "tf") == rule
+    assert tf_rule(plan, robot, "tf_static") == rule.replace("tf", "tf_static")
