@@ -116,7 +116,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("--undo",), "write the command first, for example: multibot build --undo"),
         (
             ("--form=json",),
-            "write the command first, for example: multibot check-launch --form=json",
+            "write the command first, for example: multibot inspect --form=json",
         ),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
