@@ -19,6 +19,7 @@ CLOCKS = {
     "live/test_frame_ids.py",
     "live/test_snapshot.py",
     "producers/test_observing.py",
+    "producers/test_rclpy_calls.py",
     "support/walk.py",
 }
 
