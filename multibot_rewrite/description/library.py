@@ -291,10 +291,10 @@ def explain(
     from multibot_rewrite.description.reports.explain import explain_line
     from multibot_rewrite.description.reports.explain_xacro import explain_source
 
+    given = (naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+
     def explaining(whole: Source) -> tuple[Document, OnLine]:
-        job = read_job(
-            whole, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
-        )
+        job = read_job(whole, *given, release=release)
         document = read_document(job.data, job.file)
         inventory = collect(document, job.tree, job.urdf_declarations, naming.read_as)
         pipeline.check_urdf(inventory, job.urdf_declarations)
@@ -302,8 +302,8 @@ def explain(
 
     if isinstance(source, bytes) or not is_xacro(os.fspath(source)):
         return explaining(source)[1](line)
-    given = filled(xacro_args or {}, robot)
-    return explain_source(os.fspath(source), line, given, trust, explaining)
+    arguments = filled(xacro_args or {}, robot)
+    return explain_source(os.fspath(source), line, arguments, trust, explaining)
 
 
 @checked

@@ -43,24 +43,12 @@ _PARAMETER: Schema = {"type": ["string", "number", "boolean"]}
 
 def schema() -> Schema:
     """JSON schema, draft 2020-12."""
-    nodes = _by_name(_ROWS)
-    robot = {
-        "tf": _NAME,
-        "frames": _TEXTS,
-        "nodes": {**nodes, "type": ["object", "null"]},
-        "other_frames": _said(_TEXTS, "frames that may come besides"),
-        "optional": _said(_TEXTS, "nodes that may be missing"),
-        "spelled": _said(_TEXT, "what stands for it in its frames, where that is not its name"),
-    }
     known = {
         "layout": _TEXT,
-        "shared_nodes": {"anyOf": [nodes, _TEXTS, {"type": "null"}]},
+        "shared_nodes": {"anyOf": [_by_name(_ROWS), _TEXTS, {"type": "null"}]},
         "shared_topics": _TEXTS,
         "shared_frames": _TEXTS,
-        "robots": {
-            "type": "object",
-            "additionalProperties": _keys(robot, ROBOT_KEYS, OPTIONAL_ROBOT_KEYS),
-        },
+        "robots": {"type": "object", "additionalProperties": _robot()},
         "distro": {"enum": ["", *RELEASES]},
         "ignored_nodes": _said(_TEXTS, "patterns of nodes that may come and go"),
         DOMAINS: _said(
@@ -83,6 +71,18 @@ def schema() -> Schema:
         "title": "The planned graph of a fleet: multibot plan, multibot check",
         **_keys(known, KEYS, OPTIONAL_KEYS),
     }
+
+
+def _robot() -> Schema:
+    known = {
+        "tf": _NAME,
+        "frames": _TEXTS,
+        "nodes": {**_by_name(_ROWS), "type": ["object", "null"]},
+        "other_frames": _said(_TEXTS, "frames that may come besides"),
+        "optional": _said(_TEXTS, "nodes that may be missing"),
+        "spelled": _said(_TEXT, "what stands for it in its frames, where that is not its name"),
+    }
+    return _keys(known, ROBOT_KEYS, OPTIONAL_ROBOT_KEYS)
 
 
 def _keys(known: Schema, needed: Iterable[str], optional: Iterable[str] = ()) -> Schema:

@@ -7,7 +7,7 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
@@ -119,14 +119,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
-        nodes = " and ".join(it or "its description" for it in locators)
-        says = "already says" if len(locators) == 1 else "already say"
-        what = f"its pose is not published, because {nodes} {says} where it is"
-        starts = robot.spec.simulator not in ("", REAL)
-        hint = "remove the pose: a second parent would make the frame jump"
-        hint = "the simulator starts it there, which is enough" if starts else hint
-        told = _finding(LOCALISED_ALREADY, robot, what, hint)
-        yield told._replace(level=NOTE if starts else WARNING)
+        yield _localised(robot, locators)
         return
     if held := [it for it in sent[""] if _holds(it, naming)]:
         if pose != ORIGIN:
@@ -146,6 +139,17 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     if local:
         yield InitialPose(name, AMCL, initial_pose(pose))
     yield static_transform(name, world, roots[0], ORIGIN if local else pose, naming)
+
+
+def _localised(robot: RewrittenRobot, locators: Sequence[str]) -> Finding:
+    nodes = " and ".join(it or "its description" for it in locators)
+    says = "already says" if len(locators) == 1 else "already say"
+    what = f"its pose is not published, because {nodes} {says} where it is"
+    if robot.spec.simulator not in ("", REAL):
+        hint = "the simulator starts it there, which is enough"
+        return _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=NOTE)
+    hint = "remove the pose: a second parent would make the frame jump"
+    return _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=WARNING)
 
 
 def static_transform(

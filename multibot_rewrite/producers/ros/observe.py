@@ -185,12 +185,18 @@ def _wait_until_settled(
         still = SHORT_IDLE_SECONDS if quiet < assemble.QUIET_SECONDS else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != seen:
-            queried, known_ends = seen, view(session, cache)
-            ears.update(known_ends[1])
-            if request.shows:
-                session.tell(to_json(_snapshot(session, *known_ends, ears, (CHANGING, now, ()))))
+            queried = seen
+            _query(session, cache, ears, now)
         spent = time.thread_time() - began
     return "", clock, ()
+
+
+def _query(session: GraphSession, cache: queries.TopicCache, ears: Ears, now: float) -> None:
+    """Ask for all that the graph has, listen to it, and show it where somebody watches."""
+    known, ends = view(session, cache)
+    ears.update(ends)
+    if session.request.shows:
+        session.tell(to_json(_snapshot(session, known, ends, ears, (CHANGING, now, ()))))
 
 
 class _Losses:
