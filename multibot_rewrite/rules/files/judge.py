@@ -27,6 +27,7 @@ from multibot_rewrite.rules.files import (
     joystick,
     keys,
     limits,
+    missing,
     moveit,
     names,
     plugin_names,
@@ -90,7 +91,7 @@ SHARED: tuple[Rule, ...] = (
     shape.not_read._replace(
         check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
     ),
-    shape.missing._replace(check=_each(plugin_names.without_plugin, demands.missing_parameters)),
+    shape.missing._replace(check=_each(plugin_names.without_plugin, missing.missing_parameters)),
     values.unreadable_value._replace(
         check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
         level=WARNING,
