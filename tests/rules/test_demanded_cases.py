@@ -189,6 +189,11 @@ WORDS = {
         " mppi::critics is called 'CostCritc'; did you mean CostCritic?"
     ),
     "controller_server {" + MPPI + "M.critics: [CostCritic]}": "",
+    # The package is what is before the first sign.
+    "arm {type: diff_drive_controller/drive/DiffDriveController}": (
+        "error arm: type is 'diff_drive_controller/drive/DiffDriveController', which its package"
+        " does not have; did you mean diff_drive_controller/DiffDriveController?"
+    ),
 }
 
 
