@@ -63,15 +63,18 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
         own = section.whole.get(TYPE) if section.node is None and not section.at else None
         # A controller may say its class in its own section; whose class is known is a known node.
         class_ = str(own.value) if own else ""
-        if own and canonical(class_).partition("::")[0] in _controller_packages():
+        if own and _package(class_) in _controller_packages():
             where = f"{section.title}: {TYPE}"
             yield from _of_class(own.node, where, class_, _CONTROLLER, release)
 
 
 @cache
 def _controller_packages() -> frozenset[str]:
-    known = plugin_bases()[_CONTROLLER].classes
-    return frozenset(canonical(it).partition("::")[0] for it in known)
+    return frozenset(map(_package, plugin_bases()[_CONTROLLER].classes))
+
+
+def _package(class_: str) -> str:
+    return canonical(class_).partition("::")[0]
 
 
 def _plugins(it: Demand) -> Iterator[Given]:
