@@ -41,13 +41,11 @@ from multibot_rewrite.rules.files.bridges import (
     not_converted,
 )
 from multibot_rewrite.rules.files.judge import judged
-from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.settings import LEFT_OUT, Settings
 from multibot_rewrite.system.records import NOWHERE, Place
 
 # What a program refuses: values, what is missing, references.
 _REFUSED = ("MB11", "MB12", "MB2")
-# What Gazebo leaves out.
-_LEFT_OUT = ("MB603", "MB610")
 # What is wrong as soon as a second model has it, too.
 _AGAIN = "MB416"
 # What has no effect in this simulator and this ROS, and a joint that is not found there.
@@ -72,10 +70,10 @@ def named_findings(launched: Launched) -> list[Finding]:
 def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file = file_of(launched.graph, it.text)
-        codes = (*_REFUSED, *_LEFT_OUT, *_NO_EFFECT) if it.spawned else _REFUSED
+        codes = (*_REFUSED, *LEFT_OUT, *_NO_EFFECT) if it.spawned else _REFUSED
         settings = Settings(select=codes, distro=launched.release, simulated=it.spawned)
         for one in lint_data(file or "robot.urdf", it.text.encode(), settings):
-            sure = one.level == ERROR or (one.code in _LEFT_OUT and one.level == WARNING)
+            sure = one.level == ERROR or (one.code in LEFT_OUT and one.level == WARNING)
             if sure or one.code in _NO_EFFECT:
                 told = one if file else _at_launch(one, it.place)
                 yield told._replace(level=ERROR if sure else WARNING)

@@ -24,6 +24,8 @@ ROBOT = """\
   {more}
 </robot>
 """
+IGNITION = """<gazebo><plugin filename="ignition-gazebo-imu-system"
+    name="ignition::gazebo::systems::Imu"/></gazebo>"""
 DRIVE = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
     <left_joint>wheel_joint</left_joint><right_joint>wheel_joint</right_joint></plugin></gazebo>"""
 WHOLE = {"base": MASS, "wheel": MASS, "caster": "fixed", "seen": "base_link", "more": ""}
@@ -37,6 +39,16 @@ def ended(folder: Path, simulator: str, *command: str, **given: str) -> int:
     (folder / "fleet.yaml").write_text(f"{said}robots:\n{robots}")
     first, *words = command or ("build", "-o", str(folder / "out"))
     return main([first, str(folder / "fleet.yaml"), *words])
+
+
+@pytest.mark.parametrize(("release", "code"), [("lyrical", 1), ("jazzy", 0)])
+def test_a_system_that_gazebo_of_the_release_does_not_find_is_an_error(
+    release: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """gz-sim 10 takes no library of Ignition any more (its Migration.md)."""
+    assert ended(tmp_path, f"gazebo\ndistro: {release}", more=IGNITION) == code
+    said = "error: MB172 Gazebo of lyrical finds no 'ignition-gazebo-imu-system'"
+    assert (said in capsys.readouterr().err) == bool(code)
 
 
 @pytest.mark.more

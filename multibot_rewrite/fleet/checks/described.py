@@ -9,11 +9,7 @@ from collections.abc import Collection, Iterable, Iterator
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.rules.settings import Settings
-
-# What sdformat leaves out of a description (MB603, MB610) stops a simulated robot; anything else is as
-# the description came, and the build has not made it.
-_STOPPING = ("MB603", "MB610")
+from multibot_rewrite.rules.settings import LEFT_OUT, Settings
 
 
 def wrong_in_descriptions(
@@ -29,14 +25,14 @@ def wrong_in_descriptions(
     documents = {it.source.file: it for it in members}
     for file, it in documents.items():
         is_real = file in not_simulated - sure
-        weighed = () if is_real or not (file in sure or _is_for_gazebo(it)) else _STOPPING
+        weighed = () if is_real or not (file in sure or _is_for_gazebo(it)) else LEFT_OUT
         asked = Settings(
             vocabulary=vocabulary, distro=it.vocabulary.release, simulated=file in sure
         )
         for found in _linted(it, asked, weighed):
             if is_real and _is_for_a_simulator(it, found):
                 continue
-            stops = found.code in _STOPPING and file in sure
+            stops = found.code in LEFT_OUT and file in sure
             yield found if stops or found.level != ERROR else found._replace(level=WARNING)
 
 
@@ -50,14 +46,14 @@ def _linted(it: Member, settings: Settings, weighed: Collection[str]) -> Iterato
     found = [one for one in every if one.level == ERROR or one.code in weighed]
     told = {(one.code, one.message) for one in it.shared}
     for one in unsuppressed(found, {it.source.file: it.source.source}, settings):
-        is_asked = one.code in weighed or one.code not in _STOPPING
+        is_asked = one.code in weighed or one.code not in LEFT_OUT
         if is_asked and (one.code, one.message) not in told:
             yield one
 
 
 def _may_stop(rule: Rule) -> bool:
     """Can a finding of the rule be an error?"""
-    return rule.level == ERROR or rule.code in _STOPPING
+    return rule.level == ERROR or rule.code in LEFT_OUT
 
 
 def _is_for_gazebo(member: Member) -> bool:

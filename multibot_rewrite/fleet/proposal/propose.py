@@ -9,6 +9,8 @@ from functools import partial
 from math import ceil
 from typing import Any
 
+from lxml import etree
+
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.footprint import reach_of
@@ -334,17 +336,21 @@ def _is_simulated(it: Looked, wanted: Wanted) -> bool:
 
 
 def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice:
-    """The release that was asked for, else the one that has the robots' simulator, that their
-    repository names, or that has what the parameter files set."""
+    """The release that was asked for, else the one that has the robots' simulator and what they load,
+    that their repository names, or that has what the parameter files set."""
     if wanted.named:
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
-    said = {release_said("", b"", it.path) for it in robots if it.path}
+    said = {release_said("", _text_of(it), it.path) for it in robots if it.path}
     telling = [it for it in said if it.why] or [release_of_files(found.params)]
     if len(telling) == 1 and telling[0].why:
         return Choice(*telling[0])
     return Choice(wanted.release, "the newest long-term ROS release; name yours")
+
+
+def _text_of(it: Looked) -> bytes:
+    return b"" if it.root is None else etree.tostring(it.root)
 
 
 def propose(

@@ -71,6 +71,16 @@ def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
     assert "descriptions" not in capsys.readouterr().err
 
 
+def test_a_robot_of_ignition_is_for_the_release_that_finds_its_systems(tmp_path: Path) -> None:
+    plugin = '<gazebo><plugin filename="ignition-gazebo-imu-system" name="x"/></gazebo>'
+    inertia = "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+    body = f"<inertial><mass value='1'/>{inertia}</inertial>"
+    text = f'<robot name="digger"><link name="body">{body}</link>{plugin}</robot>'
+    (tmp_path / "digger.urdf").write_text(text)
+    assert taken(tmp_path)["distro"] == "humble"
+    assert "# It loads ignition-gazebo-imu-system\n" in (tmp_path / "fleet.yaml").read_text()
+
+
 @pytest.mark.more
 def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) -> None:
     """The command that is named is about the same folder, and answers the question."""

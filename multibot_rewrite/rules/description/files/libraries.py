@@ -131,7 +131,8 @@ def _is_own(subject: Subject, name: str, known: Iterable[str]) -> bool:
     "MB172",
     "library-of-ignition",
     WARNING,
-    what="A system of Gazebo is loaded by the name that it had in Ignition.",
+    what="A system of Gazebo is loaded by the name that it had in Ignition. It is an error where "
+    "Gazebo is chosen as the simulator.",
     why="Gazebo Jetty (Lyrical and later) no longer takes ignition-gazebo for gz-sim: it reports "
     "that it cannot find the library.",
     fix="Write gz-sim, and gz::sim::systems for the class: all releases since Jazzy read it.",
@@ -150,7 +151,8 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         message = f"Gazebo of {release} finds no {found[0].get('filename', '')!r}{more}"
         hint = f"write {first}, or name the release that the description is for with --distro"
-        yield Problem(found[0], message, "filename", hint)
+        level = ERROR if subject.settings.simulated else ""
+        yield Problem(found[0], message, "filename", hint, level=level)
 
 
 def _slip_of_library(name: str, known: Iterable[str]) -> str:
