@@ -46,7 +46,8 @@ def check_source(options: argparse.Namespace) -> None:
         given = vars(options)
         for name in ("watch", "state", "suggest", "report"):
             if given.get(name):
-                raise UsageError(f"{given['bag']} is a recording, no nodes: leave out --{name}")
+                what = f"{given['bag']} is a recording, which has no nodes"
+                raise UsageError(f"{what}: leave out --{name}")
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --from")
     if watching and (options.select or options.ignore or options.format != TEXT):

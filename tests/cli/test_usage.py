@@ -104,7 +104,7 @@ USUAL = {"snapshot": [], "zenoh": None, "watch": False, "state": False, "bag": N
     ("given", "message"),
     [
         *(
-            ({"bag": "b", it: "x"}, f"b is a recording, no nodes: leave out --{it}")
+            ({"bag": "b", it: "x"}, f"b is a recording, which has no nodes: leave out --{it}")
             for it in ("watch", "state", "suggest", "report")
         ),
         ({"snapshot": ["g"], "watch": True}, "--watch is for the live graph, leave out --from"),
