@@ -8,7 +8,7 @@ from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.naming import NAMESPACE, Naming
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
@@ -142,7 +142,9 @@ def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) ->
             if match in seen:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
-            elif wide and (controllers is None or (not whose and _is_for(source, known, by_file))):
+            elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
+                pass  # the rewrite itself writes those of tf
+            elif wide and not whose and _is_for(source, known, by_file):
                 pass
             elif not any(_matches(rule, it) for it in asked):
                 message = f"{text} matches no name of this node"

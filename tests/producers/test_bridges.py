@@ -105,15 +105,16 @@ CONFIG = """\
 
 
 def test_a_row_of_a_file_has_a_name_on_either_side() -> None:
-    """ros_gz_bridge bridge_config.cpp: one name stands for both; without a direction both ways."""
+    """ros_gz_bridge bridge_config.cpp: one name stands for both; without a direction both ways.
+    gz-transport TopicUtils.cc: a name without a slash is below /."""
     found = [(it.inside, it.end.role, it.end.name) for it in rows_of_text(CONFIG)]
     assert found == [
-        ("both", "publishes", "both"),
-        ("both", "subscribes", "both"),
-        ("gz", "publishes", "ros"),
-        ("only_ros", "subscribes", "only_ros"),
-        ("only_gz", "publishes", "only_gz"),
-        ("only_gz", "subscribes", "only_gz"),
+        ("/both", "publishes", "both"),
+        ("/both", "subscribes", "both"),
+        ("/gz", "publishes", "ros"),
+        ("/only_ros", "subscribes", "only_ros"),
+        ("/only_gz", "publishes", "only_gz"),
+        ("/only_gz", "subscribes", "only_gz"),
     ]
     for text in ("a: [", "text", "- text", ""):
         assert rows_of_text(text) == []

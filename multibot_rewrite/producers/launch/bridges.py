@@ -61,8 +61,8 @@ def bridged_by(it: RunningNode) -> Iterator[Row]:
     """All that a bridge passes on; nothing for another node. The names in the simulator may be below
     its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp, expand_gz_topic_names)."""
     for row in _rows_of(it) if is_bridge(it) else ():
-        inside = expand(row.inside, it.namespace, it.name) if expands(it) else row.inside
-        yield Row(row.end, inside)
+        below = it.namespace if expands(it) else "/"
+        yield Row(row.end, expand(row.inside, below, it.name))
 
 
 def expands(it: RunningNode) -> bool:

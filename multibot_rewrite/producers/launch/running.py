@@ -105,7 +105,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
             made = iter([_of_process(it, first) for it in made])
         wanted = [it for it in made if model.spawned or full_name(it, None) in asked]
         found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
-        found += _plugins(model) if model.spawned else ()
+        found += (*_plugins(model), *_helpers(model, known)) if model.spawned else ()
         started += wanted
     found += _clock(graph)
     by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
@@ -163,6 +163,15 @@ def _plugins(model: Model) -> Iterator[RunningNode]:
         known = tuple(end for end in facts[it.name].endpoints if end.role)
         own = facts[it.name]._replace(endpoints=known)
         yield RunningNode(*names, own, {}, SIMULATED, (), program, model.place)
+
+
+def _helpers(model: Model, known: Knowledge) -> Iterator[RunningNode]:
+    """The nodes that plugins make for themselves, without rules, beside the one that they load."""
+    for it in (it for it in model.reading.nodes if it.helper):
+        above, _, name = it.helper.rpartition("/")
+        home, facts = above or "/", known.nodes.get(name)
+        names = (name, home, (), (), home)
+        yield RunningNode(*names, facts, {}, SIMULATED, (), it.section.names[0], model.place)
 
 
 def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:

@@ -40,7 +40,7 @@ def _rows(launched: Launched) -> Iterator[_Row]:
         for end, inside in bridged_by(it):
             if end.kind == TOPIC:
                 full = resolve_bound(end.name, end.kind, bound_of(it.name, it.namespace, it.rules))
-                yield _Row(full, f"/{inside.lstrip('/')}", end.role == SUBSCRIBES, it)
+                yield _Row(full, inside, end.role == SUBSCRIBES, it)
 
 
 def into_gazebo(launched: Launched) -> set[str]:
