@@ -32,11 +32,9 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     open, and those of a Gazebo that the release has not, each at its element."""
     guesses, release = Guesses(), tree.vocabulary.release
     old = CLASSIC if lacks_classic(release, inventory.document.source) else None
-    has_ros_2 = next(inventory.document.root.iterfind(".//plugin/ros"), None) is not None
+    root = inventory.document.root
     # An SRDF starts nothing.
-    parts = (
-        () if inventory.format == SRDF else active_parts(inventory.document.root, tree.vocabulary)
-    )
+    parts = () if inventory.format == SRDF else active_parts(root, tree.vocabulary)
     for part in parts:
         if not part.is_known:
             message, hint = _said(part, tree.vocabulary, guesses)
@@ -48,7 +46,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
                 f"plugin {part.name!r} is of Gazebo Classic, which {release} has not",
             )
             yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
-        elif has_ros_2 and _is_of_both(part, tree.vocabulary):
+        elif _is_of_both(part, tree.vocabulary) and root.find(".//plugin/ros") is not None:
             message = (
                 f"plugin {part.name!r} is written for ROS 1, others here for ROS 2: "
                 "what it opens there is not known"
