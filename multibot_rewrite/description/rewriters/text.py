@@ -38,9 +38,10 @@ _KEEPING = etree.XPath("gazebo[preserveFixedJoint or disableFixedJointLumping]")
 
 def kept_joints(root: etree._Element) -> frozenset[str]:
     """The fixed joints that a block keeps from being merged (sdformat, parser_urdf.cc)."""
+    blocks: list[etree._Element] = _KEEPING(root)  # type: ignore[assignment]
     return frozenset(
         block.get("reference", "")
-        for block in _KEEPING(root)
+        for block in blocks
         for tag in ("preserveFixedJoint", "disableFixedJointLumping")
         if text_at(block, tag).lower() in ("true", "yes", "1")
     )
