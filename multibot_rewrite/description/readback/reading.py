@@ -98,9 +98,14 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
 
 
-def read_nodes(root: _Element, vocabulary: Vocabulary) -> tuple[ReadNode, ...]:
-    """The nodes alone."""
-    return _nodes(_hosts(root, vocabulary)[0], _links(root), vocabulary.release)
+def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_Element, str, str]]:
+    """The plugins that send a transform of odometry, with the frames of parent and child."""
+    hosts, _ = _hosts(root, vocabulary)
+    senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
+    for node in _nodes(senders.values(), _links(root), vocabulary.release):
+        frames = dict(node.frames)
+        for parent, child in node.sends:
+            yield senders[node.number].element, frames[parent], frames[child]
 
 
 def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tuple[int, str]]]:

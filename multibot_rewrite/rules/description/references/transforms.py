@@ -79,13 +79,9 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
             yield host, frames[0], frames[1]
     if any("/tf" in section.publishes for _, section in served):
         # Most descriptions need none of it.
-        from multibot_rewrite.description.readback.reading import read_nodes
+        from multibot_rewrite.description.readback.reading import transforms_sent
 
-        plugins = [*root.iter("plugin")]
-        for node in read_nodes(root, subject.tree.vocabulary):
-            frames_of = dict(node.frames)
-            for parent, child in node.sends:
-                yield plugins[node.number], frames_of[parent], frames_of[child]
+        yield from transforms_sent(root, subject.tree.vocabulary)
 
 
 @rule(
