@@ -35,7 +35,8 @@ _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
 )
 _OLD_ADAPTER = lazy_compile(rb"(" + _ADAPTERS + rb"\w+)")
-_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")
+_NEW = lazy_compile(rb"gz(?:-sim|::sim|_ros2_control)")
+_NEW_ADAPTERS = b"default_planning_request_adapters/"
 _COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
@@ -103,7 +104,7 @@ def evidence(text: bytes) -> str:
     if not any(it in text for it in _OLD_WORDS):
         return ""
     text = _COMMENT.sub(b"", text)
-    if any(it in text for it in _NEW_WORDS):
+    if _NEW.search(text) or _NEW_ADAPTERS in text:
         return ""
     found = _OLD.search(text) or _OLD_ADAPTER.search(text)
     return found[1].decode() if found else ""

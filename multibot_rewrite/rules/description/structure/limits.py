@@ -219,7 +219,9 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
 
 
 def _turned(rpy: str) -> float | None:
-    found = numbers(rpy) or ()
+    found = numbers(rpy)
+    if not found or max(map(abs, found)) <= _TURN:
+        return None
     return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
 
 
