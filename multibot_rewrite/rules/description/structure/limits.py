@@ -10,6 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.numbers import number, numbers, value_of
 from multibot_rewrite.description.checks.problem import Problem
@@ -31,6 +32,8 @@ from multibot_rewrite.rules.subject import Subject
 # numbers that people write for "no limit".
 DEGREES = (4.5 * pi, 720.0)
 _TURN, _ROUND = 2.05 * pi, 5.0
+# A round number above a turn has two digits or an exponent: most values are told without being read.
+_LARGE = lazy_compile(r"(?<![.\d])\d\d|[eE]")
 ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
 # Metres; a gripper moves so many millimetres.
 LONG_WAY = 25.0
@@ -210,7 +213,8 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Rotations of more than a turn by a round number: nobody writes 90 radians."""
     origins = subject.elements.every("origin")
     different = {it.get("rpy", "") for it in origins}
-    turned = {rpy: odd for rpy in different if (odd := _turned(rpy)) is not None}
+    large = filter(_LARGE.search, different)
+    turned = {rpy: odd for rpy in large if (odd := _turned(rpy)) is not None}
     for origin in origins if turned else ():
         odd = turned.get(origin.get("rpy", ""))
         if odd is not None:
@@ -219,9 +223,7 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
 
 
 def _turned(rpy: str) -> float | None:
-    found = numbers(rpy)
-    if not found or max(map(abs, found)) <= _TURN:
-        return None
+    found = numbers(rpy) or ()
     return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
 
 
