@@ -88,21 +88,11 @@ def well_formed(source: bytes) -> Mended:
 
 def slips(source: bytes) -> Iterator[Slip]:
     """Each comment, declaration and default namespace that a complete parser takes otherwise."""
-    if not _may_slip(source):
-        return
     first = _before_all(source)
     for it in _PART.finditer(source):
         new, what = _mended(it, first)
         if new != it[0]:
             yield Slip(it.start(), what)
-
-
-def _may_slip(source: bytes) -> bool:
-    """A cheap look: is there a comment with dashes in it, a late declaration, a default namespace?"""
-    comments = (it.partition(b"-->") for it in source.split(b"<!--")[1:])
-    dashes = any(not end or b"--" in it or it.endswith(b"-") for it, end, _ in comments)
-    late = source.count(b"<?xml") > source.startswith((b"<?xml", _BOM + b"<?xml"))
-    return dashes or late or is_loose(source)
 
 
 def is_loose(source: bytes) -> bool:

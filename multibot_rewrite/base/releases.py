@@ -30,11 +30,13 @@ OF_OLD = "humble"
 _ADAPTERS = b"default_planner_request_adapters/"
 CLASSIC = "libgazebo_"
 _OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", _ADAPTERS)
+# Two expressions: of one for both every character of a text is tried.
 _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
-    rb"|(" + _ADAPTERS + rb"\w+)"
 )
-_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")
+_OLD_ADAPTER = lazy_compile(rb"(" + _ADAPTERS + rb"\w+)")
+_NEW = lazy_compile(rb"gz(?:-sim|::sim|_ros2_control)")
+_NEW_ADAPTERS = b"default_planning_request_adapters/"
 _COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
@@ -102,8 +104,10 @@ def evidence(text: bytes) -> str:
     if not any(it in text for it in _OLD_WORDS):
         return ""
     text = _COMMENT.sub(b"", text)
-    found = None if any(it in text for it in _NEW_WORDS) else _OLD.search(text)
-    return (found[1] or found[2]).decode() if found else ""
+    if _NEW.search(text) or _NEW_ADAPTERS in text:
+        return ""
+    found = _OLD.search(text) or _OLD_ADAPTER.search(text)
+    return found[1].decode() if found else ""
 
 
 def lacks_classic(release: str, text: bytes) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain, islice
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
@@ -88,12 +89,15 @@ def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:
                 yield element, " ".join(str(value).split())
 
 
+_TAG = attrgetter("tag")
+
+
 def uses_xacro(document: Document) -> bool:
     """Is a prefix bound to xacro, and is it used? A cheap look first; a comment does not count."""
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
     seen = any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
-    return seen and any("xacro" in str(it.tag) for it in document.elements)
+    return seen and any("xacro" in str(tag) for tag in set(map(_TAG, document.elements)))
 
 
 def worlds(inventory: Inventory) -> Iterator[Problem]:

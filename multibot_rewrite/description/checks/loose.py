@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 from lxml.etree import _Element
@@ -23,12 +24,12 @@ _MENDS = {
 
 def loosely_written(document: Document) -> Iterator[Problem]:
     """The first of each kind, at the element that is next, and of each prefix that nothing declares."""
+    if not document.is_mended:
+        return
     source, starts = document.source, document.starts
     seen = set()
     for offset, what in slips(source):
         if what not in seen:
-            from bisect import bisect_left  # most files have none
-
             seen.add(what)
             element = document.elements[min(bisect_left(starts, offset), len(starts) - 1)]
             line, _ = locate(source, offset)
@@ -43,8 +44,6 @@ def loosely_written(document: Document) -> Iterator[Problem]:
 
 def _undeclared(document: Document) -> Iterator[tuple[str, str]]:
     """The prefixes that reading added to the root, with what they stand for."""
-    if not document.root.nsmap:
-        return
     start = document.starts[0]
     written = document.source[start : tag_end(document.source, start)]
     for prefix, uri in document.root.nsmap.items():

@@ -96,7 +96,7 @@ def unclaimed_mentions(
     ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not read."""
     if not (names or usual):
         return []
-    telling = _telling(values, frozenset(names)) | {it: it for it in values if it in usual}
+    telling = _telling(values, frozenset(names)) | {it: it for it in {*usual}.intersection(values)}
     count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}

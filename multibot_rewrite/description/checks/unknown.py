@@ -30,31 +30,31 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Plugins, hardware classes, sensor types and included models of which it is not known what they
     open, and those of a Gazebo that the release has not, each at its element."""
-    guesses, release = Guesses(), tree.vocabulary.release
-    old = CLASSIC if lacks_classic(release, inventory.document.source) else None
-    has_ros_2 = next(inventory.document.root.iterfind(".//plugin/ros"), None) is not None
+    guesses, release, root = Guesses(), tree.vocabulary.release, inventory.document.root
     # An SRDF starts nothing.
-    parts = (
-        () if inventory.format == SRDF else active_parts(inventory.document.root, tree.vocabulary)
-    )
+    parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]
+    # Once: so are the others.
+    old = next((it for it in parts if _is_classic(it) and it.is_known), None)
+    if old and not lacks_classic(release, inventory.document.source):
+        old = None
     for part in parts:
         if not part.is_known:
             message, hint = _said(part, tree.vocabulary, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
-        elif old and part.kind == PLUGIN and part.name.startswith(old):
-            # Once: so are the others.
-            old, message = (
-                None,
-                f"plugin {part.name!r} is of Gazebo Classic, which {release} has not",
-            )
+        elif part is old:
+            message = f"plugin {part.name!r} is of Gazebo Classic, which {release} has not"
             yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
-        elif has_ros_2 and _is_of_both(part, tree.vocabulary):
+        elif _is_of_both(part, tree.vocabulary) and root.find(".//plugin/ros") is not None:
             message = (
                 f"plugin {part.name!r} is written for ROS 1, others here for ROS 2: "
                 "what it opens there is not known"
             )
             hint = "write it for ROS 2, with <ros>, or take it out"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
+
+
+def _is_classic(part: ActivePart) -> bool:
+    return part.kind == PLUGIN and part.name.startswith(CLASSIC)
 
 
 def _is_of_both(part: ActivePart, vocabulary: Vocabulary) -> bool:

@@ -65,17 +65,20 @@ class ActivePart(NamedTuple):
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
     """All of a description, kind by kind."""
-    for plugin in root.iter("plugin"):
+    every: dict[str, list[_Element]] = {"plugin": [], "sensor": [], "include": []}
+    for element in root.iter(*every):
+        every[str(element.tag)].append(element)
+    for plugin in every["plugin"]:
         if not _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors()):
             section, known = plugin_section(plugin, vocabulary)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
     yield from hardware_parts(root, vocabulary)
-    for sensor in root.iter("sensor"):
+    for sensor in every["sensor"]:
         type_ = sensor.get("type", "").strip()
         if type_ and _is_simulated(sensor):
             section = next(iter(vocabulary.find("sensor", type_)), None)
             yield ActivePart(SENSOR, sensor, type_, section)
-    for include in root.iter("include"):
+    for include in every["include"]:
         uri = child_text(include, "uri")
         if uri and next(include.iterancestors("model", "gazebo"), None) is not None:
             yield ActivePart(INCLUDE, include, uri, None)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterable, Iterator
 
 from lxml.etree import _Element
 
@@ -83,6 +83,33 @@ class _Host(NamedTuple):
 def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     """Read a description as the programs do that load it; raises InputError."""
     root = read_xml(data, file)
+    hosts, unknown = _hosts(root, vocabulary)
+    links = [*_links(root)]
+    nodes = _nodes(hosts, links, vocabulary.release)
+    with_node = {it.number for it in nodes}
+    names = [*links, *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
+    names += _of_plugins(root, hosts, with_node, vocabulary)
+    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
+    names += _of_elements(root, vocabulary)
+    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
+    heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
+    below = (end for it in nodes for end in _endpoints(it, below=True))
+    ends = (*_of_others(hosts), *below)
+    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
+
+
+def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_Element, str, str]]:
+    """The plugins that send a transform of odometry, with the frames of parent and child."""
+    hosts, _ = _hosts(root, vocabulary)
+    senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
+    for node in _nodes(senders.values(), _links(root), vocabulary.release):
+        frames = dict(node.frames)
+        for parent, child in node.sends:
+            yield senders[node.number].element, frames[parent], frames[child]
+
+
+def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tuple[int, str]]]:
+    """The plugins that have a section, and those that the vocabulary does not have."""
     hosts: list[_Host] = []
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
@@ -94,20 +121,15 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
             unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
         if section is not None:
             hosts.append(_Host(plugin, number, section))
-    links = [*_links(root)]
+    return hosts, unknown
+
+
+def _nodes(
+    hosts: Iterable[_Host], links: Iterable[RuntimeName], release: str
+) -> tuple[ReadNode, ...]:
     known_links = frozenset(it.name for it in links)
-    made = (node_of(*it, known_links, vocabulary.release) for it in hosts)
-    nodes = tuple(node for node in made if node is not None)
-    with_node = {it.number for it in nodes}
-    names = [*links, *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
-    names += _of_plugins(root, hosts, with_node, vocabulary)
-    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
-    names += _of_elements(root, vocabulary)
-    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
-    heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
-    below = (end for it in nodes for end in _endpoints(it, below=True))
-    ends = (*_of_others(hosts), *below)
-    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
+    made = (node_of(*it, known_links, release) for it in hosts)
+    return tuple(node for node in made if node is not None)
 
 
 def _of_first_senders(

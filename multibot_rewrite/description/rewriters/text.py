@@ -32,11 +32,16 @@ def text_at(element: etree._Element, path: str) -> str:
     return "" if found is None else text_of(found)
 
 
+# Found quickly: few blocks have one.
+_KEEPING = etree.XPath("gazebo[preserveFixedJoint or disableFixedJointLumping]")
+
+
 def kept_joints(root: etree._Element) -> frozenset[str]:
     """The fixed joints that a block keeps from being merged (sdformat, parser_urdf.cc)."""
+    blocks: list[etree._Element] = _KEEPING(root)  # type: ignore[assignment]
     return frozenset(
         block.get("reference", "")
-        for block in root.iterchildren("gazebo")
+        for block in blocks
         for tag in ("preserveFixedJoint", "disableFixedJointLumping")
         if text_at(block, tag).lower() in ("true", "yes", "1")
     )

@@ -59,13 +59,14 @@ _HINTS = (
 class Document(NamedTuple):
     """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
     offsets of their start tags, or their numbers where no place is asked for. ``file`` is the name
-    used in messages."""
+    used in messages. ``is_mended`` where a complete parser would read the text otherwise, or not."""
 
     source: bytes
     file: str
     root: etree._Element
     elements: list[etree._Element]
     starts: Sequence[int]
+    is_mended: bool = False
 
 
 def read_document(source: bytes, file: str, placed: bool = True) -> Document:
@@ -74,24 +75,25 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
     Without ``placed`` elements are numbered and not looked for in the bytes.
     """
     _refuse_bytes(source, file)
-    root = _parsed(source, file)
+    root, is_mended = _parsed(source, file)
     elements = list(root.iter("*"))
     starts = start_offsets(source) if placed else range(len(elements))
-    document = Document(source, file, root, elements, starts)
+    document = Document(source, file, root, elements, starts, is_mended)
     _refuse_tree(document)
     if placed:
         _refuse_wide(document)
     return document
 
 
-def _parsed(source: bytes, file: str) -> etree._Element:
-    """The root of a text as TinyXML-2 reads it, so that what is no fault to it is none here."""
+def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
+    """The root of a text as TinyXML-2 reads it, so that what is no fault to it is none here, and
+    whether the text had to be mended for that."""
     if not is_loose(source):
         with suppress(etree.XMLSyntaxError):
-            return etree.fromstring(source, _PARSER)
+            return etree.fromstring(source, _PARSER), False
     mended = well_formed(source)
     try:
-        return etree.fromstring(mended.text, _PARSER)
+        return etree.fromstring(mended.text, _PARSER), True
     except etree.XMLSyntaxError as error:
         _refuse_other_kinds(source, file)
         raise InputError(_syntax_message(error, file, mended)) from None
@@ -146,7 +148,7 @@ def _refuse_tree(document: Document) -> None:
 
 def _refuse_wide(document: Document) -> None:
     """lxml looks through all attributes of an element for each of them."""
-    source, file, _, elements, starts = document
+    source, file, _, elements, starts, _ = document
     # ` a=""`
     least = 5 * MAX_ATTRIBUTES
     half = least // 2

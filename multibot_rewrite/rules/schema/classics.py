@@ -16,7 +16,8 @@ _SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
 def may_be_classics(root: _Element, release: str) -> bool:
     """May Gazebo Classic read it? Its libsdformat 9 has no ranges and reads what it can of poses and
     colours (src/Param.cc), and it goes on with a model that it has errors about."""
-    if any(name in it.get("filename", "") for it in root.iter("plugin") for name in _SYSTEMS):
-        return False
     version = read_version(root.get("version", "")) if root.tag == "sdf" else None
-    return release == OF_OLD or bool(version and version <= _NEWEST)
+    if release != OF_OLD and not (version and version <= _NEWEST):
+        return False
+    files = [it.get("filename", "") for it in root.iter("plugin")]
+    return not any(name in it for it in files for name in _SYSTEMS)

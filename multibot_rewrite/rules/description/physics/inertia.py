@@ -86,12 +86,12 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 )
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
-    classics = may_be_classics(subject.document.root, subject.settings.distro)
+    root, release = subject.document.root, subject.settings.distro
     for link, inertial, moments, merged in impossible(subject.robot):
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
-        place = part_of(inertial, "inertia")
-        yield Problem(place, message, level=WARNING if merged or classics else "")
-    if subject.document.root.tag == "sdf":
+        level = WARNING if merged or may_be_classics(root, release) else ""
+        yield Problem(part_of(inertial, "inertia"), message, level=level)
+    if root.tag == "sdf":
         yield from _of_models(subject)
 
 
@@ -161,20 +161,19 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         largest = max(moments[0], moments[3], moments[5])
         if largest < NOTHING:
             continue
-        radius = sqrt(largest / mass)
+        radius, level, shapes = sqrt(largest / mass), "", ""
+        if SHORT <= radius <= LONG:
+            size = size or _size(link.element)
+            if size <= SMALL_SHAPE or SMALLER <= radius / size <= LARGER:
+                continue
+            shapes = f", its shapes reach {size:.3g} m from the origin"
+            counts = mass >= FRAME and moves(subject.robot, link.name)
+            level = "" if counts or radius > FAR_LARGER * size else NOTE
         message = (
             f"inertia of link {link.name!r}: {mass:g} kg would be {radius:.3g} m from the centre"
         )
-        if radius > LONG or radius < SHORT:
-            yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
-            continue
-        size = size or _size(link.element)
-        if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
-            message += f", its shapes reach {size:.3g} m from the origin"
-            counts = mass >= FRAME and moves(subject.robot, link.name)
-            level = "" if counts or radius > FAR_LARGER * size else NOTE
-            place = part_of(inertial, "inertia")
-            yield Problem(place, message, None, "is the unit right?", level=level)
+        place = part_of(inertial, "inertia")
+        yield Problem(place, message + shapes, None, "is the unit right?", level=level)
 
 
 def _size(link: _Element) -> float:

@@ -71,22 +71,17 @@ def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
 
 def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
     """Each plugin with the transform of odometry that it sends."""
-    document, vocabulary = subject.document, subject.tree.vocabulary
-    for host, section in subject.inventory.served:
+    root, served = subject.document.root, subject.inventory.served
+    for host, section in served:
         # gz-sim's send theirs by a bridge.
         frames = [text_at(host, it.path) for it in frame_sites(host, section, AS_WRITTEN)]
         if len(frames) == 2 and all(frames):
             yield host, frames[0], frames[1]
-    if any("/tf" in section.publishes for _, section in subject.inventory.served):
-        from multibot_rewrite.description.readback.reading import (
-            read,  # most descriptions need none of it
-        )
+    if any("/tf" in section.publishes for _, section in served):
+        # Most descriptions need none of it.
+        from multibot_rewrite.description.readback.reading import transforms_sent
 
-        plugins = [*document.root.iter("plugin")]
-        for node in read(document.source, document.file, vocabulary).nodes:
-            frames_of = dict(node.frames)
-            for parent, child in node.sends:
-                yield plugins[node.number], frames_of[parent], frames_of[child]
+        yield from transforms_sent(root, subject.tree.vocabulary)
 
 
 @rule(

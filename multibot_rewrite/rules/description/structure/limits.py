@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Iterator
 from math import pi, radians
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.numbers import number, numbers, value_of
 from multibot_rewrite.description.checks.problem import Problem
@@ -32,9 +32,12 @@ from multibot_rewrite.rules.subject import Subject
 # numbers that people write for "no limit".
 DEGREES = (4.5 * pi, 720.0)
 _TURN, _ROUND = 2.05 * pi, 5.0
+# A round number above a turn has two digits or an exponent: most values are told without being read.
+_LARGE = lazy_compile(r"(?<![.\d])\d\d|[eE]")
 ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
 # Metres; a gripper moves so many millimetres.
 LONG_WAY = 25.0
+ENDS = ("lower", "upper")
 # From this version on bounds are needed, effort and velocity are not, and a negative limit is refused.
 STRICT = KNOWN[2]
 
@@ -57,21 +60,20 @@ STRICT = KNOWN[2]
 def limit_missing(subject: Subject) -> Iterator[Problem]:
     """Joints without a limit that they need, and limits without a part that they need."""
     strict = version_of(subject.document.root) >= STRICT
+    motor = () if strict else ("effort", "velocity")
     for joint in subject.robot.joints:
-        limit = joint.parts.get("limit")
-        if limit is None and joint.type in BOUNDED:
-            yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
-        if limit is not None:
-            bounds = ("lower", "upper") if joint.type in BOUNDED else ()
-            yield from _lacking(joint, limit, () if strict else ("effort", "velocity"), "")
-            yield from _lacking(joint, limit, bounds, "" if strict else WARNING)
-
-
-def _lacking(joint: Joint, limit: _Element, needed: Sequence[str], level: str) -> Iterator[Problem]:
-    missing = [it for it in needed if limit.get(it) is None]
-    if missing:
-        message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
-        yield Problem(limit, message, level=level)
+        limit, is_bounded = joint.parts.get("limit"), joint.type in BOUNDED
+        if limit is None:
+            if is_bounded:
+                yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
+            continue
+        there = limit.keys()
+        bounds = ENDS if is_bounded else ()
+        for needed, level in ((motor, ""), (bounds, "" if strict else WARNING)):
+            missing = [it for it in needed if it not in there]
+            if missing:
+                message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
+                yield Problem(limit, message, level=level)
 
 
 @rule(
@@ -209,14 +211,17 @@ def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
 
 def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Rotations of more than a turn by a round number: nobody writes 90 radians."""
-    for origin in subject.elements.every("origin"):
-        odd = _turned(origin.get("rpy", ""))
+    origins = subject.elements.every("origin")
+    different = {it.get("rpy", "") for it in origins}
+    large = filter(_LARGE.search, different)
+    turned = {rpy: odd for rpy in large if (odd := _turned(rpy)) is not None}
+    for origin in origins if turned else ():
+        odd = turned.get(origin.get("rpy", ""))
         if odd is not None:
             message = f"rpy has {odd:g}, which is more than a turn: it is in radians"
             yield Problem(origin, message, "rpy", f"{odd:g} degrees are {radians(odd):.4g}")
 
 
-@lru_cache(maxsize=1024)  # most rotations come again and again
 def _turned(rpy: str) -> float | None:
     found = numbers(rpy) or ()
     return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
