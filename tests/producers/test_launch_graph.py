@@ -935,6 +935,20 @@ def test_a_value_that_is_none_is_told_and_the_others_are_kept(
     assert yaml.safe_load(node.parameters[1].text) == {"/**": {"ros__parameters": {"q": "1"}}}
 
 
+def test_a_path_in_a_value_is_that_of_the_file_itself(tmp_path: Path) -> None:
+    """A folder of links to sources is gone when the launch has been read."""
+    (tmp_path / "map.yaml").write_text("image: a.pgm")
+    link = tmp_path / "link.yaml"
+    link.symlink_to("map.yaml")
+    values = f"{{'a': {str(link)!r}, 'b': ['x', {str(link)!r}], 'c': [1, 2]}}"
+    found = one(read(tmp_path, f"Node(package='a', executable='b', parameters=[{values}]),"))
+    kept = {}
+    for it in found.parameters:
+        kept |= yaml.safe_load(it.text)["/**"]["ros__parameters"] if not it.file else {}
+    path = str(tmp_path / "map.yaml")
+    assert kept == {"a": path, "b": ["x", path], "c": [1, 2]}
+
+
 @pytest.mark.parametrize(
     ("command", "package"),
     [
