@@ -24,8 +24,15 @@ from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchNote, RunningNode
+from multibot_rewrite.producers.launch.node_transforms import prefix_of
+from multibot_rewrite.producers.launch.records import (
+    LaunchGraph,
+    LaunchNote,
+    ParameterText,
+    RunningNode,
+)
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import (
@@ -284,6 +291,38 @@ def test_what_a_parameter_holds_for_one_node_alone() -> None:
     assert [*of_parameters("/n", known, values)] == [Address("own", "port", "9090", "/n", THERE)]
     for off in ("", False, "no", " Off "):
         assert [*of_parameters("/n", known, {"port": Given(off, AT)})] == []
+
+
+@pytest.mark.parametrize(
+    ("switch", "values", "prefix"),
+    [
+        ("", {}, ""), ("", {"tf_prefix": "/a/"}, "a/"), ("", {"tf_prefix": ""}, ""),
+        ("on", {}, "r/"), ("on", {"on": True}, "r/"), ("on", {"on": False}, ""),
+        ("on", {"tf_frame_prefix": "b"}, "b/"), ("on", {"tf_frame_prefix": "b", "on": False}, ""),
+        ("on", {"tf_prefix": "a"}, "r/"),
+    ],
+)  # fmt: skip
+def test_what_a_node_puts_before_its_frames(
+    switch: str, values: dict[str, object], prefix: str
+) -> None:
+    """ros_filter.cpp: tf_prefix; diff_drive_controller.cpp: its namespace, unless it is told not to."""
+    facts = NodeFacts("n", "a", (), prefix_switch=switch)
+    given = {name: Given(it, THERE) for name, it in values.items()}  # type: ignore[arg-type]
+    node = RunningNode("n", "/r", (), (), "/r", facts, given, "p", (), "acme/arm", AT)
+    assert prefix_of(node) == prefix
+    assert prefix_of(node._replace(facts=None)) == (
+        f"{values['tf_prefix']}".strip("/") + "/" if values.get("tf_prefix") else ""
+    )
+
+
+def test_the_file_of_a_text_that_a_launch_read() -> None:
+    texts = [
+        ParameterText("a", "x", ""),
+        ParameterText("b", "x", "b.urdf"),
+        ParameterText("c", "y", "c"),
+    ]
+    graph = LaunchGraph(files=tuple(("p", it) for it in texts))
+    assert (file_of(graph, "x"), file_of(graph, "y"), file_of(graph, "z")) == ("b.urdf", "c", "")
 
 
 WORDS_OF_DEVICES = (

@@ -219,9 +219,9 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
         part, urdfs, known = value
         elsewhere = None if known is None else KnownArguments(tuple(known[0]), bool(known[1]))
         pairs = tuple((name, path) for name, path in urdfs)
+        return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
     except (TypeError, ValueError, LookupError):
         return None
-    return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
 
 
 # What reads descriptions; xacro may be that of a sourced ROS.
