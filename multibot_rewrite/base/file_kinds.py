@@ -168,7 +168,7 @@ def refuse_templates(data: bytes, file: str) -> None:
         return
     found = next((it for it in _TEMPLATE.finditer(data) if it[1]), None)
     if found:
-        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode("utf-8", "replace")
+        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode(errors="replace")
         raise InputError(
             f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes"
         )
