@@ -544,7 +544,7 @@ def test_helpers_are_those_of_their_process_in_whatever_namespace() -> None:
         "/transform_listener_impl_ff",
     )
     nodes = [Node(it, "p") for it in names] + [Node("/away"), Node("/other", "q")]
-    asked = ["/r/driver", "/transform_listener_impl_f"]
+    asked = ["/r/driver", "/transform_listener_impl_ff"]
     inside, mains = _nodes_by_process(System(tuple(nodes)), asked)
     assert (inside, mains) == ({"p": ["/r/transform_listener_impl_55d0"]}, {"p": 2, "q": 1})
 
