@@ -19,8 +19,8 @@ _METHODS = {
     "lstrip": "rstrip", "rstrip": "lstrip", "find": "rfind", "index": "rindex",
 }  # fmt: skip
 _CHANGING = {"append", "add", "update", "extend", "sort", "discard", "insert"}
-# Their words are for people.
-_WORDS = {"declare", "print", "add_argument"}
+# Their words are for people, or name a type.
+_WORDS = {"declare", "print", "add_argument", "TypeVar", "ParamSpec"}
 
 
 class Bug(NamedTuple):

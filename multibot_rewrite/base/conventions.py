@@ -13,7 +13,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 
 # Who sends a topic, or reads it: every node there is; any node may; some nodes do; a single one.
-EVERY, ANY, SOME, ONE = "every", "any", "some", "one"
+EVERY, ANY, SOME, ONE = range(4)
 
 
 class SharedTopic(NamedTuple):
@@ -21,8 +21,8 @@ class SharedTopic(NamedTuple):
     unless the user says otherwise."""
 
     name: str
-    senders: str
-    readers: str
+    senders: int
+    readers: int
     kept: bool
     source: str
 
@@ -45,7 +45,7 @@ OF_EVERY_NODE = tuple(it.name for it in TOPICS if EVERY in (it.senders, it.reade
 SENT_BY_ANY_NODE = tuple(it.name for it in TOPICS if it.senders in (EVERY, ANY))
 SHARED_TOPICS = tuple(it.name for it in TOPICS if it.kept)
 # The kinds of frames by what they are fixed to.
-WORLD, START, BODY = "world", "start", "body"
+WORLD, START, BODY = range(3)
 
 
 class UsualFrame(NamedTuple):
@@ -53,7 +53,7 @@ class UsualFrame(NamedTuple):
     ``START`` of one robot, or of its ``BODY``. ``expected``: nearly every robot has it."""
 
     name: str
-    fixed_to: str
+    fixed_to: int
     expected: bool
     source: str
 

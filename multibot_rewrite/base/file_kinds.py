@@ -63,16 +63,16 @@ KINDS: Mapping[str, FileKind] = {
 _ROOT = rb"\A(?:<[?!].*?>\s*)*<"
 _XML = (
     (CONFIG, lazy_compile(_ROOT + rb"model>", re.DOTALL)),
-    (LAUNCH, lazy_compile(rb"<launch[\s>]", 0)),
+    (LAUNCH, lazy_compile(rb"<launch[\s>]")),
     (
         TREE,
-        lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b", 0),
+        lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b"),
     ),
     (WORLD, lazy_compile(rb"<sdf\b[^>]*>\s*(?:<!--.*?-->\s*)*<world\b", re.DOTALL)),
-    (SDF, lazy_compile(rb"<sdf\b", 0)),
-    (XACRO, lazy_compile(rb"<robot\b[^>]*xmlns:xacro", 0)),
-    (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s", 0)),
-    (URDF, lazy_compile(rb"<robot\b", 0)),
+    (SDF, lazy_compile(rb"<sdf\b")),
+    (XACRO, lazy_compile(rb"<robot\b[^>]*xmlns:xacro")),
+    (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s")),
+    (URDF, lazy_compile(rb"<robot\b")),
     (MUJOCO, lazy_compile(_ROOT + rb"mujoco\b", re.DOTALL)),
     (MESH, lazy_compile(_ROOT + rb"COLLADA\b", re.DOTALL)),
     (MANIFEST, lazy_compile(_ROOT + rb"package\b", re.DOTALL)),
@@ -116,11 +116,11 @@ _OTHERS = (
 )
 _ENDS = rb'"(?:nodes|ends|endpoints)"\s*:'
 _JSON = (
-    (BUILT, lazy_compile(rb'"format": "multibot build', 0)),
-    (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{", 0)),
+    (BUILT, lazy_compile(rb'"format": "multibot build')),
+    (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{")),
     (PLAN, lazy_compile(rb'"ways"|\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
-    (SNAPSHOT, lazy_compile(_ENDS, 0)),
-    (FLEET, lazy_compile(rb'"robots"', 0)),
+    (SNAPSHOT, lazy_compile(_ENDS)),
+    (FLEET, lazy_compile(rb'"robots"')),
 )
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
@@ -169,7 +169,7 @@ def refuse_templates(data: bytes, file: str) -> None:
         return
     found = next((it for it in _TEMPLATE.finditer(data) if it[1]), None)
     if found:
-        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode("utf-8", "replace")
+        line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode(errors="replace")
         raise InputError(
             f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes"
         )

@@ -24,21 +24,15 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     """
     staged: dict[str, str] = {}
     made: list[str] = []
-    known: set[str] = set()
     try:
         for path, data in items:
-            folder = os.path.dirname(path)
-            if folder not in known:
-                with explained(path):
-                    make_folders(folder, made)
-                known.add(folder)
             with explained(path):
+                make_folders(os.path.dirname(path), made)
                 _stage(path, data, staged)
         for target, temporary in staged.items():
             with explained(target):
                 see_on_disk(temporary)
-        known |= {os.path.dirname(path) for path in made}
-        known |= {os.path.dirname(path) for path in staged}
+        changed = {os.path.dirname(path) for path in (*made, *staged)}
         _commit(staged)
         made.clear()
     finally:
@@ -49,7 +43,7 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
         for folder in reversed(made):
             with suppress(OSError):
                 os.rmdir(folder)
-    for folder in known:
+    for folder in changed:
         # Not every file system can do that for a folder; its files are whole all the same.
         with suppress(OSError):
             see_on_disk(folder or ".")

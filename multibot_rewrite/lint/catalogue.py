@@ -15,19 +15,16 @@ class Home(NamedTuple):
     """Rules whose codes begin with ``start``, and the modules (below the package) that declare them."""
 
     start: str
-    title: str
     modules: tuple[str, ...]
 
 
 HOMES: tuple[Home, ...] = (
     Home(
         "MB1",
-        "rewriting a description",
         ("description.steps.plan", "description.checks.robots", "description.checks.arguments"),
     ),
     Home(
         "MF1",
-        "parameter files",
         (
             "companions.params.sections",
             "companions.params.values",
@@ -37,16 +34,14 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MF2",
-        "RViz",
         (
             "companions.rviz.window_checks",
             "companions.rviz.bridged",
         ),
     ),
-    Home("MF5", "bridges", ("fleet.outputs.bridge_outputs",)),
+    Home("MF5", ("fleet.outputs.bridge_outputs",)),
     Home(
         "MF7",
-        "start poses and spawning",
         (
             "fleet.robots.start_pose_rules",
             "fleet.outputs.spawn",
@@ -56,7 +51,6 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MF8",
-        "what a robot's files say of its nodes",
         (
             "producers.evidence.nodes",
             "producers.launch.findings",
@@ -70,7 +64,6 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",
             "fleet.checks.across_domains",
-            "fleet.robots.joined_robots",
             "fleet.robots.own_ports",
             "fleet.outputs.given_world",
             "fleet.robots.robot_nodes",
@@ -81,7 +74,6 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MG1",
-        "not as planned: nodes, names, states",
         (
             "rules.pair.nodes",
             "rules.pair.endpoints",
@@ -90,10 +82,9 @@ HOMES: tuple[Home, ...] = (
             "rules.pair.planned_states",
         ),
     ),
-    Home("MG2", "not as planned: frames", ("rules.pair.frame_names", "rules.pair.frames_heard")),
+    Home("MG2", ("rules.pair.frame_names", "rules.pair.frames_heard")),
     Home(
         "MG3",
-        "any system: nodes, names, commands, data",
         (
             "rules.system.nodes",
             "rules.system.names",
@@ -109,7 +100,6 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MG4",
-        "any system: tf",
         (
             "rules.system.transforms",
             "rules.system.tf_topics",
@@ -123,12 +113,10 @@ HOMES: tuple[Home, ...] = (
     ),
     Home(
         "MG5",
-        "any system: time and states",
         ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
     ),
     Home(
         "MG7",
-        "launch files",
         (
             "rules.launch.ending",
             "rules.launch.models",
@@ -139,7 +127,7 @@ HOMES: tuple[Home, ...] = (
             "rules.launch.world",
         ),
     ),
-    Home("MR1", "remap tables", ("spelling.table_checks", "spelling.way_checks")),
+    Home("MR1", ("spelling.table_checks", "spelling.way_checks")),
 )
 
 

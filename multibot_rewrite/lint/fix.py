@@ -80,7 +80,7 @@ def _prove(
 
 def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:
     """For each element: is there an edit between its start tag and the next one?"""
-    numbers = {max(bisect_right(document.starts, it.start) - 1, 0) for it in edits}
+    numbers = {bisect_right(document.starts, it.start) - 1 for it in edits}
     return [number in numbers for number in range(len(document.starts))]
 
 

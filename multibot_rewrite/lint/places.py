@@ -92,8 +92,7 @@ def _within(source: bytes, start: int, attribute: str | None) -> int:
         return 0
     if not attribute:
         end = tag_end(source, start)
-        blank = _BLANK.match(source, end)
-        return (blank.end() if blank else end) - start
+        return next(_BLANK.finditer(source, end)).end() - start
     at = _attributes(source, start).get(attribute.rpartition("}")[2].encode())
     return at - start if at else 0
 

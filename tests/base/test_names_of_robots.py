@@ -177,3 +177,11 @@ def test_robots_whose_names_may_meet() -> None:
         ("left_b", "b", "_"), ("left_b", "left", "_"),
     ]  # fmt: skip
     assert overlap(make_naming("L4"), ["b", "leftb"]) == []
+
+
+@pytest.mark.parametrize("name", ["box", "/box", "box/", "x"])
+def test_a_shared_frame_is_one_whatever_slashes_it_has(name: str) -> None:
+    naming = make_naming("L4", shared_frames=["box", "x"])
+    assert spelled(naming, "r1", "frame", name) == spelled(naming, "r1", "link", name) == name
+    assert spelled(naming, "r1", "joint", "box") == "box_r1"
+    assert spelled(naming, "r1", "frame", "bo") == "bo/r1"

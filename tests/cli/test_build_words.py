@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -97,3 +98,23 @@ def test_the_file_of_a_plan() -> None:
     assert (
         check.plan_name(options(input="i")) == check.plan_name(options(plan=None, input="i")) == "i"
     )
+
+
+def test_the_files_that_a_build_was_made_from(tmp_path: Path) -> None:
+    """Those of the fleet file and of what is written, interfaces of nodes, and the parts of a joined
+    robot; not what a robot's arguments were filled in for, if it does not read it itself."""
+    a, b, c, d, e, f, g = (str(tmp_path / it) for it in "abcdefg")
+    for path in (a, b, c, d, e, f, g):
+        Path(path).write_text(path)
+
+    def robot(parts: tuple[str, ...], files: tuple[str, ...], *filled: str) -> SimpleNamespace:
+        return SimpleNamespace(parts=parts, files=files, filled=[(it, b"") for it in filled])
+
+    robots = [robot((), (c,), b, c), robot(("p",), (d,)), robot((), (g,))]
+    facts = [SimpleNamespace(interface=e), SimpleNamespace(interface="")]
+    plan: Any = SimpleNamespace(
+        file=SimpleNamespace(files={a: "", b: "", c: ""}, robots=robots),
+        fleet=SimpleNamespace(facts=facts),
+    )
+    files: Any = [SimpleNamespace(sources=(f,))]
+    assert build._read(plan, files) == {it: it.encode() for it in (a, c, d, e, f)}

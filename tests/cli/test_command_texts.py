@@ -37,6 +37,8 @@ from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
+from multibot_rewrite.description.rewriters.lookup import look_up
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -247,6 +249,69 @@ def test_twenty_rows_are_shown() -> None:
 )  # fmt: skip
 def test_a_word_is_a_file_or_a_name(word: str, it_is: bool) -> None:
     assert inspect._is_path(word) is it_is
+
+
+SECTION = """\
+[plugin mine acme::Mine]
+about: a camera
+source: acme/camera 1.0
+ros: 2
+releases: jazzy+
+insert: {}
+frame       uses frame default={{link}} when=on=true   # the note
+words/word  uses topic form=list releases=jazzy
+"""
+
+
+def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) -> None:
+    for insert in ("yes", "no"):
+        file = tmp_path / f"{insert}.vocab"
+        file.write_text(SECTION.format(insert))
+        known = load_vocabulary((str(file),), "jazzy")
+        (section,) = look_up(known, "mine", ("plugin",))
+        frame = {
+            "path": "frame", "role": "uses", "kinds": ("frame",), "form": "whole", "default": "{link}",
+            "inserted": insert == "yes", "when": "on=true", "note": "the note", "releases": "",
+            "block": "", "file": str(file), "line": 7,
+        }  # fmt: skip
+        words = {
+            "path": "words/word", "role": "uses", "kinds": ("topic",), "form": "list", "default": "",
+            "inserted": False, "when": "", "note": "", "releases": "jazzy", "block": "",
+            "file": str(file), "line": 8,
+        }  # fmt: skip
+        assert inspect.as_json(section) == {
+            "type": "plugin", "names": ("mine", "acme::Mine"), "ros": "2", "about": "a camera",
+            "source": "acme/camera 1.0", "releases": "jazzy+", "file": str(file), "line": 1, "at": (),
+            "blocks": (), "remap_only": (), "topics": [], "rows": [frame, words],
+        }  # fmt: skip
+        default = "{link}" if insert == "yes" else "{link} (not inserted)"
+        *lines, grid = inspect._details([section])
+        never = "  never inserted into: it throws on unknown children"
+        assert [it for it in lines if it != never] == [
+            f"plugin mine (ROS 2)  {file}:1", "  about: a camera", "  in: jazzy+",
+            "  also called: acme::Mine", "  source: acme/camera 1.0",
+        ]  # fmt: skip
+        assert (never in lines) == (insert == "no")
+        columns = ("path", "role", "kinds", "form", "default", "note", "from")
+        assert grid == Grid(columns, [
+            ("frame", "uses", "frame", "", default, "the note (when on=true)", f"{file}:7"),
+            ("words/word", "uses", "topic", "list", "", "in jazzy:", f"{file}:8"),
+        ])  # fmt: skip
+        columns = ("type", "name", "ROS", "also called", "rows", "source")
+        row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
+        assert [*inspect._list([section])] == [Grid(columns, [row])]
+    assert "" in [*inspect._details([section, section])], "an empty line is between two"
+    said = "'qqqqqq' is no plugin, class, element, sensor type or block of the vocabulary, no"
+    for name, hint in (
+        ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
+    ):  # fmt: skip
+        text = str(inspect._unknown(known, name, ("plugin",)))
+        assert text == (
+            f"{said.replace('qqqqqq', name)} finding's code, and no file or folder; {hint}"
+        )
+    later = load_vocabulary((str(file),), "humble")
+    text = str(inspect._unknown(later, "mine", ("plugin",)))
+    assert text.startswith("'mine' is not in humble, only in jazzy, kilted, lyrical, rolling; ")
 
 
 # ---------------------------------------------------------------- described nodes

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import re
 import subprocess
@@ -239,6 +240,28 @@ def test_o_makes_folders_and_holds_what_would_be_printed(
     assert f"wrote {target}" in said(capsys, *words, "-o", str(target), "-v")[2]
 
 
+def test_a_folder_holds_a_file_of_each_robot_and_no_list_of_changes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = str(tmp_path)
+    assert said(capsys, "urdf-postfix", ROVER, "r1", "-q", "-o", folder) == (0, "", "")
+    (made,) = (it for it in tmp_path.rglob("*") if it.is_file())
+    assert made == tmp_path / "r1" / Path(ROVER).name
+    told = f"urdf-postfix: {folder}: cannot be written: it is a folder, name a file in it\n"
+    words = ("urdf-postfix", ROVER, "r1", "--form", "changes", "-o", folder)
+    assert said(capsys, *words) == (2, "", told)
+
+
+def test_standard_input_has_a_name_in_findings(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = '<robot name="r">\n<link name="a"/>\n<link name="b"/></robot>'
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+    code, out, err = said(capsys, "urdf-lint", "-", "--select", "MB501")
+    assert (code, out.partition(" ")[0]) == (1, "<stdin>:3:7:")
+    assert err.startswith("urdf-lint: 1 file: 1 error")
+
+
 def test_a_folder_is_not_left_behind_where_nothing_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -324,6 +347,22 @@ def test_the_short_help_fits_a_screen_and_names_every_option(
     names = [it.names[-1] for group in ALL[name].groups for it in group.options]
     assert [it for it in names if it.startswith("-") and f" {it}" not in shown] == []
     assert len(said(capsys, *words, "--help")[1]) > len(shown)
+
+
+def test_the_list_of_commands_is_their_help_line_by_line() -> None:
+    assert multibot.overview("never").splitlines() == [
+        "usage: multibot COMMAND [options]",
+        "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
+        "",
+        "examples:",
+        "  multibot init rover.urdf",
+        "  multibot build fleet.yaml",
+        "",
+        "commands:",
+        *(f"  {it.name}{' ' * (14 - len(it.name))}{it.about}" for it in COMMANDS.values()),
+        "",
+        "multibot COMMAND -h shows more. Also: urdf-postfix, urdf-lint.",
+    ]
 
 
 def test_the_list_of_commands_fits_a_screen(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from refusals import said
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.cli import check, lint, live, plan, rewrite_use, unplanned
+from multibot_rewrite.cli import check, lint, live, plan, rewrite_use, unplanned, view
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.system.records import System
 
@@ -316,3 +316,13 @@ def test_a_folder_is_a_file_of_each_robot_below_it(tmp_path: Path) -> None:
     assert rewrite_use.below(str(tmp_path), "-") == f"{tmp_path}/{{robot}}/robot.urdf"
     assert rewrite_use.below("out/{robot}.urdf", "a.urdf") == "out/{robot}.urdf"
     assert rewrite_use.below(None, "a.urdf") is None
+
+
+@pytest.mark.parametrize("name", ["f.yaml", "f.yml"])
+@pytest.mark.parametrize(
+    ("words", "word"), [(["a", "b"], "b"), (["a", "x:=1"], "x"), (["x:=1"], "x")]
+)
+def test_a_fleet_file_to_view_has_its_own_robots(name: str, words: list[str], word: str) -> None:
+    given = options(input=name, words=words, robots=[])
+    told = f"{name}: a fleet file has its own robots, leave out {word}"
+    assert said(view._plan, given) == told

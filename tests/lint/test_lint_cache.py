@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import json
 import os
 import re
 import subprocess
@@ -22,6 +23,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources import packages
+from multibot_rewrite.description.sources.known_arguments import KnownArguments
 from multibot_rewrite.lint.cache import cache as caches
 from multibot_rewrite.lint.cache.cache import Cache, cache_folder, identity
 from multibot_rewrite.lint.run import lint_files
@@ -564,3 +566,27 @@ def test_statistics(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ["2", "2", "MB501", "error", "several-roots"],
     ]
     assert "2 files: 2 errors" in err
+
+
+@pytest.mark.parametrize(
+    "elsewhere", [None, KnownArguments(("a", "b"), False), KnownArguments((), True)]
+)
+def test_what_is_known_of_other_files_is_kept(elsewhere: KnownArguments | None) -> None:
+    settings = Settings(
+        included=frozenset(("b.xacro", "a.xacro")), urdfs=(("r", "r.urdf"),), elsewhere=elsewhere
+    )
+    for path, included in (("", ("a.xacro", "b.xacro")), ("b.xacro", ("b.xacro",)), ("c", ())):
+        kept = json.loads(json.dumps(caches.among_written(settings, path)))
+        assert kept[0] == [*included]
+        found = caches.among_from(kept, Settings())
+        assert found == settings._replace(included=frozenset(included))
+    for wrong in (
+        None,
+        [],
+        [[], []],
+        [1, [], None],
+        [[], [["a"]], None],
+        [[], [], [1]],
+        [[], [], [[]]],
+    ):
+        assert caches.among_from(wrong, Settings()) is None

@@ -12,7 +12,7 @@ import pytest
 from multibot_rewrite import UsageError
 from multibot_rewrite.lint.config.changed import changed_since
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.more
 
 ROBOT = '<robot name="r"><link name="a"/></robot>'
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'

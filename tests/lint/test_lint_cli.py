@@ -22,7 +22,7 @@ from multibot_rewrite.cli.declared.description import LINT
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.lint.registry import RULES
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.more
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint"]
 HARMLESS = '<robot name="r"><link name="a"/></robot>'

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from os import mkfifo
 from pathlib import Path
 from struct import pack
@@ -215,6 +216,23 @@ def test_what_cannot_be_measured_has_no_box(tmp_path: Path, name: str, data: byt
     assert mesh_box(str(tmp_path / name)) is None
 
 
+@pytest.mark.parametrize(("more", "known"), [(0, True), (1, False)])
+def test_a_mesh_is_read_up_to_four_megabytes(more: int, known: bool, tmp_path: Path) -> None:
+    file = tmp_path / "a.obj"
+    file.write_bytes(obj(*SIDES).ljust(4 * 2**20 + more))
+    assert (mesh_box(str(file)) is not None) == known
+    assert mesh_box(str(file), whole=False) == ((0.0, 0.0, 0.0), SIDES)
+
+
+def test_the_beginning_of_a_mesh_has_64_kilobytes(tmp_path: Path) -> None:
+    last = b"\nv 900 900 900\n"
+    for size, high in ((2**16, (900.0, 900.0, 900.0)), (2**16 + len(last), SIDES)):
+        file = tmp_path / f"{size}.obj"
+        file.write_bytes(obj(*SIDES).ljust(size - len(last)) + last)
+        box = mesh_box(str(file), whole=False)
+        assert box is not None and box.high == high
+
+
 CUBE = """<geometry id="cube"><mesh>
 <source id="at"><float_array count="9">0 0 0 1 2 3 -1 0 0</float_array>
 <technique_common><accessor source="#array" stride="3"/></technique_common></source>
@@ -243,6 +261,9 @@ def collada(scene: str = SHOWN, unit: str = "1", beside: str = "", above: str = 
             (1, 2, 3),
             (4, 5, 6),
         ),
+        (re.sub(rb"(?s)<technique_common>.*?</technique_common>", b"", collada()),
+         (-1, 0, 0), (1, 2, 3)),
+        (collada(f"<matrix>1 1 0 0 0 1 0 0 0 0 1 2 0 0 0 1</matrix>{SHOWN}"), (-1, 0, 2), (3, 2, 5)),
         (collada(unit="0.001"), (-0.001, 0, 0), (0.001, 0.002, 0.003)),
         (collada(f"<translate>1 0 0</translate>{SHOWN}", "0.1"), (0, 0, 0), (0.2, 0.2, 0.3)),
         (collada(f"<scale>2 -1 1</scale>{SHOWN}"), (-2, -2, 0), (2, 0, 3)),

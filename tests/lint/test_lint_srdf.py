@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.files.named import robot_name
-from multibot_rewrite.lint.files.pairing import named_urdfs
+from multibot_rewrite.lint.files.named import descriptions_below, robot_name
+from multibot_rewrite.lint.files.pairing import described, named_urdfs
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"
 LINK = '<link name="{}">{}</link>'
@@ -242,3 +243,50 @@ def test_a_xacro_that_another_includes_is_no_urdf_of_an_srdf(tmp_path: Path) -> 
     assert [name for name, _ in found] == ["arm.urdf", "arm.xacro", "part.urdf"]
     assert [path for _, path in found] == [str(tmp_path / name) for name, _ in found]
     assert named_urdfs([it for it in paths if not it.endswith(".srdf")], included) == ()
+
+
+XACRO_NAME = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+NEEDS = (
+    f'<robot {XACRO_NAME} name="r"><xacro:property name="p" value="1"/><link name="$(arg side)"/>'
+    "</robot>"
+)
+SIDES = (ArgumentSet("*", (("side", "left"),)), ArgumentSet("*", (("side", "right"),)))
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "found"),
+    [
+        ("r.xacro", SIDES, "left"), ("r.xacro", SIDES[1:], "right"), ("r.xacro", (), None),
+        ("r.xacro", (ArgumentSet("other*", (("side", "left"),)),), None),
+        ("r.urdf", SIDES, "left"), ("r.urdf", (), "$(arg side)"),
+    ],
+)  # fmt: skip
+def test_a_description_is_read_with_the_arguments_that_it_needs(
+    name: str, arguments: tuple[ArgumentSet, ...], found: str | None, tmp_path: Path
+) -> None:
+    """A URDF may have a rest of xacro in it, and is read all the same."""
+    path = write(tmp_path, name, NEEDS)
+    settings = Settings(arguments=arguments)
+    if found is None:
+        with pytest.raises(InputError):
+            described(path, settings)
+        return
+    text, said = described(path, settings)
+    assert f'name="{found}"' in text.decode()
+    assert said == (path if "$" in found else f"{path} (expanded)")
+
+
+def test_the_descriptions_of_a_package_are_its_first_ones(tmp_path: Path) -> None:
+    """Four levels of folders, none of what is built or only tested, sixty files at most."""
+    deep = ("a.urdf", "a/b.xacro", "a/a/c.urdf", "a/a/a/d.urdf")
+    skipped = ("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds", "a.b")
+    others = ("a/a/a/a/e.urdf", "a/f.sdf", "urdf", *(f"{it}/x.urdf" for it in skipped))
+    for name in (*deep, *others):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("<robot/>")
+    assert descriptions_below(str(tmp_path)) == [str(tmp_path / it) for it in deep]
+    many = tmp_path / "a" / "many"
+    many.mkdir()
+    for at in range(70):
+        (many / f"m{at:02}.urdf").write_text("<robot/>")
+    assert descriptions_below(str(many)) == [str(many / f"m{at:02}.urdf") for at in range(60)]

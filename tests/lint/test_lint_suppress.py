@@ -310,6 +310,8 @@ FIXES = [
     (ignore("MB502 MB501 MB503: why"), ignore("MB501: why")),
     (ignore("MB502, MB503, MB501, MB504"), ignore("MB501")),
     (f"text {HERE.replace('501', '502')} more", None),
+    (f"text {HERE.replace('501', '502')}", None),
+    (f"{HERE.replace('501', '502')} more", None),
     (ignore("MB502, MB9999"), None),
 ]
 

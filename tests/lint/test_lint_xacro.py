@@ -346,6 +346,34 @@ def test_a_part_whose_name_is_filled_in_is_judged_where_it_is_included(tmp_path:
     assert included([str(it) for it in tmp_path.rglob("*.xacro")]) == parts
 
 
+@pytest.mark.parametrize(
+    ("include", "parts"),
+    [
+        ("parts/arm.xacro", ["parts/arm.xacro"]), ("arm.xacro", ["arm.xacro", "parts/arm.xacro"]),
+        ("./parts/../parts/arm.xacro", ["parts/arm.xacro"]),
+        ("$(find acme)/parts/arm.xacro", ["parts/arm.xacro"]),
+        ("$(arg at)/arm.xacro", ["arm.xacro", "parts/arm.xacro"]),
+        # The name of a folder that is filled in is not known.
+        ("${kind}_b/arm.xacro", ["arm.xacro", "parts/arm.xacro"]),
+        ("${kind}_b/parts/arm.xacro", ["parts/arm.xacro"]),
+        # A value may end with a slash; another beginning is another file.
+        ("$(arg at)arm.xacro", ["arm.xacro", "parts/arm.xacro"]),
+        ("$(arg a)${b}arm.xacro", ["arm.xacro", "parts/arm.xacro"]),
+        ("arm_${a}_${b}.xacro", ["arm_x_y.xacro"]), ("${a}_${b}_y.xacro", []),
+        ("${a}_x_y.xacro", ["arm_x_y.xacro"]), ("${a}.xacro", []), ("$(arg file)", []),
+        ("robot.xacro", []), ("${(a)}/x/gone.xacro", []), ("..", []),
+    ],
+)  # fmt: skip
+def test_which_files_a_filled_in_include_may_mean(
+    include: str, parts: list[str], tmp_path: Path
+) -> None:
+    every = ("arm.xacro", "parts/arm.xacro", "arm_x_y.xacro", "other/myarm.xacro")
+    write(tmp_path, dict.fromkeys(every, xacro("")))
+    write(tmp_path, {"robot.xacro": xacro(f'<xacro:include filename="{include}"/>')})
+    found = included([str(it) for it in tmp_path.rglob("*.xacro")])
+    assert found == {str(tmp_path / it) for it in parts}
+
+
 def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     packages(tmp_path)
     share = tmp_path / "install" / "share"

@@ -29,10 +29,11 @@ from node_answers import told
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.live.diagnose import diagnose, survey
+from multibot_rewrite.producers.bags.recording import RECORDER
 from multibot_rewrite.producers.ros.voices import Voices
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.guess import guess_robots
+from multibot_rewrite.system.guess import GuessedRobot, guess_robots
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import questions
@@ -193,6 +194,48 @@ def test_the_layout_and_tf_topics_are_told() -> None:
     assert said[0] == "2 robots by their namespaces: robot1, robot2"
     assert "tf-per-robot (L1" in said[1]
     assert "tf on /robot1/tf: 3 nodes of robot1" in said
+
+
+NO_LAYOUT = "layout: none of those known: neither tf topics nor frames have the robot's name"
+IN_FRAMES = "layout: frames have the robot's name, topics and nodes have not"
+
+
+@pytest.mark.parametrize(
+    ("robots", "told"),
+    [
+        ([GuessedRobot("a", "/a"), GuessedRobot("b", "")],
+         ["2 robots by their namespaces: a, b", NO_LAYOUT]),
+        ([GuessedRobot("a", "", before="a/"), GuessedRobot("b", "", behind="_b")],
+         ["2 robots by what their frames have: a, b", IN_FRAMES]),
+        ([GuessedRobot("a", "", behind="_a")],
+         ["1 robot by the ends of names: a", IN_FRAMES]),
+        ([], ["0 nodes, no name of a robot in them: one robot, or several that share all names"]),
+    ],
+)  # fmt: skip
+def test_robots_are_told_with_where_their_names_are(
+    robots: list[GuessedRobot], told: list[str]
+) -> None:
+    seen = diagnose(EMPTY)._replace(robots=tuple(robots), layout=None)
+    assert [*survey(seen)] == told
+
+
+def test_who_sends_on_a_tf_topic_is_told() -> None:
+    seen = diagnose(nav2_with_tools("L2"))
+    senders = ("/robot1/a", "/robot2/a", "/robot1/b", "/c")
+    seen = seen._replace(tf=(("/tf", senders), ("/b/tf", (RECORDER,)), ("/a/tf", senders[:1])))
+    assert [*survey(seen)] == [
+        "2 robots by their namespaces: robot1, robot2",
+        "layout: looks like frames-per-robot (L2: one /tf, frames per robot)",
+        "tf on /tf: 4 nodes of robot1, robot2, no robot",
+        "tf on /b/tf",
+        "tf on /a/tf: 1 node of robot1",
+    ]
+
+
+def test_a_recording_has_no_nodes_to_count() -> None:
+    recorded = System((), (), (), environment()._replace(rmw="rosbag2"))
+    said = "a recording, no name of a robot in them: one robot, or several that share all names"
+    assert [*survey(diagnose(recorded))] == [said]
 
 
 # ---------------------------------------------------------------- the command

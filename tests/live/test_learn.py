@@ -23,6 +23,7 @@ from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import (
+    _nodes_by_process,
     choose_nodes,
     helpers_without_owner,
     left_out,
@@ -477,6 +478,7 @@ def test_in_a_namespace_an_absolute_name_is_not_a_parts_relative_one() -> None:
     bond = [end._replace(name="/bond") for end in built_in(NEWEST_LTS).parts["bond"]]
     assert one(graph(node(*bond))).parts == ("bond",)
     assert one(graph(node(*bond), base="/old"), base="/old").parts == ()
+    assert one(graph(node(*bond, name="front/driver")), "/front/driver").parts == ()
 
 
 def test_a_part_that_is_not_whole_or_of_another_type_is_written_out() -> None:
@@ -532,6 +534,19 @@ def test_a_helper_of_another_process_is_not_taken() -> None:
     assert one(seen).parts == ()
     assert helpers_without_owner(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
     assert helpers_without_owner(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
+
+
+def test_helpers_are_those_of_their_process_in_whatever_namespace() -> None:
+    names = (
+        "/r/driver",
+        "/r/transform_listener_impl_55d0",
+        "/r/_hidden",
+        "/transform_listener_impl_ff",
+    )
+    nodes = [Node(it, "p") for it in names] + [Node("/away"), Node("/other", "q")]
+    asked = ["/r/driver", "/transform_listener_impl_ff"]
+    inside, mains = _nodes_by_process(System(tuple(nodes)), asked)
+    assert (inside, mains) == ({"p": ["/r/transform_listener_impl_55d0"]}, {"p": 2, "q": 1})
 
 
 def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:

@@ -273,6 +273,36 @@ def test_missing_odometry_is_added_and_reported() -> None:
     assert with_odometry(standing, "r1", naming) == (standing, "")
 
 
+def domains(environs: list[dict[str, str]]) -> list[str]:
+    return [it["ROS_DOMAIN_ID"] for it in environs]
+
+
+def test_a_stage_is_a_domain_of_this_machine_where_nobody_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A hundred domains are given away; of what leads elsewhere nothing is left."""
+    busy: set[int] = set()
+    monkeypatch.setattr(staged, "participants_here", lambda domain: int(domain in busy))
+    monkeypatch.setattr(staged.os, "getpid", lambda: 499)
+    elsewhere = (
+        *("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS_LOCALHOST_ONLY"),
+    )
+    given = {"HOME": "/h", **dict.fromkeys(elsewhere, "1")}
+    monkeypatch.setattr(staged.os, "environ", given)
+    alone = {"HOME": "/h", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    assert staged.stage(None) == {**alone, "ROS_DOMAIN_ID": "100"}
+    given["ROS_DOMAIN_ID"] = "0"
+    assert domains([staged.stage(None), staged.stage(5), staged.stage(0)]) == ["0", "5", "0"]
+    busy |= {0, 100, 1, 2}
+    assert domains([staged.stage(None)]) == ["100"]
+    assert domains(staged.stages(None, 3)) == ["100", "3", "4"]
+    assert domains(staged.stages(99, 2)) == ["99", "3"]
+    busy.clear()
+    assert staged.stages(98, 4) == [
+        {**alone, "ROS_DOMAIN_ID": it} for it in ("98", "99", "100", "1")
+    ]
+
+
 def _without_endpoints(graph: System) -> System:
     """Robot1's nodes are known, what they have is not: messages of the discovery were lost."""
     left = tuple(end for end in graph.ends if not end.node.startswith("/robot1/"))

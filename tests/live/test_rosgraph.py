@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +91,36 @@ def test_a_message_is_read_as_its_fields_say() -> None:
         end("topic", "subscribes", f"{hidden}/status", "action_msgs/msg/GoalStatusArray"),
     )
     assert found.environment.caveats == (NO_FRAMES,)
+
+
+# rmw types.h; the numbers of QoSProfile.msg.
+WORDS = {
+    "history": ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN"),
+    "reliability": ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE"),
+    "durability": ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE"),
+    "liveliness": (
+        *("SYSTEM_DEFAULT", "AUTOMATIC", "MANUAL_BY_NODE", "MANUAL_BY_TOPIC", "UNKNOWN"),
+        "BEST_AVAILABLE",
+    ),
+}
+
+
+@pytest.mark.parametrize("field", WORDS)
+def test_the_policies_of_a_profile_are_those_of_rmw_by_number(field: str) -> None:
+    for number, word in enumerate(WORDS[field]):
+        message = re.sub(rf"({field}): \d", rf"\1: {number}", MESSAGE)
+        seen = next(it.qos for it in from_yaml(message, "g").ends if it.name == "/robot1/state")
+        assert seen is not None and getattr(seen, field) == word
+        graph = from_yaml(MESSAGE, "g")
+        ends = [
+            it._replace(qos=it.qos._replace(**{field: word})) if it.qos else it for it in graph.ends
+        ]
+        written = next(yaml.safe_load_all(to_yaml(graph._replace(ends=tuple(ends)))))
+        (own,) = written["nodes"][0]["publishers"]
+        assert own["qos"][field] == number
+    beyond = re.sub(rf"({field}): \d", rf"\1: {len(WORDS[field])}", MESSAGE)
+    with pytest.raises(InputError, match=f"there is no policy {len(WORDS[field])}"):
+        from_yaml(beyond, "g")
 
 
 def test_what_is_written_is_read_back() -> None:

@@ -13,6 +13,7 @@ import yaml
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.suggestion import suggestion
+from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import System
 
 # Child -> parent and type; wheels turn, and what is below the world is not the robot's.
@@ -98,3 +99,42 @@ def test_a_word_in_front_is_said_with_what_separates_it() -> None:
         "prefix",
         {"link": "_", "frame": "_"},
     )
+
+
+AB = "robots:\n  - {name: a}\n  - {name: b}\n"
+
+
+@pytest.mark.parametrize(
+    ("robots", "layout", "more"),
+    [
+        ((GuessedRobot("a", "/a"), GuessedRobot("b", "")), "tf-per-robot", ""),
+        ((GuessedRobot("a", ""), GuessedRobot("b", "")), "frame-prefix", ""),
+        ((GuessedRobot("a", "", before="a_"), GuessedRobot("b", "")), "frame-prefix",
+         "affix: prefix\nseparators: {link: '_', frame: '_'}\n"),
+        ((GuessedRobot("a", "", behind="-a"), GuessedRobot("b", "", behind="-b")), "frame-prefix",
+         "separators: {link: '-', frame: '-'}\n"),
+        ((GuessedRobot("a", "", before="a/"), GuessedRobot("b", "", before="b/")), "frame-prefix",
+         "affix: prefix\n"),
+        ((GuessedRobot("a", "", before="a_"), GuessedRobot("b", "", behind="-b")), "frame-prefix",
+         "affix: prefix\n"),
+    ],
+)  # fmt: skip
+def test_a_fleet_file_of_what_the_names_of_robots_show(
+    robots: tuple[GuessedRobot, ...], layout: str, more: str
+) -> None:
+    seen = diagnose(System(environment=graph_cases.environment()))._replace(robots=robots)
+    found = suggestion(seen, built_in("jazzy"))
+    text = found["fleet.yaml"].partition("runs\n")[2]
+    assert text == f"layout: {layout}\n{more}description: robot.urdf\n{AB}"
+    assert found["robot.urdf"] == (
+        '<?xml version="1.0"?>\n'
+        "<!-- The frames that were heard on tf: put your own description in its place. -->\n"
+        '<robot name="seen">\n  <link name="base_link"/>\n</robot>\n'
+    )
+    assert {*found} == {"fleet.yaml", "robot.urdf", "plan.yaml"}
+
+
+def test_a_namespace_of_two_levels_is_one_name() -> None:
+    robots = (GuessedRobot("fleet/a", "/fleet/a"),)
+    seen = diagnose(System(environment=graph_cases.environment()))._replace(robots=robots)
+    assert "  - {name: fleet_a}\n" in suggestion(seen, built_in("jazzy"))["fleet.yaml"]

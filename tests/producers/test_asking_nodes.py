@@ -8,6 +8,7 @@ controller_manager_msgs.
 from __future__ import annotations
 
 import threading
+from array import array
 from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -158,8 +159,8 @@ def test_what_a_node_lists_is_asked_of_it_but_for_secrets() -> None:
         (value(3, double_value=0.5), "0.5"),
         (value(4, string_value="x"), '"x"'),
         (value(6, bool_array_value=(True,)), "[true]"),
-        (value(7, integer_array_value=(1, 2)), "[1, 2]"),
-        (value(8, double_array_value=(0.5,)), "[0.5]"),
+        (value(7, integer_array_value=array("q", (1, 2))), "[1, 2]"),
+        (value(8, double_array_value=array("d", (0.5,))), "[0.5]"),
         (value(9, string_array_value=("a",)), '["a"]'),
         # Not set, and bytes.
         (value(0), None),

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import errno
 import struct
-from collections.abc import Iterator, Sequence
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from math import inf
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.producers.bags import read
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.system.records import Caveat, Edge, Qos
@@ -204,3 +209,142 @@ def test_a_bag_that_is_not_there_is_told() -> None:
         read.read_bag("/no/such.mcap")
     said = "/no/such.mcap: there is no such bag; name a folder, or a file .mcap or .db3"
     assert str(refused.value) == said
+
+
+class Opened:
+    """In the place of rosbags' reader: a bag without topics, or what opening it raises."""
+
+    connections, duration = (), 0
+
+    def __init__(self, fault: Exception | None) -> None:
+        self.fault = fault
+
+    def __call__(self, path: str) -> Opened:
+        if self.fault:
+            raise self.fault
+        return self
+
+    def __enter__(self) -> Opened:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+
+def read_here(
+    monkeypatch: pytest.MonkeyPatch, path: Path, fault: Exception | None = None
+) -> Recording | str:
+    """What is read of a bag in this process, or why it is not."""
+    limits: list[int] = []
+    monkeypatch.setattr(read, "limit_files", limits.append)
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    monkeypatch.setitem(sys.modules, "rosbags", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "rosbags.rosbag2", SimpleNamespace(Reader=Opened(fault)))
+    found = read._read("/unpacked/here", 7, str(path))
+    assert tempfile.tempdir == "/unpacked/here" and set(limits) <= {7}
+    assert limits or isinstance(found, InputError), "nothing bounds what it unpacks to"
+    return str(found) if isinstance(found, InputError) else found
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [
+        (ValueError("no such table."), "no such table"), (EOFError(), "EOFError"),
+        (ValueError("two\nlines"), "two\\nlines"), (RuntimeError("a" * 300), "a" * 200),
+        (OSError(errno.EIO, "broken"), "[Errno 5] broken"),
+    ],
+)  # fmt: skip
+def test_a_damaged_bag_says_what_its_reader_says(
+    fault: Exception, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert read_here(monkeypatch, tmp_path, fault) == (
+        f"{tmp_path}: not a readable bag: {reason};"
+        " is the recording complete? ros2 bag reindex may mend it"
+    )
+
+
+@pytest.mark.parametrize("fault", [MemoryError(), OSError(errno.EFBIG, "large")])
+def test_a_bag_that_unpacks_to_too_much_is_refused(
+    fault: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said = f"{tmp_path}: it unpacks to more than a bag may hold; leave it out"
+    assert read_here(monkeypatch, tmp_path, fault) == said
+
+
+def test_a_folder_is_read_with_its_metadata_or_without(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    empty = Recording((), (), 0.0, (Caveat("empty-bag", True, "it has no topics"),))
+    assert read_here(monkeypatch, tmp_path) == empty
+    (tmp_path / "metadata.yaml").write_text("rosbag2_bagfile_information: {}\n")
+    assert read_here(monkeypatch, tmp_path) == empty
+    (tmp_path / "metadata.yaml").write_text("a: [")
+    found = read_here(monkeypatch, tmp_path)
+    assert isinstance(found, str) and found.startswith(f"{tmp_path}: not a readable bag: ")
+
+
+def test_a_file_that_is_no_bag_is_told_before_it_is_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_text('<robot name="r"/>')
+    found = read_here(monkeypatch, path, ValueError("not asked"))
+    assert isinstance(found, str) and found.startswith(f"{path}: a description; use multibot init")
+    path.write_bytes(b"\x89MCAP0\r\n")
+    assert isinstance(read_here(monkeypatch, path), Recording)
+
+
+HEADED = [
+    *(f"sensor_msgs/msg/{it}" for it in (
+        "LaserScan", "PointCloud2", "Image", "CompressedImage", "CameraInfo", "Imu", "Range",
+        "NavSatFix",
+    )),
+    *(f"nav_msgs/msg/{it}" for it in ("Odometry", "Path", "OccupancyGrid")),
+    *(f"geometry_msgs/msg/{it}" for it in (
+        "PoseStamped", "PoseWithCovarianceStamped", "TwistStamped",
+    )),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("type_", HEADED)
+def test_types_with_a_header_that_need_no_definition(type_: str) -> None:
+    message = Cdr().header("f").put("d", *[0.0] * 50).message
+    (topic,) = recorded(connection("/x", type_, message)).topics
+    assert topic.frames == ("f",)
+
+
+def test_a_bag_is_read_in_one_process_that_may_unpack_forty_times_its_largest_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At least a gigabyte: messages pack to a twentieth of their size."""
+    asked: list[tuple[Any, ...]] = []
+
+    @contextmanager
+    def pool(
+        call: Any, paths: list[str], lost: Callable[..., Exception], many: int
+    ) -> Iterator[Any]:
+        asked.append((call.func, Path(call.args[0]).is_dir(), call.args[1], paths, many))
+        yield SimpleNamespace(results=lambda: iter([lost(paths[0], 9)]))
+
+    monkeypatch.setitem(sys.modules, "rosbags", SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "rosbags.rosbag2", SimpleNamespace())
+    monkeypatch.setattr(read, "worker_pool", pool)
+    with (tmp_path / "a.db3").open("wb") as file:
+        file.truncate(2**26)
+    (tmp_path / "b.db3").write_bytes(b"x")
+    (tmp_path / "folder").mkdir()
+    small, large = tmp_path / "b.db3", tmp_path
+    for path, most in ((small, 2**30), (large, 40 * 2**26)):
+        with pytest.raises(InputError) as refused:
+            read.read_bag(str(path))
+        assert str(refused.value) == f"{path}: the process that read it was ended by signal 9"
+        assert asked.pop() == (read._read, True, most, [str(path)], 1)
+
+
+def test_what_reads_bags_may_be_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    with pytest.raises(Unusable) as refused:
+        read.read_bag("a.mcap")
+    said = str(refused.value)
+    assert said.startswith("a bag cannot be read: ")
+    assert said.endswith("; pip install 'multibot_rewrite[bags]'")

@@ -6,11 +6,19 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 from launched_nodes import AT, launched, runs, started
 
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.records import Given
-from multibot_rewrite.producers.launch.bridges import Row, bridge_rows, bridged_by, is_bridge
+from multibot_rewrite.producers.launch.bridges import (
+    Row,
+    bridge_rows,
+    bridged_by,
+    is_bridge,
+    refused_rows,
+    told_rows,
+)
 from multibot_rewrite.producers.launch.records import RunningNode
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
@@ -47,9 +55,28 @@ def test_a_row_of_a_service_serves_it() -> None:
 
 def test_an_image_bridge_publishes_images() -> None:
     program = ("ros_gz_image", "image_bridge", "images")
-    assert said("/camera/image", program=program) == [
-        "publishes topic /camera/image sensor_msgs/msg/Image"
+    for words in (("/camera/image",), ("-v", "/camera/image", "/scan@a/msg/B[gz.C", "--once")):
+        assert said(*words, program=program) == [
+            "publishes topic /camera/image sensor_msgs/msg/Image"
+        ]
+
+
+def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() -> None:
+    """parameter_bridge.cpp: a topic needs its way, a service has none."""
+    topics = ("/a@x/msg/B[gz.C", "/b@x/msg/B]gz.C", "c@x/B@gz.C")
+    wrong = ("/d@x/msg/B", "/e@", "@x/msg/B[gz.C", "/f@x-y@z")
+    it = running(arguments=(*topics, "/g@x/srv/S@gz.C", *wrong, "/g@x/srv/S", "--ros-args", "-v"))
+    assert yaml.safe_load(told_rows(it)) == [
+        {"topic_name": name, "ros_type_name": type_, "gz_type_name": "gz.C", "direction": way}
+        for name, type_, way in (
+            *(("/a", "x/msg/B", "GZ_TO_ROS"), ("/b", "x/msg/B", "ROS_TO_GZ")),
+            ("c", "x/B", "BIDIRECTIONAL"),
+        )
     ]
+    assert [*refused_rows(it)] == [*wrong]
+    other = it._replace(program="ros_gz_image/image_bridge")
+    assert told_rows(other) == told_rows(running(arguments=wrong)) == ""
+    assert [*refused_rows(other)] == []
 
 
 @pytest.mark.parametrize(

@@ -465,6 +465,26 @@ def test_plugins_of_gazebo_classic_are_nodes_and_it_has_the_clock(run: Graph) ->
 
 
 @pytest.mark.parametrize(
+    ("nodes", "sent"),
+    [
+        ((("gazebo_ros/gzserver", ()),), 1), ((("gazebo_ros/gzserver", ()),) * 2, 1),
+        ((("gazebo_ros/gzserver", ("-s", "libgazebo_ros_init.so")),), 1),
+        ((("gazebo_ros/gzserver", ("-s", "libgazebo_ros_factory.so")),), 0),
+        ((("gazebo_ros/spawn_entity.py", ()),), 1), ((("gazebo_ros/other", ()),), 0),
+        ((("gazebo_ros/gzserver", ("-s", "x")), ("gazebo_ros/spawn_entity.py", ())), 0),
+        ((("ros_gz_sim/gzserver", ()),), 0),
+    ],
+)  # fmt: skip
+def test_who_has_the_clock_of_gazebo_classic(
+    run: Graph, nodes: tuple[tuple[str, tuple[str, ...]], ...], sent: int
+) -> None:
+    """Who spawns has it running, if in another launch; a command line may not load its plugin."""
+    made = run(*(node(program, "", "/", arguments=words) for program, words in nodes))
+    found = [it for it in made.ends if (it.role, it.name) == ("publishes", "/clock")]
+    assert [(it.node, it.type) for it in found] == [("/gazebo", "rosgraph_msgs/msg/Clock")] * sent
+
+
+@pytest.mark.parametrize(
     ("base", "found"), [("robot1/base_footprint", {"MG413"}), ("robot1/base_link", set())]
 )
 def test_a_frame_that_a_node_asks_for_and_nobody_sends(

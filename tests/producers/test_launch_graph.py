@@ -914,6 +914,58 @@ def test_a_parameter_has_the_type_that_launch_gives_it(
     assert values == {"p.q": kept} and type(values["p.q"]) is type(kept)
 
 
+@pytest.mark.parametrize(
+    ("value", "told", "unset"),
+    [
+        ("LaunchConfiguration('n', default='a: b: c')", "try wrapping it", False),
+        ("LaunchConfiguration('none')", "'none' is not set; give it with none:=VALUE", True),
+    ],
+)
+def test_a_value_that_is_none_is_told_and_the_others_are_kept(
+    value: str, told: str, unset: bool, tmp_path: Path
+) -> None:
+    """launch_ros jazzy, evaluate_parameters.py: what is no YAML is an error."""
+    values = f"{{'p': {value}, 'q': '1'}}"
+    graph = read(tmp_path, f"Node(package='a', executable='b', parameters=[{values}]),")
+    (note,) = graph.notes
+    assert (note.parameters, note.file, note.fails, note.unset) == (True, "", False, unset)
+    assert told in note.message
+    (node,) = graph.nodes
+    assert [it.untold for it in node.parameters] == ["p", ""]
+    assert yaml.safe_load(node.parameters[1].text) == {"/**": {"ros__parameters": {"q": "1"}}}
+
+
+def test_a_path_in_a_value_is_that_of_the_file_itself(tmp_path: Path) -> None:
+    """A folder of links to sources is gone when the launch has been read."""
+    (tmp_path / "map.yaml").write_text("image: a.pgm")
+    link = tmp_path / "link.yaml"
+    link.symlink_to("map.yaml")
+    values = f"{{'a': {str(link)!r}, 'b': ['x', {str(link)!r}], 'c': [1, 2]}}"
+    found = one(read(tmp_path, f"Node(package='a', executable='b', parameters=[{values}]),"))
+    kept = {}
+    for it in found.parameters:
+        kept |= yaml.safe_load(it.text)["/**"]["ros__parameters"] if not it.file else {}
+    path = str(tmp_path / "map.yaml")
+    assert kept == {"a": path, "b": ["x", path], "c": [1, 2]}
+
+
+@pytest.mark.parametrize(
+    ("command", "package"),
+    [
+        ("gz", "ros_gz_sim"), ("ign", "ros_gz_sim"), ("gazebo", "gazebo_ros"),
+        ("/usr/bin/gzserver", "gazebo_ros"), ("gzclient", ""), ("ros2", ""), ("", ""),
+    ],
+)  # fmt: skip
+def test_a_command_that_is_a_simulator_is_a_node(
+    command: str, package: str, tmp_path: Path
+) -> None:
+    process = f"ExecuteProcess(cmd=[{command!r}, '-s -r', 'a.sdf'])"
+    *made, _ = read(tmp_path, f"{process}, Node(package='a', executable='b'),").nodes
+    found = [(it.package, it.executable, it.name, it.namespace, it.arguments) for it in made]
+    words = ("-s", "-r", "a.sdf")
+    assert found == ([(package, "gzserver", "", "/", words)] if package else [])
+
+
 # launch jazzy, include_launch_description.py: it looks for arguments before anything is started.
 @pytest.mark.parametrize("given", ["", "launch_arguments=[('ip', '1')]"])
 def test_an_include_without_a_required_argument_starts_nothing(tmp_path: Path, given: str) -> None:

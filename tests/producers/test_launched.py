@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
@@ -12,6 +14,7 @@ from multibot_rewrite import InputError, UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.launched import world_files, worlds
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -34,6 +37,24 @@ def test_a_launched_node_runs_and_the_plan_says_its_line() -> None:
     found = runs(launched(AMCL))["amcl"]
     assert (found.origin, found.when, found.package) == ("bringup.launch.py:12", "", "nav2_amcl")
     assert "scan" in {it.name for it in found.endpoints}
+
+
+def test_the_worlds_in_the_words_of_a_simulator() -> None:
+    words = ("-r '/a b.sdf' c.world", "-v 4 d.model.xml", "e.model", "x 'f.sdf", "g.urdf")
+    gz = started("ros_gz_sim", "gzserver", arguments=words)
+    assert world_files(gz) == ["/a b.sdf", "c.world", "e.model"]
+    assert world_files(gz._replace(executable="create")) == []
+
+
+def test_a_world_that_is_there_is_read_but_for_classic(tmp_path: Path) -> None:
+    file = tmp_path / "a.world"
+    file.write_text('<sdf version="1.9"><world name="w"/></sdf>')
+    words = (str(file), str(tmp_path / "gone.sdf"))
+    nodes = [
+        started(package, "gzserver", arguments=words) for package in ("ros_gz_sim", "gazebo_ros")
+    ]
+    graph: Any = SimpleNamespace(graph=LaunchGraph(tuple(nodes)))
+    assert [(it.file, it.root.tag, it.place) for it in worlds(graph)] == [(str(file), "sdf", AT)]
 
 
 def test_what_a_stack_has_and_nothing_launches_is_left_out_with_a_note() -> None:

@@ -7,6 +7,8 @@ replies have ``ok`` or not, samples a kind, a payload and an attachment (eclipse
 
 from __future__ import annotations
 
+import json
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,11 +18,12 @@ from typing import Any
 import pytest
 from graph_cases import qos
 
+from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.producers.ros.assemble import TF_TYPES
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.zenoh import observe, tf
 from multibot_rewrite.producers.zenoh.observe import Router, look, watch
-from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession
+from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, End, Node, System
 
 SESSION = "aac3178e146ba6f1fc6e6a4085e77f21"
@@ -268,3 +271,103 @@ def test_nobody_heard_at_all_makes_a_view_incomplete(spoken: tuple[str, ...], de
         " from listening"
     )
     assert [*listener.caveats()] == [Caveat("frames-not-heard", deaf, text)]
+
+
+class ZError(Exception):
+    """As zenoh has it."""
+
+
+class Config:
+    """As ``zenoh.Config``: JSON by key; ``file`` is where it was read from."""
+
+    def __init__(self, file: str = "") -> None:
+        self.file, self.set = file, {}
+
+    @classmethod
+    def from_file(cls, path: str) -> Config:
+        if "wrong" in path:
+            raise ZError("Expected a colon. at /home/z/config.rs:5.")
+        return cls(path)
+
+    def insert_json5(self, key: str, value: str) -> None:
+        if "bad" in value:
+            raise ZError("no endpoint! ")
+        self.set[key] = json.loads(value)
+
+
+class Opened(Session):
+    """An open session; ``closed`` once it is."""
+
+    closed = False
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def with_zenoh(monkeypatch: pytest.MonkeyPatch, fault: str = "") -> tuple[list[Config], Opened]:
+    """A module in the place of zenoh: what it was opened with, and the session."""
+    configs: list[Config] = []
+    session = Opened([DRIVER])
+
+    def open_(config: Config) -> Opened:
+        configs.append(config)
+        if fault:
+            raise ZError(fault)
+        return session
+
+    module = SimpleNamespace(Config=Config, ZError=ZError, open=open_)
+    monkeypatch.setitem(sys.modules, "zenoh", module)
+    return configs, session
+
+
+CLIENT = {"mode": "client", "scouting/multicast/enabled": False}
+
+
+@pytest.mark.parametrize(
+    ("router", "seconds", "file", "more"),
+    [
+        ("tcp/h:7447", 9.0, "", {"connect/endpoints": ["tcp/h:7447"], "connect/timeout_ms": 3000}),
+        ("tcp/h:7447", 0.5, "", {"connect/endpoints": ["tcp/h:7447"], "connect/timeout_ms": 500}),
+        ("a.json5", 9.0, "a.json5", {"connect/timeout_ms": 3000}),
+        ("a.json", 9.0, "a.json", {"connect/timeout_ms": 3000}),
+    ],
+)
+def test_a_session_is_a_client_of_the_router_alone(
+    router: str, seconds: float, file: str, more: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    configs, session = with_zenoh(monkeypatch)
+    with opened(router, seconds) as found:
+        found.follow_tokens("k", lambda *_: None)
+        (declared,) = found.declared
+        assert found.tokens("@ros2_lv/2/**") == ([DRIVER], True)
+        assert not session.closed
+    assert session.closed and declared.ended
+    assert [(it.file, it.set) for it in configs] == [(file, {**CLIENT, **more})]
+
+
+@pytest.mark.parametrize(
+    ("router", "reason"),
+    [("wrong.json5", "Expected a colon"), ("tcp/bad", "no endpoint")],
+)
+def test_what_is_no_configuration_is_told(
+    router: str, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with_zenoh(monkeypatch)
+    with pytest.raises(InputError) as refused, opened(router, 1.0):
+        pass
+    hint = "give one that zenoh can load, or tcp/HOST:7447"
+    assert str(refused.value) == f"{router}: no session configuration of Zenoh: {reason}; {hint}"
+
+
+def test_a_router_that_does_not_answer_or_no_zenoh_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with_zenoh(monkeypatch, "Unable to connect to any of [tcp/h:7447]! at /z/orchestrator.rs:1.")
+    with pytest.raises(NoRouter, match=r"^Unable to connect to any of \[tcp/h:7447\]$"):
+        opened("tcp/h:7447", 1.0).__enter__()
+    monkeypatch.setitem(sys.modules, "zenoh", None)
+    with pytest.raises(Unusable) as refused:
+        opened("tcp/h:7447", 1.0).__enter__()
+    assert str(refused.value).endswith(
+        "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"
+    )

@@ -18,19 +18,27 @@ from multibot_rewrite.knowledge.records import (
     Param,
     SentTransform,
 )
-from multibot_rewrite.producers.addresses import of_hardware, of_parameters
+from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import bridge_ends, node_ends
 from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchNote, RunningNode
+from multibot_rewrite.producers.launch.node_transforms import prefix_of
+from multibot_rewrite.producers.launch.records import (
+    LaunchGraph,
+    LaunchNote,
+    ParameterText,
+    RunningNode,
+)
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import (
     _addresses,
     _caveats,
+    _clocks,
     _frames,
     _measured,
     _Part,
@@ -46,6 +54,8 @@ from multibot_rewrite.producers.transforms import (
     node_edges,
 )
 from multibot_rewrite.system.records import (
+    COMPUTER,
+    DEVICE,
     MAY,
     NOWHERE,
     OFF,
@@ -55,6 +65,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    UNTOLD,
     Address,
     Caveat,
     Controller,
@@ -62,6 +73,7 @@ from multibot_rewrite.system.records import (
     Heard,
     Interface,
     Lookup,
+    Parameter,
     Place,
     edge_of,
 )
@@ -279,6 +291,101 @@ def test_what_a_parameter_holds_for_one_node_alone() -> None:
     assert [*of_parameters("/n", known, values)] == [Address("own", "port", "9090", "/n", THERE)]
     for off in ("", False, "no", " Off "):
         assert [*of_parameters("/n", known, {"port": Given(off, AT)})] == []
+
+
+@pytest.mark.parametrize(
+    ("switch", "values", "prefix"),
+    [
+        ("", {}, ""), ("", {"tf_prefix": "/a/"}, "a/"), ("", {"tf_prefix": ""}, ""),
+        ("on", {}, "r/"), ("on", {"on": True}, "r/"), ("on", {"on": False}, ""),
+        ("on", {"tf_frame_prefix": "b"}, "b/"), ("on", {"tf_frame_prefix": "b", "on": False}, ""),
+        ("on", {"tf_prefix": "a"}, "r/"),
+    ],
+)  # fmt: skip
+def test_what_a_node_puts_before_its_frames(
+    switch: str, values: dict[str, object], prefix: str
+) -> None:
+    """ros_filter.cpp: tf_prefix; diff_drive_controller.cpp: its namespace, unless it is told not to."""
+    facts = NodeFacts("n", "a", (), prefix_switch=switch)
+    given = {name: Given(it, THERE) for name, it in values.items()}  # type: ignore[arg-type]
+    node = RunningNode("n", "/r", (), (), "/r", facts, given, "p", (), "acme/arm", AT)
+    assert prefix_of(node) == prefix
+    assert prefix_of(node._replace(facts=None)) == (
+        f"{values['tf_prefix']}".strip("/") + "/" if values.get("tf_prefix") else ""
+    )
+
+
+def test_the_file_of_a_text_that_a_launch_read() -> None:
+    texts = [
+        ParameterText("a", "x", ""),
+        ParameterText("b", "x", "b.urdf"),
+        ParameterText("c", "y", "c"),
+    ]
+    graph = LaunchGraph(files=tuple(("p", it) for it in texts))
+    assert (file_of(graph, "x"), file_of(graph, "y"), file_of(graph, "z")) == ("b.urdf", "c", "")
+
+
+WORDS_OF_DEVICES = (
+    "robot_ip robot_ip_address robot_address ip ip_address ip_addr controller_ip delto_ip device_ip"
+    " sensor_ip sensor_hostname lidar_ip camera_ip hostname"
+)
+WRITTEN = (
+    "save_path save_dir save_folder save_directory output_path output_dir output_folder"
+    " output_directory output_file log_path log_dir log_file record_path recording_path bag_path"
+)
+
+
+@pytest.mark.parametrize(
+    ("names", "text", "kind"),
+    [
+        (WORDS_OF_DEVICES, "10.0.0.2", DEVICE), (WORDS_OF_DEVICES, "127.0.0.1", ""),
+        (WORDS_OF_DEVICES, "0.0.0.0", ""), (WORDS_OF_DEVICES, "host.local", ""),
+        (WORDS_OF_DEVICES, "/dev/ttyUSB0", COMPUTER), ("serial_number serial_no", "1234", DEVICE),
+        ("serial_number serial_no", "none", ""), ("serial", "1234", ""),
+        ("port udp_port a.lidar_port", "1024", COMPUTER), ("port lidar_port", "1023", ""),
+        ("port lidar_port", "/dev/ttyACM0", COMPUTER), ("port_1 ports", "8080", ""),
+        (WRITTEN, "/data", COMPUTER), (WRITTEN, "", ""), ("path output", "/data", ""),
+        ("path bus", "can0", COMPUTER), ("bus", "vcan1", COMPUTER), ("bus", "can", ""),
+        ("bus", "xcan0", ""), ("bus", "/dev/", ""),
+    ],
+)  # fmt: skip
+def test_what_one_process_has_by_a_parameter_that_is_not_known(
+    names: str, text: str, kind: str
+) -> None:
+    """Ports below 1024 are those of the system; 127.0.0.1 is this computer."""
+    for name in names.split():
+        assert held_by(name, text) == held_by(f"driver.{name}", text) == kind
+        found = [*of_parameters("/n", {}, {name: Given(text, THERE)})]
+        assert found == ([Address(kind, name, text, "/n", THERE)] if kind else [])
+
+
+@pytest.mark.parametrize(
+    ("value", "notes", "told"),
+    [
+        (True, (), "true"), (False, (), "false"), (None, (), "false"), ("", (), UNTOLD),
+        (None, ((AT, True, ""),), UNTOLD), (None, ((AT, False, "x"),), "false"),
+        (None, ((THERE, True, ""),), "false"), (None, ((THERE, True, "x"),), UNTOLD),
+        (True, ((AT, True, ""),), "true"),
+    ],
+)  # fmt: skip
+def test_which_time_a_node_runs_on(
+    value: object, notes: tuple[tuple[Place, bool, str], ...], told: str
+) -> None:
+    """The default is false (rclcpp time_source.cpp); what only a run tells is untold."""
+    facts = NodeFacts("n", "a", (), known="n")
+    values = {} if value is None else {"use_sim_time": Given(value, THERE)}
+    node = RunningNode("n", "/", (), (), "/", facts, values, "p", (), "acme/arm", AT)
+    others = (
+        node._replace(facts=None), node._replace(facts=facts._replace(known="")),
+        node._replace(facts=facts._replace(known="static_transform_publisher")),
+        node._replace(program="ros_gz_bridge/parameter_bridge"),
+    )  # fmt: skip
+    said = [LaunchNote(at, "lost", parameters, file) for at, parameters, file in notes]
+    assert [*_clocks([node], said)] == [Parameter("/n", "use_sim_time", told)]
+    mute = [Parameter("/n", "use_sim_time", UNTOLD)] if told == UNTOLD else []
+    assert [[*_clocks([it], said)] for it in others] == [mute, mute, mute, []]
+    untold = [*_clocks([node._replace(untold=("use_sim_time",))], [])]
+    assert untold == [Parameter("/n", "use_sim_time", UNTOLD)]
 
 
 BASE = NodeFacts(

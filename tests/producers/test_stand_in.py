@@ -20,6 +20,7 @@ from multibot_rewrite.producers.launch.stand_in import (
     packages,
     parameters,
     parse,
+    ros,
     standing_in,
     values,
 )
@@ -515,3 +516,27 @@ def test_types_of_parameters_in_xml() -> None:
     simple = ("int", "float", "bool", "str")
     assert {"yaml", *simple, *(f"list_of_{it}" for it in simple)} == frontend._KINDS
     assert {it.__name__ for it in frontend._TYPES.values()} == {*simple} == {*frontend._TYPES}
+
+
+def test_transitions_have_the_numbers_of_lifecycle_msgs() -> None:
+    """lifecycle_msgs/msg/Transition.msg."""
+    known = ("CONFIGURE", "CLEANUP", "ACTIVATE", "DEACTIVATE")
+    found = [getattr(ros.Transition, f"TRANSITION_{it}") for it in known]
+    assert found == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("a b", [["a"], ["b"]]), ("a$(var x)b c", [["a", "x", "b"], ["c"]]), ("", []),
+        ("a $(var x)", [["a"], ["x"]]), ("$(var x) b", [["x"], ["b"]]),
+        ("$(var x)$(var y)", [["x", "y"]]), ("$(var x) $(var y)", [["x"], ["y"]]),
+        ("'a b' c", [["a b"], ["c"]]), ("a $(var x) ", [["a"], ["x"]]),
+    ],
+)  # fmt: skip
+def test_only_the_blanks_of_a_command_line_separate(line: str, words: list[list[str]]) -> None:
+    """launch execute_process.py, _parse_cmdline."""
+    context = LaunchContext()
+    context.launch_configurations.update({"x": "x", "y": "y"})
+    found = frontend._words(line)
+    assert [[it.perform(context) for it in word] for word in found] == words

@@ -74,6 +74,10 @@ def file(tmp_path: Path) -> str:
         ({"amcl.ros__parameters.new": "a"}, {}, "amcl.ros__parameters.new", "a"),
         ({"plain.key": "a"}, {}, "plain.key", "a"),
         ({"plain.other": "a"}, {}, "plain", {"key": 1}),
+        ({"z_hit": "x"}, {"convert_types": True}, "amcl.ros__parameters.z_hit", "x"),
+        ({"z_hit": "TRUE"}, {"convert_types": True}, "amcl.ros__parameters.z_hit", True),
+        ({"amcl.ros__parameters.new.deep": "a"}, {}, "amcl.ros__parameters.new", {"deep": "a"}),
+        ({"plain.other.deep": "a"}, {}, "plain", {"key": 1}),
         ({"z_hit": ""}, {}, "amcl.ros__parameters.z_hit", ""),
         ({"not_there": "a"}, {}, "amcl.ros__parameters", AMCL),
         ({}, {"root_key": "robot1"}, "robot1.amcl.ros__parameters", AMCL),
@@ -165,7 +169,35 @@ def test_the_robots_of_the_command_line(
     assert made[0].ParseMultiRobotPose("robots").value() == robots
 
 
-@pytest.mark.parametrize(("text", "truth"), [("on", "True"), ("1", "True"), ("no", "False")])
+@pytest.mark.parametrize("path", ["l.3", "l.3.a", "l.x", "l.-1", "l.0.ros.b", "k.a"])
+def test_a_place_that_is_not_there_is_not_made(path: str, tmp_path: Path) -> None:
+    file = tmp_path / "p.yaml"
+    file.write_text("l: [{a: 1}, 2, 3]\nk: 1\n")
+    written = nav2.RewrittenYaml(source_file=str(file), param_rewrites={path: "x"})
+    found = yaml.safe_load(Path(written.perform(LaunchContext())).read_text())
+    assert found == {"l": [{"a": 1}, 2, 3], "k": 1}
+    inside = nav2.RewrittenYaml(source_file=str(file), param_rewrites={"l.0.a": "x", "l.2": "y"})
+    found = yaml.safe_load(Path(inside.perform(LaunchContext())).read_text())
+    assert found == {"l": [{"a": "x"}, 2, "y"], "k": 1}
+
+
+def test_what_they_are_given_has_the_names_of_nav2_common(file: str) -> None:
+    context = LaunchContext()
+    context.launch_configurations["c"] = "yes"
+    words = {"source_file": file, "replacements": {"scan": "x"}, "condition": None}
+    assert "x_topic" in Path(nav2.ReplaceString(**words).perform(context)).read_text()
+    assert nav2.HasNodeParams(source_file=file, node_name="amcl").perform(context) == "True"
+    assert nav2.HasNodeParams(source_file=file, node_name="map").perform(context) == "False"
+    assert nav2.LaunchConfigAsBool(name="c").perform(context) == "True"
+
+
+@pytest.mark.parametrize(
+    ("text", "truth"),
+    [
+        *((it, "True") for it in ("on", "1", "true", "yes", " True ", "YES")),
+        *((it, "False") for it in ("no", "0", "false", "off", "", "x")),
+    ],
+)
 def test_a_launch_configuration_as_a_truth(text: str, truth: str) -> None:
     context = LaunchContext()
     context.launch_configurations["composed"] = text

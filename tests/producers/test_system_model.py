@@ -22,7 +22,7 @@ structure:
       plugin: nav2_amcl::AmclNode
       container: /robot1/box
       remaps: [{from: scan, to: front/scan}]
-      params: {use_sim_time: true}
+      params: {use_sim_time: true, a: 1}
       params_files: ["amcl: {ros__parameters: {a: 1}}"]
     /robot1/box: {pkg: rclcpp_components, exec: component_container, node_name: box, is_container: true}
     /driver: {pkg: acme, exec: driver, args: [--fast]}
@@ -49,7 +49,7 @@ def test_its_nodes_are_what_runs(tmp_path: Path) -> None:
     assert amcl.place == Place(str(tmp_path / "system_model.yaml"), 5)
     first, last = amcl.parameters
     assert first == ParameterText("", "amcl: {ros__parameters: {a: 1}}")
-    assert last.text == "/**:\n  ros__parameters:\n    use_sim_time: true\n"
+    assert last.text == "/**:\n  ros__parameters:\n    use_sim_time: true\n    a: 1\n"
     assert (box.name, box.container) == ("box", "")
     # The last word of its key is its executable, not its name.
     assert (driver.name, driver.namespace, driver.arguments) == ("", "/", ("--fast",))

@@ -10,7 +10,7 @@ from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.more
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 BASE = '<robot name="base"><link name="base"/></robot>\n'
 # The file of a part -> what is wrong with it.

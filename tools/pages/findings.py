@@ -62,17 +62,48 @@ _LANGUAGES = {
     "lua": "lua",
 }
 
+# What the rules are about, by how their codes begin.
+RULES_OF_LINT = {
+    "MB0": "the lint itself",
+    "MB1": "file, encoding and values",
+    "MB2": "references",
+    "MB3": "names",
+    "MB4": "several robots",
+    "MB5": "structure",
+    "MB6": "physics",
+    "MB7": "meshes and packages",
+    "MB8": "files beside the URDF: SRDF, parameters, RViz, MoveIt, bridges",
+    "MB9": "rewriting",
+}
+# What rules of other commands are about, by how their codes begin.
+TITLES = {
+    "MB1": "rewriting a description",
+    "MF1": "parameter files",
+    "MF2": "RViz",
+    "MF5": "bridges",
+    "MF7": "start poses and spawning",
+    "MF8": "what a robot's files say of its nodes",
+    "MG1": "not as planned: nodes, names, states",
+    "MG2": "not as planned: frames",
+    "MG3": "any system: nodes, names, commands, data",
+    "MG4": "any system: tf",
+    "MG5": "any system: time and states",
+    "MG7": "launch files",
+    "MR1": "remap tables",
+}
+
 
 def pages() -> dict[str, str]:
     """Path below docs/ -> Markdown."""
     linted = {
-        f"{it.start}: {it.title}": [
+        f"{it.start}: {RULES_OF_LINT[it.start]}": [
             rule for code, rule in RULES.items() if code.startswith(it.start)
         ]
         for it in GROUPS
     }
     others = {
-        it.start: (it.title, sorted(declared(it), key=lambda rule: rule.code)) for it in HOMES
+        it.start: (TITLES[it.start], sorted(declared(it), key=lambda rule: rule.code))
+        for it in HOMES
     }
     parts = [HEAD, LINT, *(_group(title, rules) for title, rules in linted.items()), OTHERS]
     parts += [

@@ -52,7 +52,7 @@ def collada_box(data: bytes) -> Extent | None:
 
 def _read(data: bytes) -> _File:
     corners = {}
-    stream = iterparse(BytesIO(data), tag=_READ_AT_ONCE, resolve_entities=False, no_network=True)
+    stream = iterparse(BytesIO(data), tag=_READ_AT_ONCE, resolve_entities=False)
     for _, it in stream:
         if it.tag.endswith("}geometry"):
             corners[it.get("id", "")] = _corners(it)

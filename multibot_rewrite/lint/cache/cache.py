@@ -219,9 +219,9 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
         part, urdfs, known = value
         elsewhere = None if known is None else KnownArguments(tuple(known[0]), bool(known[1]))
         pairs = tuple((name, path) for name, path in urdfs)
+        return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
     except (TypeError, ValueError, LookupError):
         return None
-    return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
 
 
 # What reads descriptions; xacro may be that of a sourced ROS.
@@ -234,7 +234,7 @@ def identity(settings: Settings) -> str:
     """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     folders = [_HERE, *map(_folder_of, LIBRARIES)]
-    programs = [_state(it) for folder in folders for it in _files(folder)]
+    programs = sorted(_state(it) for folder in folders for it in _files(folder))
     return digest(repr((__version__, where, programs, _vocabulary(settings), plain(settings))))
 
 
@@ -262,8 +262,8 @@ def _folder_of(library: str) -> str:
 
 def _files(folder: str) -> Iterator[str]:
     for top, folders, names in os.walk(folder):
-        folders[:] = sorted(it for it in folders if it != _COMPILED)
-        yield from (os.path.join(top, it) for it in sorted(names))
+        folders[:] = [it for it in folders if it != _COMPILED]
+        yield from (os.path.join(top, it) for it in names)
 
 
 def _state(path: str) -> tuple[str, int, int]:

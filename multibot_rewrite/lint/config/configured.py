@@ -31,7 +31,7 @@ from multibot_rewrite.lint.config.values import (
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings, matches
 
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
-MARKS = (b"urdf-lint", b"urdf_lint")
+MARK = b"urdf"
 NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics", "groups")
 DEFAULT_NAMING: Mapping[str, Any] = {}
 
@@ -74,7 +74,7 @@ def _above(near: str) -> Iterator[str]:
             yield own
         # Parsing is slow compared with the rest of a start, and most projects do not have the table.
         data = read(project) if os.path.isfile(project) else b""
-        if any(mark in data for mark in MARKS) and _in_project(project, data) is not None:
+        if MARK in data and _in_project(project, data) is not None:
             yield project
 
 

@@ -22,7 +22,7 @@ IGNORE, IGNORE_FILE = "ignore", "ignore-file"
 ALWAYS_REPORTED = frozenset(
     {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB145", "MB119"}
 )
-_OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
+_OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = range(5)
 _PART = lazy_compile(
     rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</?([^\s/>!?]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
     re.DOTALL,
@@ -40,7 +40,7 @@ _HOW = "write urdf-lint: ignore CODE, CODE - reason"
 class Part(NamedTuple):
     """A tag, comment or the like by byte offsets; ``name`` is that of an element's first tag."""
 
-    kind: str
+    kind: int
     start: int
     end: int
     name: bytes = b""
@@ -217,14 +217,14 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
     return it._replace(codes=(), faults=(*it.faults, late))
 
 
-def _is_idle(it: Directive, tags: Sequence[Part], before: str) -> bool:
+def _is_idle(it: Directive, tags: Sequence[Part], before: int) -> bool:
     """Is there no element below the comment, and no tag or text on its lines?"""
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]
     return not it.element and not on_the_lines and before != _OPEN
 
 
-def _kind_before(parts: Sequence[Part], at: int) -> str:
+def _kind_before(parts: Sequence[Part], at: int) -> int:
     """The kind of what is in front of a comment, other comments aside."""
     kinds = (parts[number].kind for number in range(at - 1, -1, -1))
     return next((kind for kind in kinds if kind != _COMMENT), _OTHER)

@@ -91,7 +91,9 @@ def _asked_for(path: str) -> Iterator[str]:
         # What is before the last substitution of a path is not known; one within a file's name stands
         # for a part of it.
         folder, _, last = _FILLED.sub("*", _FILLED.sub("*", name)).rpartition("/")
-        above = folder.rpartition("*")[2]
+        _, filled, above = folder.rpartition("*")
+        # Nor is the name of the folder that the substitution is a part of.
+        above = above.partition("/")[2] if filled else folder
         known = f"{above}/{last}" if _LITERAL.search(last) else last.rpartition("*")[2]
         asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
         if asked and not fnmatchcase(own, f"*/{asked}"):

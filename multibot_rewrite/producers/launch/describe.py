@@ -269,7 +269,7 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
 
 def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     """The texts of files that the launch makes and names in values, such as that of a bridge."""
-    for path in (it for it in values if isinstance(it, str) and "\n" not in it):
+    for path in (it for it in values if isinstance(it, str)):
         if os.path.isfile(path) and not kept_file(path):
             yield from _file(path, here)
 

@@ -35,6 +35,4 @@ def read_text(path: str) -> str:
 
 def kept_file(path: str) -> str:
     """The real path of a file that is there when the launch is over, else nothing."""
-    if "\n" in path:
-        return ""
-    return "" if is_made(path) or not os.path.isfile(path) else os.path.realpath(path)
+    return os.path.realpath(path) if os.path.isfile(path) and not is_made(path) else ""

@@ -35,9 +35,10 @@ _PROGRAM_NAME = "controller_manager"
 _GIVEN = ParameterText(
     "", "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n"
 )
-# Frames of systems of gz that send odometry, and their topic (gz-sim src/systems: diff_drive,
-# ackermann_steering, mecanum_drive, tracked_vehicle, odometry_publisher).
-_PARENTS = ("frame_id", "odom_frame", "odometry_frame")
+# Frames of systems of gz that send odometry, with the last word of their topic where the description
+# names none (gz-sim src/systems: diff_drive, ackermann_steering, mecanum_drive, tracked_vehicle;
+# OdometryPublisher.cc:283), and of Classic's drives.
+_PARENTS = {"frame_id": "tf", "odom_frame": "pose", "odometry_frame": "tf"}
 _CHILDREN = ("child_frame_id", "robot_base_frame")
 _TF, _CLASSIC_TF = "tf_topic", "/tf"
 _FRAME = "frame_name"
@@ -204,11 +205,13 @@ def _sent(model: Model) -> Iterator[tuple[str, Edge]]:
     plugins: dict[int, dict[str, str]] = {}
     for it in (*model.reading.names, *model.reading.missed):
         if it.tag == "plugin" and it.kind in (FRAME, TOPIC):
-            plugins.setdefault(it.number, {})[it.path] = it.name.replace(MODEL, model.name)
+            name = it.name.replace(MODEL, f"{model.name}/")
+            plugins.setdefault(it.number, {})[it.path] = name
     for number in {it.number for it in model.reading.nodes} & plugins.keys():
         del plugins[number]
     for own in plugins.values():
-        parent = next((own[it] for it in _PARENTS if it in own), "")
+        parent = next((it for it in _PARENTS if it in own), "")
         child = next((own[it] for it in _CHILDREN if it in own), "")
         if parent and child:
-            yield own.get(_TF, f"/model/{model.name}/tf"), edge_of(parent, child)
+            topic = own.get(_TF, f"/model/{model.name}/{_PARENTS[parent]}")
+            yield topic, edge_of(own[parent], child)

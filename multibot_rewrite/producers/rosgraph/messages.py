@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from multibot_rewrite.base.record import NamedTuple
 
-# The numbers of QoSProfile.msg are places in these lists.
+# The numbers of QoSProfile.msg, and of rmw types.h, are places in these lists.
 HISTORY = ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")
 RELIABILITY = ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE")
 DURABILITY = ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE")

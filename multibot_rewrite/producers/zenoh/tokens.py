@@ -16,6 +16,12 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.rosgraph.messages import (
+    DURABILITY,
+    HISTORY,
+    LIVELINESS,
+    RELIABILITY,
+)
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -39,18 +45,7 @@ _ENDS = {
 }
 _NODE_PARTS, _END_PARTS = 9, 13
 _HASH = "RIHS"
-# rmw types.h, by number; qos.cpp has the first default of each.
-_RELIABILITY = ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE")
-_DURABILITY = ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE")
-_HISTORY = ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")
-_LIVELINESS = (
-    "SYSTEM_DEFAULT",
-    "AUTOMATIC",
-    "MANUAL_BY_NODE",
-    "MANUAL_BY_TOPIC",
-    "UNKNOWN",
-    "BEST_AVAILABLE",
-)
+# qos.cpp.
 _DEFAULT_DEPTH = 42
 # RMW_DURATION_INFINITE: the seconds and nanoseconds of the largest int64.
 _INFINITE_SECONDS = 9223372036
@@ -138,13 +133,13 @@ def read_qos(text: str) -> Qos:
         raise _Malformed
     reliability, durability, history, deadline, lifespan, liveliness = parts[:6]
     return Qos(
-        _word(_HISTORY, history[0], "KEEP_LAST"),
+        _word(HISTORY, history[0], "KEEP_LAST"),
         _number(history[1], _DEFAULT_DEPTH),
-        _word(_RELIABILITY, reliability[0], "RELIABLE"),
-        _word(_DURABILITY, durability[0], "VOLATILE"),
+        _word(RELIABILITY, reliability[0], "RELIABLE"),
+        _word(DURABILITY, durability[0], "VOLATILE"),
         _seconds(*deadline),
         _seconds(*lifespan),
-        _word(_LIVELINESS, liveliness[0], "AUTOMATIC"),
+        _word(LIVELINESS, liveliness[0], "AUTOMATIC"),
         _seconds(*liveliness[1:]),
     )
 

@@ -7,7 +7,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.base.conventions import ANY
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
@@ -105,7 +104,7 @@ def more_senders_than_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     single = {it.name for it in plan.system.topics if it.one_sender}
     for name, own in nodes.items():
         there, most = len(_publishers(seen, name)), 1 if name in single else len(own)
-        if there > most and seen.robot(name) and not any(ANY in it for it in own):
+        if there > most and seen.robot(name) and not any("*" in it for it in own):
             message = f"{name} has {there} publishers, planned are {most}"
             hint = f"planned: {shorten(sorted(own), SEVERAL)}"
             yield sender_not_planned.finding(message, hint, robot=seen.robot(name), names=(name,))

@@ -85,6 +85,9 @@ def loaded(text: str, folder: Path) -> Tree:
         ("<x>hip nobody</x>", "x uses joint form=list"),
         ("<x>bot::arm</x>", "x uses link form=scoped"),
         ("<x>arm/light</x>", "x uses link form=suffixed"),
+        ("<x>arm/light/on</x>", "x uses link form=suffixed"),
+        ("<x>bot::arm other</x>", "# x: 'bot::arm other'"),
+        ("<x>bot::arm, hip</x>", "x uses joint form=list"),
         ("<x>a:=arm</x>", "x uses topic form=remap"),
         ("<x>nobody</x><!-- none -->", "# x: 'nobody'"),
         ("<x>3.5 1e3</x>", "# x: '3.5 1e3'"),
@@ -118,6 +121,7 @@ def test_a_guess_from_the_value(child: str, row: str) -> None:
         ("<joint_states_topic>a</joint_states_topic>", "joint_states_topic uses topic"),
         ("<link>other::a</link>", "link uses link form=scoped"),
         ('<param name="frame_id">a</param>', "param[@name=frame_id] uses frame"),
+        ('<parameter name="frame_id">a</parameter>', "parameter[@name=frame_id] uses frame"),
         ('<joint name="a"/>', "joint@name uses joint"),
         ("<frame_rate>a</frame_rate>", "# frame_rate: 'a'"),
         ("<topic>two words</topic>", "# topic: 'two words'"),
@@ -138,6 +142,13 @@ def test_a_guess_from_the_tag(child: str, row: str) -> None:
         ("hardware/param[@name=left_wheel_joint]", "joint"),
         ("@frame", "frame"),
         ("frames", "frame"),
+        *(
+            (f"joint_{it}", "joint")
+            for it in ("name", "names", "id", "ids", "list", "value", "text")
+        ),
+        ("joint_size", ""),
+        ("list/joint", "joint"),
+        ("joint/ids", "joint"),
         ("x", ""),
         ("_", ""),
     ],
@@ -166,6 +177,12 @@ def test_values_of_several_kinds_at_one_path_all_count() -> None:
     assert [row.guess and row.guess.kinds for row in section.rows] == [
         ("joint", "link"),
         ("topic",),
+    ]
+    # A rule says nothing of what the others are, nor does a tag.
+    (section,) = suggested(plugin("<x_topic>go</x_topic><y>hip</y><y>hip knee</y><y>a:=b</y>"))
+    assert [(it.guess and it.guess.kinds, it.guess and it.guess.form) for it in section.rows] == [
+        (("topic",), "whole"),
+        (("joint",), "list"),
     ]
 
 

@@ -58,6 +58,10 @@ def test_a_letter_digit_or_underscore_means_itself() -> None:
         ("(^a|b)$", ("a", "b"), ("ab",)),
         ("a+?b*?", ("a", "aab"), ("b",)),
         ("\\x61\\u0062\\.", ("ab.",), ("abc",)),
+        # ECMA-262: a dot is no end of a line; a range has both its ends.
+        (".", ("a", "\t"), ("\n", "\r")),
+        ("[a-c]", ("a", "b", "c"), ("d", "-")),
+        ("[a-a]", ("a",), ("b",)),
         # A letter beyond ASCII is two bytes.
         ("..", ("é", "ab"), ("éé",)),
     ],
@@ -85,6 +89,8 @@ def test_each_class_has_its_characters() -> None:
         assert Pattern(f"\\{name.upper()}").matches(other)
     for name, character in (("n", "\n"), ("t", "\t"), ("r", "\r"), ("f", "\f"), ("v", "\v")):
         assert Pattern(f"\\{name}").matches(character)
+        assert not Pattern(f"\\{name}").matches("x")
+    assert Pattern("\\0").matches("\0") and not Pattern("\\0").matches("0")
     for name in "123456789bBcxu":
         with pytest.raises(PatternError):
             Pattern(f"a\\{name}")

@@ -14,7 +14,11 @@ import pytest
 from multibot_rewrite import InputError, rewrite, strip
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.description.sources.access import Reach
-from multibot_rewrite.description.sources.included_models import VARIABLES, with_includes
+from multibot_rewrite.description.sources.included_models import (
+    VARIABLES,
+    model_file,
+    with_includes,
+)
 from multibot_rewrite.fleet.proposal.looking import NeededValues, look
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
@@ -211,3 +215,169 @@ def test_init_takes_a_model_whose_links_are_included(rover: Path) -> None:
     mid = rover.parent.parent / "mid" / "model.sdf"
     looked = look(str(mid), {}, Reach(), NeededValues(()))
     assert (looked.links, looked.fault) == (2, "")
+
+
+INNER = """<sdf version="1.9"><model name="in" canonical_link="b"><pose>1 0 0 0 0 0</pose>
+<link name="a"/><!-- a note --><link name="b"><pose>0 0 1 0 0 0</pose></link>
+<model name="n"><link name="x"/></model><frame name="f"/>
+<frame name="g" attached_to="a"><pose relative_to="__model__">0 0 2 0 0 0</pose></frame>
+<frame name="h" attached_to="__model__"><pose>0 0 3 0 0 0</pose></frame>
+<joint name="j" type="revolute"><parent> __model__ </parent><child>b</child>
+<axis><xyz expressed_in="__model__">0 0 1</xyz></axis><axis2><xyz expressed_in="a">0 1 0</xyz></axis2>
+</joint><static>true</static></model></sdf>"""
+OUTER = """<sdf version="1.9"><model name="out"><link name="o"/>{}</model></sdf>"""
+PLUGIN = '<plugin name="p" filename="f"/>'
+
+
+def put_in(folder: Path, include: str, inner: str = INNER) -> str:
+    """What stands in the place of an include, without lines."""
+    (folder / "in.sdf").write_text(inner)
+    file = folder / "out.sdf"
+    file.write_text(OUTER.format(include))
+    text = with_includes(file.read_bytes(), str(file)).decode()
+    before, _, after = OUTER.format("|").partition("|")
+    assert text.startswith(before) and text.endswith(after)
+    return re.sub(r"\s*\n\s*", "", text.removeprefix(before).removesuffix(after)).replace(
+        "> <", "><"
+    )
+
+
+@pytest.mark.parametrize(
+    ("merge", "pose", "placed"),
+    [
+        ("true", "", '<pose relative_to="__model__">1 0 0 0 0 0</pose>'),
+        (" TRUE ", "<pose>2 0 0 0 0 0</pose>", '<pose relative_to="__model__">2 0 0 0 0 0</pose>'),
+        ("1", '<pose relative_to="o">2 0 0 0 0 0</pose>', '<pose relative_to="o">2 0 0 0 0 0</pose>'),
+    ],
+)  # fmt: skip
+def test_a_merged_model_is_placed_from_a_frame_that_stands_for_it(
+    merge: str, pose: str, placed: str, tmp_path: Path
+) -> None:
+    """sdformat parser.cc, readXml and the merge-include tests of includes.cc."""
+    include = f'<include merge="{merge}"><uri>in.sdf</uri>{pose}{PLUGIN}</include>'
+    mine = '_merged__in__model__"'
+    assert put_in(tmp_path, include) == (
+        f'<frame name="{mine} attached_to="b">{placed}</frame>'
+        f'<link name="a"><pose relative_to="{mine}>0 0 0 0 0 0</pose></link>'
+        f'<link name="b"><pose relative_to="{mine}>0 0 1 0 0 0</pose></link>'
+        f'<model name="n"><link name="x"/><pose relative_to="{mine}>0 0 0 0 0 0</pose></model>'
+        f'<frame name="f" attached_to="{mine}/>'
+        f'<frame name="g" attached_to="a"><pose relative_to="{mine}>0 0 2 0 0 0</pose></frame>'
+        f'<frame name="h" attached_to="{mine}><pose>0 0 3 0 0 0</pose></frame>'
+        '<joint name="j" type="revolute"><parent>_merged__in__model__</parent><child>b</child>'
+        f'<axis><xyz expressed_in="{mine}>0 0 1</xyz></axis>'
+        f'<axis2><xyz expressed_in="a">0 1 0</xyz></axis2></joint>{PLUGIN}'
+    )
+
+
+def test_a_merged_model_without_a_pose_or_a_canonical_link(tmp_path: Path) -> None:
+    inner = '<sdf version="1.9"><model name="in"><link name="a"/><link name="b"/></model></sdf>'
+    found = put_in(
+        tmp_path, '<include merge="true"><uri>in.sdf</uri><name>x</name></include>', inner
+    )
+    first = (
+        '<frame name="_merged__x__model__" attached_to="a"><pose relative_to="__model__"/></frame>'
+    )
+    assert found.startswith(first)
+
+
+def test_a_model_is_nested_with_what_its_include_says(tmp_path: Path) -> None:
+    said = (
+        "<name>front</name><pose>3 0 0 0 0 0</pose><static>false</static>"
+        "<placement_frame>b</placement_frame>"
+    )
+    inner = (
+        '<sdf version="1.9"><model name="in"><pose>1 0 0 0 0 0</pose><link name="a"/>'
+        "<static>true</static><!-- gone --></model></sdf>"
+    )
+    plain = '<include merge="false"><uri>in.sdf</uri></include>'
+    assert put_in(tmp_path, plain, inner) == (
+        '<model name="in"><pose>1 0 0 0 0 0</pose><link name="a"/><static>true</static></model>'
+    )
+    assert put_in(tmp_path, f"<include><uri>in.sdf</uri>{said}{PLUGIN}</include>", inner) == (
+        '<model name="front" placement_frame="b"><link name="a"/><pose>3 0 0 0 0 0</pose>'
+        f"<static>false</static>{PLUGIN}</model>"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "is_in"),
+    [
+        ('<sdf version="1.7"><model name="in"><link name="a"><pose frame=""/></link></model></sdf>',
+         True),
+        ('<sdf version="1.6"><model name="in"><link name="a"><pose frame=""/></link></model></sdf>',
+         False),
+        ('<sdf version="1.6"><model name="in"><link name="a"><pose/></link></model></sdf>', True),
+        ('<sdf version="1.6"><model name="in"><use_parent_model_frame/></model></sdf>', False),
+        ('<sdf version="1.10"><model name="in"><link frame ="a"/></model></sdf>', True),
+        ('<sdf><model name="in"><link frame="a"/></model></sdf>', False),
+        ('<sdf version="1.9"/>', False),
+        # What is lost in an include of it would be lost in the model.
+        ('<sdf version="1.9"><model name="in"><include><uri>gone</uri></include></model></sdf>', False),
+    ],
+)  # fmt: skip
+def test_what_is_put_in_says_the_same_in_a_new_file(text: str, is_in: bool, tmp_path: Path) -> None:
+    """Before 1.7 a pose had a frame, and an axis that of the model above."""
+    include = "<include><uri>in.sdf</uri></include>"
+    assert (put_in(tmp_path, include, text) != include) == is_in
+
+
+def test_only_the_include_of_a_model_in_a_file_without_a_world_is_one(tmp_path: Path) -> None:
+    (tmp_path / "in.sdf").write_text(INNER)
+    include = "<include><uri>in.sdf</uri></include>"
+    for text in (
+        f'<sdf version="1.9">{include}</sdf>', f"<robot name='r'><model>{include}</model></robot>",
+        f'<sdf version="1.9"><world name="w"/><model name="m">{include}</model></sdf>',
+        f'<sdf version="1.9"><model name="m"><own>{include}</own></model></sdf>',
+    ):  # fmt: skip
+        assert with_includes(text.encode(), str(tmp_path / "out.sdf")) == text.encode()
+
+
+@pytest.mark.parametrize(("files", "whole"), [(12, True), (13, False)])
+def test_includes_are_followed_so_deep(files: int, whole: bool, tmp_path: Path) -> None:
+    for at in range(files):
+        inner = f"<include><uri>m{at + 1}.sdf</uri></include>" if at + 1 < files else ""
+        text = f'<sdf version="1.9"><model name="m{at}"><link name="l"/>{inner}</model></sdf>'
+        (tmp_path / f"m{at}.sdf").write_text(text)
+    top = tmp_path / "m0.sdf"
+    assert (b"<include" not in with_includes(top.read_bytes(), str(top))) == whole
+
+
+@pytest.mark.parametrize(
+    ("config", "found"),
+    [
+        ("<model><sdf version='1.9'> a.sdf\n</sdf></model>", "a.sdf"), ("<model/>", ""),
+        ("<model><sdf version='1.10'>a.sdf</sdf><sdf version='1.9'>b.sdf</sdf></model>", "a.sdf"),
+        ("<model><sdf>b.sdf</sdf><sdf version='1.9'>a.sdf</sdf></model>", "a.sdf"),
+        ("<model><sdf version='1.9'>x/a.sdf</sdf></model>", ""), ("<model><sdf/></model>", ""),
+        ("<model><sdf version='1.9'>gone.sdf</sdf></model>", ""), ("<model", ""),
+    ],
+)  # fmt: skip
+def test_the_file_of_a_model_is_the_newest_that_its_config_names(
+    config: str, found: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    home = tmp_path / "m"
+    (home / "x").mkdir(parents=True)
+    for name in ("a.sdf", "b.sdf", "x/a.sdf"):
+        (home / name).write_text("<sdf/>")
+    (home / "model.config").write_text(config)
+    for uri in ("model://m", "m", "model://m/"):
+        assert model_file(uri, str(tmp_path)) == (str(home / found) if found else "")
+
+
+def test_where_a_model_is_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where Gazebo is told, then in the folder of the file, the one above, and its models."""
+    for name in VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    told, own = tmp_path / "told", tmp_path / "own" / "deep"
+    places = [told, own, own.parent, own.parent / "models"]
+    for it in places:
+        it.mkdir(parents=True, exist_ok=True)
+        (it / "a.sdf").write_text("<sdf/>")
+    monkeypatch.setenv(VARIABLES[0], f":{told}")
+    for it in places:
+        assert model_file("model://a.sdf", str(own)) == str(it / "a.sdf")
+        (it / "a.sdf").unlink()
+    assert model_file("model://a.sdf", str(own)) == ""

@@ -113,6 +113,37 @@ def test_qos(text: str, expected: Qos) -> None:
     assert read_qos(text) == expected
 
 
+# rmw types.h, by number: reliability, durability, history, liveliness.
+WORDS = {
+    "{}::,:,:,:,,": ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE"),
+    ":{}:,:,:,:,,": ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE"),
+    "::{},:,:,:,,": ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN"),
+    "::,:,:,:{},,": (
+        *("SYSTEM_DEFAULT", "AUTOMATIC", "MANUAL_BY_NODE", "MANUAL_BY_TOPIC", "UNKNOWN"),
+        "BEST_AVAILABLE",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "field"), [*zip(WORDS, (2, 3, 0, 6), strict=True)])
+def test_the_words_of_a_profile_are_those_of_rmw_by_number(text: str, field: int) -> None:
+    for number, word in enumerate(WORDS[text]):
+        found = read_qos(text.format(number))
+        assert found[field] == word
+        assert (*found[:field], *found[field + 1 :]) == (*DEFAULT[:field], *DEFAULT[field + 1 :])
+    assert read_token(SUBSCRIPTION.replace("::,10:,:,:,,", text.format(len(WORDS[text])))) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("0,500000000", 0.5), ("2,0", 2.0), ("9223372036,0", inf), ("1,", 1.854775807)],
+)
+def test_the_times_of_a_profile(text: str, seconds: float) -> None:
+    assert read_qos(f"::,:{text}:,:,,").deadline == seconds
+    assert read_qos(f"::,:,:{text}:,,").lifespan == seconds
+    assert read_qos(f"::,:,:,:,{text}").liveliness_lease_duration == seconds
+
+
 @pytest.mark.parametrize(
     "key",
     [

@@ -177,6 +177,13 @@ def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
     found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given(EKF), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == ["ekf_node"]
     assert [it.when for it in found.nodes] == [""]
+    # A node that is not it does not make doubtful which one is meant.
+    beside = given(f"{EKF}navsat_transform_node:\n  ros__parameters: {{}}\n")
+    found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), beside, load_nodes("jazzy"))
+    assert {it.name: bool(it.when) for it in found.nodes} == {
+        "ekf_node": False,
+        "navsat_transform_node": True,
+    }
 
 
 def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:

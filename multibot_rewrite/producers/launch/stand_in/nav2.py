@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
 import yaml
@@ -69,10 +70,8 @@ class RewrittenYaml(_OfFile):
     def _value(self, text: str) -> Any:
         kinds: list[Callable[[str], Any]] = [int, float] if self.convert_types else []
         for kind in kinds:
-            try:
+            with suppress(ValueError):
                 return kind(text)
-            except ValueError:
-                continue
         return {"true": True, "false": False}.get(text.lower(), text)
 
 

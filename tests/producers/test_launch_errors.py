@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is said of errors that a launch file raises: whose fault it is, and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.producers.launch.failures import (
+    failure,
+    is_certain,
+    is_no_text,
+    is_of_file,
+    is_unset,
+    lost_file,
+    missing_module,
+    missing_package,
+)
+
+UNSET = (
+    "the launch configuration 'a.b' is not set; give it with a.b:=VALUE, or where this is included"
+)
+
+
+def caused(error: BaseException, cause: BaseException) -> BaseException:
+    error.__cause__ = cause
+    return error
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (RuntimeError("launch configuration 'a.b' does not exist"), UNSET),
+        (RuntimeError('Required launch argument "a.b" was not provided'), UNSET),
+        (RecursionError("x"), "it includes or calls itself without an end"),
+        (FileNotFoundError(2, "x", "gazebo"),
+         "it starts the program 'gazebo' itself, which is not installed here"),
+        (SystemExit(3),
+         "it ends itself (sys.exit(3)); give it the arguments that it reads from the command line"
+         " (NAME:=VALUE)"),
+        (ValueError("two\n lines"), "ValueError: two lines"),
+        (FileNotFoundError(2, "No such file", "/a/../b.yaml"),
+         "FileNotFoundError: [Errno 2] No such file: '/b.yaml'"),
+        (RuntimeError("Unrecognized entity of the type: rosparam"),
+         "RuntimeError: Unrecognized entity of the type: rosparam; it is a launch file of ROS 1; in"
+         " ROS 2 it is $(find-pkg-share NAME), $(var NAME), exec="),
+    ],
+)  # fmt: skip
+def test_an_error_is_one_line_with_what_to_do(error: BaseException, said: str) -> None:
+    assert failure(error) == said
+
+
+@pytest.mark.parametrize(
+    ("text", "package", "module"),
+    [
+        ("\"package 'nav2-x' not found, searching: ['/opt']\"", "nav2-x", ""),
+        ("No module named 'acme'", "", "acme"), ("no such thing", "", ""),
+    ],
+)  # fmt: skip
+def test_what_is_missing_has_its_name(text: str, package: str, module: str) -> None:
+    error = RuntimeError(text)
+    assert (missing_package(error), missing_module(error)) == (package, module)
+    hint = f"package {package or module!r} is not installed here; "
+    assert failure(error).startswith(hint if package or module else "RuntimeError: ")
+
+
+def test_whether_a_value_is_not_set() -> None:
+    assert is_unset(RuntimeError("launch configuration 'a' does not exist"))
+    assert is_unset(RuntimeError('Required launch argument "a" was not provided'))
+    assert not is_unset(RuntimeError("launch argument 'a' is odd"))
+
+
+@pytest.mark.parametrize(
+    ("error", "of_file"),
+    [
+        (SyntaxError("x"), True), (NameError("x"), True), (RecursionError("x"), True),
+        (FileNotFoundError("x"), True), (SystemExit(1), True), (ValueError("x"), False),
+        (caused(RuntimeError("x"), NameError("y")), True),
+        (caused(NameError("x"), ValueError("y")), False),
+        (RuntimeError("Unknown substitution: arg"), True),
+        (RuntimeError("Unknown substitution: args"), False),
+        (AttributeError("x", name="y", obj=1), False),
+    ],
+)  # fmt: skip
+def test_what_launch_does_not_read_either(error: BaseException, of_file: bool) -> None:
+    assert is_of_file(error) is of_file
+
+
+def test_a_file_that_is_lost_is_to_be_put_there() -> None:
+    put = "; put it there, or source the built workspace that has it"
+    lost = FileNotFoundError("x")
+    assert lost_file(lost) == lost_file(caused(RuntimeError("x"), lost)) == put
+    assert lost_file(ValueError("x")) == ""
+
+
+def raised(text: str, file: str) -> BaseException:
+    """What a program of that name raises."""
+    try:
+        exec(compile(text, file, "exec"), {})
+    except Exception as error:
+        return error
+    raise AssertionError("nothing is raised")
+
+
+@pytest.mark.parametrize(
+    ("text", "file", "certain"),
+    [
+        ("raise ValueError('x')", "a.launch.py", True), ("raise ValueError('x')", "a.py", False),
+        ("1 / 0", "a.launch.py", True), ("nowhere", "a.launch.py", True),
+        ("raise OSError('x')", "a.launch.py", False),
+        ("raise ValueError('no /dev/ttyUSB0')", "a.launch.py", False),
+        ("raise RuntimeError('a missing required argument x')", "a.py", True),
+        ("raise TypeError('Failed to normalize given item of type')", "a.py", True),
+        ("raise RecursionError('x')", "a.py", True),
+    ],
+)  # fmt: skip
+def test_what_fails_on_every_machine(text: str, file: str, certain: bool) -> None:
+    assert is_certain(raised(text, file), "/ws/a.launch.py") is certain
+
+
+def test_a_file_beside_the_launch_file_is_missing_everywhere(tmp_path: Path) -> None:
+    launch = str(tmp_path / "a.launch.py")
+    for path, certain in (("b/c.yaml", True), ("../c.yaml", False)):
+        lost = FileNotFoundError(2, "x", str(tmp_path / path))
+        assert is_certain(lost, launch) is certain
+        assert is_certain(caused(RuntimeError("x"), lost), launch) is certain
+
+
+def test_what_is_no_text() -> None:
+    assert is_no_text(TypeError("Failed to normalize given item of type 'x'"))
+    assert not is_no_text(ValueError("Failed to normalize given item"))
+    assert not is_no_text(TypeError("x"))

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Descriptions that a launch file puts into a simulator, and what systems and plugins in them send."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from launched_nodes import AT, started
+
+from multibot_rewrite.producers.launch.models import (
+    Model,
+    Models,
+    Published,
+    frames_of_plugins,
+    managers,
+    models_of,
+    sent_by_plugins,
+    sent_in_simulator,
+)
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
+from multibot_rewrite.system.records import edge_of
+
+ROBOT = '<robot name="r"><link name="base"/><gazebo>{}</gazebo></robot>'
+OWN = "<robot_base_frame>b</robot_base_frame>"
+
+
+def plugin(file: str, inside: str = "", name: str = "p") -> str:
+    return ROBOT.format(f'<plugin filename="{file}" name="{name}">{inside}</plugin>')
+
+
+def create(*words: str, **parameters: object) -> LaunchedNode:
+    values = "".join(f"    {name}: {it}\n" for name, it in parameters.items())
+    texts = (ParameterText("", f"/**:\n  ros__parameters:\n{values}"),) if values else ()
+    return started("ros_gz_sim", "create", "c", arguments=words, parameters=texts)
+
+
+def spawned(text: str, *words: str, name: str = "bot") -> Models:
+    return models_of([create("-string", text, "-name", name, *words)], (), "jazzy")
+
+
+# gz-sim src/systems: the frames are below the name of the model where none are given, the topic of
+# OdometryPublisher ends otherwise than that of the drives.
+@pytest.mark.parametrize(
+    ("system", "inside", "topic", "parent", "child"),
+    [
+        *((f"gz-sim-{it}-system", "", "/model/bot/tf", "bot/odom", "bot/base")
+          for it in ("diff-drive", "ackermann-steering", "mecanum-drive")),
+        ("libignition-gazebo-diff-drive-system.so", "", "/model/bot/tf", "bot/odom", "bot/base"),
+        ("gz-sim-odometry-publisher-system", "",
+         "/model/bot/pose", "bot/odom", "bot/base_footprint"),
+        ("gz-sim-odometry-publisher-system", f"<odom_frame>o</odom_frame>{OWN}",
+         "/model/bot/pose", "o", "b"),
+        ("gz-sim-diff-drive-system",
+         "<frame_id>o</frame_id><child_frame_id>b</child_frame_id><tf_topic>/t</tf_topic>",
+         "/t", "o", "b"),
+    ],
+)  # fmt: skip
+def test_a_system_sends_the_transform_of_its_odometry(
+    system: str, inside: str, topic: str, parent: str, child: str
+) -> None:
+    text = plugin(system, inside)
+    assert sent_in_simulator(spawned(text).found) == {topic: [edge_of(parent, child)]}
+    only_published = models_of((), (Published(text, "/robot_description", AT),), "jazzy")
+    assert sent_in_simulator(only_published.found) == {}
+
+
+def test_a_system_without_odometry_sends_no_transform() -> None:
+    for system in ("gz-sim-imu-system", "gz-sim-joint-state-publisher-system", "acme"):
+        assert sent_in_simulator(spawned(plugin(system, OWN)).found) == {}
+
+
+@pytest.mark.parametrize(
+    ("inside", "edges"),
+    [
+        ("<publish_odom_tf>true</publish_odom_tf>", [("/tf", edge_of("odom", "base_footprint"))]),
+        (f"<publish_odom_tf>1</publish_odom_tf>{OWN}<odometry_frame>o</odometry_frame>"
+         "<ros><namespace>/a</namespace></ros>", [("/tf", edge_of("o", "b"))]),
+        (OWN, []),
+    ],
+)  # fmt: skip
+def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
+    inside: str, edges: list[object]
+) -> None:
+    """gazebo_ros_diff_drive.cpp: publish_odom_tf is false by default."""
+    found = spawned(plugin("libgazebo_ros_diff_drive.so", inside, "drive")).found
+    name = "/a/drive" if "/a<" in inside else "/drive"
+    assert sent_by_plugins(found) == ({name: edges} if edges else {})
+    assert sent_in_simulator(found) == {}
+    assert sent_by_plugins(it._replace(spawned=False) for it in found) == {}
+
+
+def test_the_frame_that_a_plugin_of_classic_is_told() -> None:
+    """gazebo_ros utils.cpp, SensorFrameID: frame_name, else the link's."""
+    told = "<frame_name>f</frame_name><ros><namespace>a</namespace></ros>"
+    found = spawned(plugin("libgazebo_ros_imu_sensor.so", told, "imu")).found
+    assert frames_of_plugins(found) == {"/a/imu": "f"}
+    assert frames_of_plugins(it._replace(spawned=False) for it in found) == {}
+    assert frames_of_plugins(spawned(plugin("libgazebo_ros_imu_sensor.so")).found) == {}
+
+
+# ---------------------------------------------------------------- what spawns which
+
+
+def read_as(*nodes: LaunchedNode, published: tuple[Published, ...] = ()) -> list[tuple[str, ...]]:
+    found = models_of(nodes, published, "jazzy")
+    lost = [("lost", it.name) for it in found.lost]
+    return [*lost, *((it.name, it.text, "spawned" * it.spawned) for it in found.found)]
+
+
+def test_the_model_that_a_spawner_is_told(tmp_path: Path) -> None:
+    """ros_gz_sim create.cpp: words, or parameters with the same names."""
+    text = ROBOT.format("")
+    (tmp_path / "r.urdf").write_text(text)
+    told = ("bot", text, "spawned")
+    assert read_as(create("-file", str(tmp_path / "r.urdf"), "-name", "bot")) == [told]
+    assert read_as(create("-string", text, "-entity", "bot")) == [told]
+    assert read_as(create(file=f"'{tmp_path}/r.urdf'", name="bot", world="''")) == [told]
+    assert read_as(create("-file", "/gone.urdf")) == [("lost", "c")]
+    assert read_as(create("-string", "no XML")) == [("lost", "c")]
+    assert read_as(create()) == [("lost", "c")]
+    assert read_as(started("acme", "create", arguments=("-string", text))) == []
+
+
+def test_a_description_that_is_published_is_spawned_from_its_topic() -> None:
+    one, other = ROBOT.format(""), ROBOT.format("<static>true</static>")
+    published = (Published(one, "/a/robot_description", AT), Published(other, "/other", AT))
+    spawner = create("-topic", "robot_description", "-name", "bot")._replace(namespace="/a")
+    assert read_as(spawner, published=published) == [
+        ("bot", one, "spawned"), ("", other, "")
+    ]  # fmt: skip
+    away = create("-topic", "/nowhere")
+    assert read_as(away, published=published) == [
+        ("lost", "c"), ("", one, ""), ("", other, "")
+    ]  # fmt: skip
+
+
+def test_classic_gives_plugins_the_namespace_of_the_spawner() -> None:
+    """gazebo_ros_factory.cpp, AddNamespace: in place of their own; the text stays as it is."""
+    mine = "<ros><namespace>/mine</namespace></ros>"
+    drive = "<publish_odom_tf>true</publish_odom_tf>"
+    for inside in (drive, f"{drive}{mine}", f"{drive}<ros/>"):
+        text = plugin("libgazebo_ros_diff_drive.so", inside, "drive")
+        (model,) = spawned(text, "-robot_namespace", "/bot").found
+        assert [*sent_by_plugins([model])] == ["/bot/drive"]
+        assert model.text == text
+    assert spawned("<no", "-robot_namespace", "/bot").found == ()
+
+
+def test_the_manager_that_a_plugin_makes() -> None:
+    """It has the files that its description names, simulated time and the rules of the plugin."""
+    inside = (
+        "<parameters>/c.yaml</parameters><ros><namespace>/a</namespace>"
+        "<remapping>~/odom:=odom</remapping></ros>{}"
+    )
+    files = {"/c.yaml": ParameterText("/c.yaml", "x"), "/d.yaml": ParameterText("/d.yaml", "y")}
+    own = "<controller_manager_name>m</controller_manager_name>"
+    for more, name in (("", "controller_manager"), (own, "m")):
+        text = plugin("gz_ros2_control-system", inside.format(more))
+        (model,) = spawned(text).found
+        (it,) = managers(model, files)
+        assert (it.package, it.executable) == ("controller_manager", "ros2_control_node")
+        assert (it.name, it.namespace, it.place) == (name, "/a", AT)
+        assert it.remappings == (("~/odom", "odom"),)
+        assert it.parameters == (
+            files["/c.yaml"],
+            ParameterText(
+                "",
+                "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n",
+            ),
+        )
+    (other,) = spawned(plugin("gz-sim-imu-system")).found
+    assert isinstance(other, Model) and [*managers(other, files)] == []
