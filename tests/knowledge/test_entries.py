@@ -44,7 +44,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.knowledge.stacks import is_apart
-from multibot_rewrite.knowledge.worlds import DEFAULTS, SYSTEMS
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 
 EMPTY = NodeLibrary({}, {}, {})
 FILE = """\
@@ -521,6 +521,10 @@ def test_a_world_needs_a_system_for_each_sensor() -> None:
         **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
     }
     assert DEFAULTS == ("physics", "user-commands", "scene-broadcaster")
+    assert SENT_BY_ANY == {"clock": "Clock", "stats": "WorldStatistics"}
+    poses, scene = ("pose/info", "dynamic_pose/info"), {"scene/info": "Scene"}
+    sent = {**dict.fromkeys(poses, "Pose_V"), **scene, "scene/deletion": "UInt32_V"}
+    assert SENT_BY == {"scene-broadcaster": {**sent, "state": "SerializedStepMap"}}
 
 
 def test_a_word_in_brackets_stands_for_something() -> None:

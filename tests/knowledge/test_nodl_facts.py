@@ -110,6 +110,14 @@ def test_two_documents_of_a_node_are_refused(tmp_path: Path) -> None:
         find_interfaces([str(tmp_path)])
 
 
+def test_documents_are_in_order_whatever_the_disk_says(tmp_path: Path) -> None:
+    names = [f"p{it}/n{it}.nodl.yaml" for it in range(9)]
+    for name in reversed(names):
+        written(tmp_path, name, document())
+    found = find_interfaces([str(tmp_path)]).given
+    assert [*found.values()] == [str(tmp_path / it) for it in names]
+
+
 @pytest.mark.parametrize("name", ["missing", "empty"])
 def test_a_path_without_documents_is_refused(name: str, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
@@ -167,6 +175,15 @@ def test_a_name_of_two_documents_is_refused(tmp_path: Path) -> None:
         load(path, NONE)
 
 
+def test_a_parameter_of_two_documents_is_refused(tmp_path: Path) -> None:
+    rate = "parameters: {rate: {type: double, default_value: 1.0}}\n"
+    other = written(tmp_path, "b.nodl.yaml", document(more=rate))
+    path = written(tmp_path, "a.nodl.yaml", document(include="local://b.nodl.yaml", more=rate))
+    with pytest.raises(UsageError) as caught:
+        load(path, NONE)
+    assert str(caught.value) == f"{other}: parameter rate is in {path} too, which includes it"
+
+
 # ---------------------------------------------------------------- what a node becomes
 
 
@@ -215,6 +232,8 @@ def test_an_image_and_its_transports_are_one_and_tf_may_be_a_helpers(tmp_path: P
         f"  - {{name: image, type: {image}, {QOS}}}\n"
         f"  - {{name: image/compressed, type: {packed}, {QOS}}}\n"
         f"  - {{name: map/compressed, type: {packed}, {QOS}}}\n"
+        f"  - {{name: eye/left/image, type: {image}, {QOS}}}\n"
+        f"  - {{name: eye/left/image/theora, type: {packed}, {QOS}}}\n"
         f"subscriptions:\n  - {{name: /tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
         f"  - {{name: /tf_static, type: {image}, {QOS}}}\n"
         f"  - {{name: other/tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
@@ -223,6 +242,7 @@ def test_an_image_and_its_transports_are_one_and_tf_may_be_a_helpers(tmp_path: P
     assert {name: end.transport for name, end in ends(node).items()} == {
         "image": True,
         "map/compressed": False,
+        "eye/left/image": True,
     }
     assert [name for name, end in ends(node, SUBSCRIBES).items() if end.helper] == ["/tf"]
     assert not any(end.helper for end in ends(node).values())
