@@ -142,6 +142,123 @@ def test_a_chain_of_filters(
     assert linted(tmp_path, "filters.yaml", text, ("MB896",)) == expected
 
 
+def told(folder: Path, name: str, text: str, code: str, release: str = "jazzy") -> list[str]:
+    """Place, level, message and hint of each finding."""
+    (folder / name).write_text(text)
+    found = lint_files([str(folder / name)], Settings(select=(code,), distro=release), jobs=1)
+    return [f"{it.line}:{it.column} {it.level} {it.message}; {it.hint}" for it in found]
+
+
+def test_what_is_said_of_a_chain(tmp_path: Path) -> None:
+    """filter_chain.hpp loads up to the first number that is not there, and needs name and type."""
+    text = """\
+scan_to_scan_filter_chain:
+  ros__parameters:
+    filter1: {name: a, type: laser_filters/InterpolationFilter}
+    filter2: {name: a, type: laser_filters/InterpolationFilter}
+    filter3: {label: c}
+    filter5: {name: b, type: laser_filters/InterpolationFilter}
+    filter: {name: c, type: laser_filters/InterpolationFilter}
+    other:
+      filter1: {name: a, type: laser_filters/InterpolationFilter}
+"""
+    chain, number = "scan_to_scan_filter_chain", "filters are called filter1, filter2 and so on"
+    unset = "the chain is not configured without"
+    assert told(tmp_path, "filters.yaml", text, "MB896") == [
+        f"4:21 error {chain}: filter2 has the name 'a', as filter1 has; give it another name",
+        f"5:15 error {chain}: filter3 has no name; {unset}",
+        f"5:15 error {chain}: filter3 has no type; {unset}",
+        f"6:15 warning {chain}: filter5 is not loaded: there is no filter4; {number}, without a gap",
+        f"7:14 warning {chain}: filter is not loaded: there is no filter4; {number}, without a gap",
+    ]
+    other = text.replace("scan_to_scan_filter_chain", "chain")
+    assert told(tmp_path, "filters.yaml", other, "MB896") == []
+
+
+TELEOP = "joy_teleop:\n  ros__parameters:\n    go: {{{}}}\n"
+START, NAMED = "deadman_buttons: [1]", "interface_type: std_msgs/msg/Bool, topic_name: a"
+TWIST = "type: topic, interface_type: geometry_msgs/msg/Twist, topic_name: a, deadman_axes: [1]"
+AXIS = "{axis: 1, scale: 1.0, offset: 0.0}"
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (
+            "type: topics, topic_name: a",
+            ["is of type 'topics'; write one of topic, service, action"],
+        ),
+        ("topic_name: a", ["has no type; write one of topic, service, action"]),
+        (
+            f"type: topic, {START}, message_value: {{a: 1}}",
+            ["has no interface_type; add interface_type", "has no topic_name; add topic_name"],
+        ),
+        (
+            "type: service, interface_type: a/msg/B, axes: [1]",
+            ["has no service_name; add service_name",
+             "has the interface_type 'a/msg/B'; write PACKAGE/srv/B"],
+        ),
+        (
+            "type: service, interface_type: B, service_name: b, buttons: []",
+            ["has the interface_type 'B'; write PACKAGE/srv/B",
+             "is started by nothing; add buttons, or axes or axes_negative"],
+        ),
+        (
+            f"type: topic, {NAMED}, message_value: {{a: 1}}",
+            ["is started by nothing; add deadman_buttons, or deadman_axes or deadman_axes_negative"],
+        ),
+        ("type: action, interface_type: a/action/B, action_name: b, axes_negative: [1]", []),
+        ("type: service, interface_type: a/srv/B, service_name: b, axes: [1]", []),
+        (
+            f"type: topic, {NAMED}, {START}",
+            ["has neither message_value nor axis_mappings; give it one of the two"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, message_value: {{a: 1}}, axis_mappings: {{a: {AXIS}}}",
+            ["has both message_value and axis_mappings; give it one of the two"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{scale: 1.0}}, b: {{button: 1}}}}",
+            ["has no axis, button or value for a; add one of them"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1}}, b: {{value: 1}}}}",
+            ["has no scale and no offset for a; add scale and offset of the axis"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1, scale: 1.0}}}}",
+            ["has no offset for a; add scale and offset of the axis"],
+        ),
+        (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}, -angular-z: {AXIS}}}", []),
+        (
+            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}",
+            ["sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; see"
+             " the message"],
+        ),
+        (
+            f"{TWIST}, axis_mappings: {{linear-x: {AXIS}}}".replace("Twist,", "TwistStamped,"),
+            ["sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; see"
+             " the message"],
+        ),
+        (
+            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}".replace("st,", "stStamped,"),
+            [],
+        ),
+        # Blocks of another node that is called so.
+        ("x: 1, y: 2", []),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_a_joysticks_command(command: str, said: list[str], tmp_path: Path) -> None:
+    """joy_teleop.py: what each type of a command asks for."""
+    found = told(tmp_path, "joy.yaml", TELEOP.format(command), "MB897")
+    assert found == [f"3:10 error joy_teleop: command 'go' {it}" for it in said]
+
+
+def test_settings_of_qos_are_no_command_of_a_joystick(tmp_path: Path) -> None:
+    text = TELEOP.replace("go", "qos_overrides").format("type: topics")
+    assert told(tmp_path, "joy.yaml", text, "MB897") == []
+
+
 COMMAND = "type: topic, interface_type: std_msgs/msg/Bool, topic_name: a, deadman_buttons: [1]"
 
 
