@@ -521,10 +521,10 @@ def test_a_world_needs_a_system_for_each_sensor() -> None:
         **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
     }
     assert DEFAULTS == ("physics", "user-commands", "scene-broadcaster")
-    assert SENT_BY_ANY == {"clock": "Clock", "stats": "WorldStatistics"}
+    assert dict(SENT_BY_ANY) == {"clock": "Clock", "stats": "WorldStatistics"}
     poses, scene = ("pose/info", "dynamic_pose/info"), {"scene/info": "Scene"}
     sent = {**dict.fromkeys(poses, "Pose_V"), **scene, "scene/deletion": "UInt32_V"}
-    assert SENT_BY == {"scene-broadcaster": {**sent, "state": "SerializedStepMap"}}
+    assert dict(SENT_BY) == {"scene-broadcaster": {**sent, "state": "SerializedStepMap"}}
 
 
 def test_a_word_in_brackets_stands_for_something() -> None:

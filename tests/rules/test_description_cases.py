@@ -77,6 +77,14 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
             " another one",
         ),
         ("MB160", A + LIBRARY.format("gz-sim-imu-system"), ""),
+        *(
+            (
+                "MB637",
+                A + LIBRARY.format("gz-sim-imu-system") + SENSOR.replace("imu", it),
+                f"Gazebo simulates no sensor of type '{it}'" if it in ("ray", "lidar") else "",
+            )
+            for it in ("ray", "lidar", "gpu_ray", "gpu_lidar")
+        ),
         ("MB221", A + JOINT.format("a ") + "</joint>", "parent@link is 'a ', the link is 'a'"),
         ("MB221", '<link name="a "/>' + JOINT.format("a ") + "</joint>", ""),
         ("MB515", A + JOINT.format("a") + LIMIT.format(1, 0), "joint 'j': velocity is 0"),

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.rules.files.bounds import beyond, polygon_of
+from multibot_rewrite.rules.files.costmaps import _inscribed
 
 
 @pytest.mark.parametrize(
@@ -119,3 +120,21 @@ NAN = float("nan")
 )  # fmt: skip
 def test_what_a_value_has_to_be(check: str, arguments: str, value: Any, said: str) -> None:
     assert beyond(check, arguments, value) == said
+
+
+@pytest.mark.parametrize(
+    ("points", "nearest"),
+    [
+        ([(2, 1), (2, -1), (-2, -1), (-2, 1)], 1.0),
+        # The nearest edge goes from the last point to the first.
+        ([(0.5, -2), (-3, -2), (-3, 2), (0.5, 2)], 0.5),
+        # What is nearest of an edge that does not pass the middle is its end.
+        ([(3, 4), (6, 4), (6, 8)], 5.0),
+        ([(1, 0), (1, 0), (1, 0)], 1.0),
+    ],
+)
+def test_how_near_to_the_middle_an_edge_is(
+    points: list[tuple[float, float]], nearest: float
+) -> None:
+    """calculateMinAndMaxDistances of nav2_costmap_2d."""
+    assert _inscribed(points) == nearest

@@ -175,6 +175,86 @@ scan_to_scan_filter_chain:
     assert told(tmp_path, "filters.yaml", other, "MB896") == []
 
 
+COSTMAP = """\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      {}
+      plugins: [inflation]
+      inflation: {{plugin: "nav2_costmap_2d::InflationLayer", inflation_radius: 0.5}}
+"""
+SQUARE = 'footprint: "[[{0}, {0}], [{0}, -{0}], [-{0}, -{0}], [-{0}, {0}]]"'
+SIZED = "local_costmap/local_costmap"
+BESIDE = f"{SIZED}: robot_radius has no effect beside a footprint, and is another size"
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        ("robot_radius: 0.5", []),
+        (
+            "robot_radius: 0.6",
+            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+             " 0.6 m; the robot is as large as robot_radius says; inflate further than that"],
+        ),
+        (SQUARE.format(0.5), []),
+        (
+            SQUARE.format(0.6),
+            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+             " 0.6 m; the robot is as large as footprint says; inflate further than that"],
+        ),
+        # The footprint counts.
+        ("robot_radius: 0.6\n      " + SQUARE.format(0.5), []),
+        # A tenth below its nearest edge, half above its farthest point.
+        ("robot_radius: 0.45\n      " + SQUARE.format(0.5), []),
+        (
+            "robot_radius: 0.44\n      " + SQUARE.format(0.5),
+            [f"4:21 warning {BESIDE}; leave out robot_radius"],
+        ),
+        ("robot_radius: 1.06\n      " + SQUARE.format(0.5), []),
+        (
+            "robot_radius: 1.07\n      " + SQUARE.format(0.5),
+            [f"4:21 warning {BESIDE}; leave out robot_radius"],
+        ),
+        # Of two points nothing is a footprint.
+        ('robot_radius: 0.4\n      footprint: "[[9, 9], [8, 8]]"', []),
+        ("robot_radius: 0.0", []),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_the_size_in_a_costmap(size: str, said: list[str], tmp_path: Path) -> None:
+    found = told(tmp_path, "nav2.yaml", COSTMAP.format(size), "MB895")
+    assert [it.replace(f"{7 + size.count(chr(10))}:", "6:") for it in found] == said
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        ("robot_radius: 0.4", []),
+        (
+            "robot_radius: 0.1",
+            [f"4:21 warning {SIZED}: robot_radius reaches 0.1 m from the middle alone; the"
+             " description reaches 1 m; write metres"],
+        ),
+        ("robot_radius: 3.0", []),
+        (
+            "robot_radius: 3.1",
+            [f"4:21 warning {SIZED}: robot_radius reaches 3.1 m from the middle; the description"
+             " reaches 1 m; write metres"],
+        ),
+        # An eighth.
+        ("robot_radius: 0.125", []),
+    ],
+)  # fmt: skip
+def test_the_size_in_a_costmap_beside_the_description(
+    size: str, said: list[str], tmp_path: Path
+) -> None:
+    body = '<collision><geometry><box size="1.2 1.6 1"/></geometry></collision>'
+    (tmp_path / "package.xml").write_text(PACKAGE.format("ament_cmake"))
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{body}</link></robot>')
+    text = COSTMAP.format(size).replace("0.5}", "9.5}")
+    assert told(tmp_path, "nav2.yaml", text, "MB895") == said
+
+
 TELEOP = "joy_teleop:\n  ros__parameters:\n    go: {{{}}}\n"
 START, NAMED = "deadman_buttons: [1]", "interface_type: std_msgs/msg/Bool, topic_name: a"
 TWIST = "type: topic, interface_type: geometry_msgs/msg/Twist, topic_name: a, deadman_axes: [1]"

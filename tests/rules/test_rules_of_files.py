@@ -220,6 +220,16 @@ BELOW = "has a namespace; it is placed below each robot's namespace"
             parameters("rover/**", "a: 1"),
             "1 error section rover/** is for one robot only: its name includes a namespace",
         ),
+        (
+            "MG503",
+            "".join(parameters(it, f"use_sim_time: {it != 'a'}".lower()) for it in "abc"),
+            "2 warning use_sim_time is false for a, and true for b",
+        ),
+        (
+            "MG503",
+            "".join(parameters(it, f"use_sim_time: {it == 'a'}".lower()) for it in "abc"),
+            "2 warning use_sim_time is true for a, and false for b",
+        ),
         ("MB863", parameters("x", "t: /robot2/scan"), f"2 error /robot2/scan {FOR_ONE}"),
         ("MB863", parameters("x", "t: /scan/robot2"), f"2 error /scan/robot2 {FOR_ONE}"),
         ("MB863", parameters("x", "t: /model/robot2/y"), f"2 error /model/robot2/y {FOR_ONE}"),

@@ -342,6 +342,42 @@ WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
              f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
             [],
         ),
+        (
+            ("/robot1/manager controls a/position by arm", "/robot1/gz controls a/position by arm"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and arm of /robot1/gz;"
+             " two controller managers for one robot: stop one, or unload its controller"],
+        ),
+        (
+            ("/robot1/manager controls a/position by arm",
+             "/robot1/manager controls a/position by hand"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
+             " spawn one of them with --inactive"],
+        ),
+        # Two interfaces of the same two are told once; each robot has its own.
+        (
+            ("/robot1/manager controls a/position by arm",
+             "/robot1/manager controls a/position by hand",
+             "/robot1/manager controls b/position by arm",
+             "/robot1/manager controls b/position by hand",
+             "/robot2/manager controls a/position by arm"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
+             " spawn one of them with --inactive"],
+        ),
+        (
+            ("/robot1/manager keeps arm inactive", "/robot1/manager keeps hand unconfigured"),
+            ["MG513 none of its controllers is active: arm (inactive), hand (unconfigured);"
+             " ros2 control list_controllers -c /robot1/manager; see the log of the spawners"],
+        ),
+        (
+            ("/robot1/manager keeps arm inactive", "/robot1/manager controls a/position by hand"),
+            [],
+        ),
+        (
+            ("/robot1/a has use_sim_time true", "/robot1/b has use_sim_time false",
+             "/robot1/c has use_sim_time false", "/robot1/rviz2 has use_sim_time true"),
+            ["MG514 use_sim_time is true for /robot1/a, and not for /robot1/b, /robot1/c;"
+             " use_sim_time has to be the same for all nodes of a robot"],
+        ),
     ],
 )  # fmt: skip
 def test_what_is_wrong_and_what_to_do(lines: tuple[str, ...], found: list[str]) -> None:
