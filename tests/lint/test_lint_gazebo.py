@@ -425,7 +425,8 @@ ONE_OF = "use one of the words in the message or hint; case counts"
 RATE, FORMAT = "<update_rate>9</update_rate>", "<image><format>{}</format></image>"
 OF_CLASSIC = '<plugin name="p" filename="libgazebo_ros_camera.so"/>'
 SCAN = "<lidar><scan><horizontal>{}</horizontal></scan></lidar>"
-NO_EFFECT = "<{}> in the <gazebo> of a {} has no effect; it is read in that of a {}: name it with reference="
+NO_EFFECT = "<{}> in the <gazebo> of a {} has no effect; it is read in that of a {}"
+NO_EFFECT += ": name it with reference="
 
 
 @pytest.mark.parametrize(

@@ -160,3 +160,16 @@ def test_sizes_of_wheels(
 ) -> None:
     wheels = wheel("l", LEFT, shape=shape) + wheel("r", RIGHT, shape=shape)
     assert said(wheels, tmp_path, sizes) == expected
+
+
+def test_a_sphere_has_its_radius_however_it_is_turned_and_a_cylinder_about_its_axis(
+    tmp_path: Path,
+) -> None:
+    for shape, expected in (
+        ('<sphere radius="0.1"/>', ["warning wheel_radius is 0.12 m, but the wheels have 0.1 m"]),
+        (ROUND, [FLAT.format("l"), FLAT.format("r")]),
+    ):
+        wheels = wheel("l", LEFT, shape=shape, rpy="0 0 0") + wheel(
+            "r", RIGHT, shape=shape, rpy="0 0 0"
+        )
+        assert said(wheels, tmp_path, ("0.4", "0.12")) == expected
