@@ -28,6 +28,10 @@ MESH = '<visual><geometry><mesh filename="file:///home/me/{}.stl"/></geometry></
 BOX = '<collision><origin xyz="2 0 0"/><geometry><box size="1 1 1"/></geometry></collision>'
 JOINT = '<link name="b"/><joint name="j" type="revolute"><parent link="{}"/><child link="b"/>'
 LIMIT = '<limit lower="-1" upper="1" effort="{}" velocity="{}"/></joint>'
+DRIVE = (
+    '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
+    "<frame_id>odom</frame_id></plugin></gazebo>"
+)
 LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>'
 
 
@@ -85,6 +89,12 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
             )
             for it in ("ray", "lidar", "gpu_ray", "gpu_lidar")
         ),
+        (
+            "MB433",
+            A + DRIVE,
+            "without <child_frame_id> the frame is 'MODEL/a', which no robot has in tf",
+        ),
+        ("MB433", A + DRIVE.replace("</pl", "<child_frame_id>a</child_frame_id></pl"), ""),
         ("MB221", A + JOINT.format("a ") + "</joint>", "parent@link is 'a ', the link is 'a'"),
         ("MB221", '<link name="a "/>' + JOINT.format("a ") + "</joint>", ""),
         ("MB515", A + JOINT.format("a") + LIMIT.format(1, 0), "joint 'j': velocity is 0"),

@@ -249,6 +249,17 @@ SAME = "MB412 has the same as /robot1/a: "
 WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
 
 
+CHANGE, TF = "lifecycle_msgs/srv/ChangeState", "tf2_msgs/msg/TFMessage"
+TREE = (
+    f"/robot1/state publishes /robot1/tf {TF}",
+    "transform robot1/base -> robot1/laser on /robot1/tf by /robot1/state",
+)
+ELSEWHERE = (
+    "but the tf of robot1 is on /robot1/tf; pass -r /tf:=tf -r /tf_static:=tf_static: to the whole"
+    " process, where the node shares one"
+)
+
+
 @pytest.mark.parametrize(
     ("lines", "found"),
     [
@@ -372,6 +383,65 @@ WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
             ("/robot1/manager keeps arm inactive", "/robot1/manager controls a/position by hand"),
             [],
         ),
+        (
+            ("/robot1/a is inactive", "/robot1/b is inactive", "/robot1/c is active"),
+            ["MG511 /robot1/a, /robot1/b are inactive, not active; no node activates it: is that"
+             " meant?; ros2 lifecycle get /robot1/a"],
+        ),
+        (
+            (f"/robot1/manager calls /robot1/a/change_state {CHANGE}",
+             f"/robot1/a serves /robot1/a/change_state {CHANGE}", "/robot1/a is inactive"),
+            ["MG511 /robot1/a is inactive, not active; see the log of /robot1/manager; ros2"
+             " lifecycle get /robot1/a"],
+        ),
+        # Whose frames are on which topic.
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /bridge"),
+            ["MG405 /bridge sends robot1/base on /tf, but the tf of robot1 is on /robot1/tf; start"
+             " it in the namespace of robot1, with the rules /tf:=tf and /tf_static:=tf_static"],
+        ),
+        # What hears the tree may be a relay, what is in the tree a copy, and what joins it to the world.
+        (
+            (*TREE, f"/bridge publishes /tf {TF}", f"/bridge subscribes /robot1/tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform robot1/base -> robot1/laser on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform world -> robot1/base on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/robot1/driver publishes /tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /robot1/driver"),
+            [f"MG405 /robot1/driver sends tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /tf {TF}"),
+            [f"MG405 /robot1/amcl hears tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /tf {TF}", f"/robot1/nav subscribes /tf {TF}"),
+            [f"MG405 /robot1/amcl, /robot1/nav hear tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /robot2/tf {TF}",
+             f"/robot2/state publishes /robot2/tf {TF}"),
+            ["MG405 /robot1/amcl hears tf on /robot2/tf, but the tf of robot1 is on /robot1/tf;"
+             " a namespace or remap rule of robot1 names robot2"],
+        ),
+        (
+            (*TREE, f"/rviz2 subscribes /tf {TF}"),
+            ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it"
+             " with -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
+        ),
+        ((*TREE, f"/rviz2 subscribes /robot1/tf {TF}"), []),
         (
             ("/robot1/a has use_sim_time true", "/robot1/b has use_sim_time false",
              "/robot1/c has use_sim_time false", "/robot1/rviz2 has use_sim_time true"),
