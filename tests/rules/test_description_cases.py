@@ -110,3 +110,90 @@ def test_what_is_said_of_a_description(code: str, text: str, said: str) -> None:
     whole = text if text.startswith("<sdf") else f'<robot name="r">{text}</robot>'
     found = lint_data("a.urdf", whole.encode(), Settings(select=(code,)))
     assert [it.message for it in found] == [said] * bool(said)
+
+
+def limited(type_: str, lower: str, upper: str, rest: str = "") -> str:
+    limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/>'
+    return (
+        f'<link name="a"/><link name="b"/><joint name="j" type="{type_}"><parent link="a"/>'
+        f'<child link="b"/>{limit}{rest}</joint>'
+    )
+
+
+SOFT = '<safety_controller soft_lower_limit="{}" soft_upper_limit="{}" k_velocity="1"/>'
+INVERTED = "MB511 error lower=: joint 'j': lower 1 is above upper -1"
+RADIANS = "MB170 warning {}=: revolute joint 'j' turns from {} to {} radians"
+METRES = "MB517 warning {}=: prismatic joint 'j' goes from {} m to {} m"
+WHOLE = "MB516 warning lower=: continuous joint 'j' ignores its limits {} to {}"
+OUTSIDE = "MB532 note <safety_controller: joint 'j': the soft limits {} are outside of {}"
+NO_RANGE = "MB532 warning <safety_controller: joint 'j': the soft limits {} leave no range"
+
+
+@pytest.mark.parametrize(
+    ("joint", "said"),
+    [
+        (limited("revolute", "-1", "1"), []),
+        (limited("revolute", "1", "-1"), [INVERTED]),
+        (limited("prismatic", "1", "-1"), [INVERTED]),
+        # Before URDF 1.2 nobody reads those of other joints.
+        (limited("continuous", "1", "-1"), []),
+        (
+            limited("revolute", "1", "1"),
+            [
+                "MB512 note <limit: revolute joint 'j' cannot move: lower and upper are 1",
+            ],
+        ),
+        (limited("continuous", "1", "1"), []),
+        (limited("continuous", "-1", "1"), [WHOLE.format("-1", "1")]),
+        (limited("continuous", "0", "6.25"), [WHOLE.format("0", "6.25")]),
+        # A turn but for a two hundredth is one.
+        (limited("continuous", "0", "6.26"), []),
+        (limited("prismatic", "0", "24.9"), []),
+        (limited("prismatic", "0", "25"), [METRES.format("upper", "0", "25")]),
+        (limited("prismatic", "-40", "0"), [METRES.format("lower", "-40", "0")]),
+        # As far to both sides: a virtual joint. So far: no limit.
+        (limited("prismatic", "-40", "40"), []),
+        (limited("prismatic", "0", "10000"), []),
+        (limited("revolute", "0", "14"), []),
+        (limited("revolute", "0", "14.5"), [RADIANS.format("upper", "0", "14.5")]),
+        (limited("revolute", "-90", "0"), [RADIANS.format("lower", "-90", "0")]),
+        (limited("revolute", "-90", "90"), [RADIANS.format("upper", "-90", "90")]),
+        (limited("revolute", "0", "720"), [RADIANS.format("upper", "0", "720")]),
+        (limited("revolute", "0", "720.5"), []),
+        # No round number, and those that stand for no limit.
+        (limited("revolute", "0", "90.3"), []),
+        *((limited("revolute", f"-{it}", it), []) for it in ("50", "100", "200", "500", "999")),
+        (limited("revolute", "-1", "1", SOFT.format("-1", "1")), []),
+        (
+            limited("revolute", "-1", "1", SOFT.format("-2", "1")),
+            [OUTSIDE.format("-2 to 1", "-1 to 1")],
+        ),
+        (
+            limited("revolute", "-1", "1", SOFT.format("-1", "2")),
+            [OUTSIDE.format("-1 to 2", "-1 to 1")],
+        ),
+        (limited("revolute", "-1", "1", SOFT.format("0", "0")), [NO_RANGE.format("0 to 0")]),
+        (
+            limited("revolute", "-1", "1", SOFT.format("1", "2")),
+            [NO_RANGE.format("1 to 2"), OUTSIDE.format("1 to 2", "-1 to 1")],
+        ),
+        (limited("continuous", "-4", "4", SOFT.format("0", "0")), []),
+        (
+            limited("revolute", "-1", "1", "<dynamics/>"),
+            ["MB534 error <dynamics: <dynamics> of joint 'j' has neither damping nor friction"],
+        ),
+        (limited("revolute", "-1", "1", '<dynamics damping="0"/>'), []),
+        (limited("revolute", "-1", "1", '<dynamics friction="0"/>'), []),
+    ],
+)
+def test_what_is_said_of_limits(joint: str, said: list[str]) -> None:
+    """Code, level, what is at its place, and message."""
+    body = "<visual/>"
+    text = f'<robot name="r">{joint}</robot>'.replace('"b"/><joint', f'"b">{body}</link><joint')
+    codes = ("MB170", "MB511", "MB512", "MB516", "MB517", "MB532", "MB534")
+    found = lint_data("a.urdf", text.encode(), Settings(select=codes))
+    assert sorted(
+        f"{it.code} {it.level} {text[it.column - 1 :].split()[0].partition('=')[0]}"
+        f"{'' if text[it.column - 1] == '<' else '='}: {it.message}"
+        for it in found
+    ) == sorted(said)

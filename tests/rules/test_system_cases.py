@@ -401,7 +401,7 @@ ELSEWHERE = (
             ["MG405 /bridge sends robot1/base on /tf, but the tf of robot1 is on /robot1/tf; start"
              " it in the namespace of robot1, with the rules /tf:=tf and /tf_static:=tf_static"],
         ),
-        # What hears the tree may be a relay, what is in the tree a copy, and what joins it to the world.
+        # What hears the tree may be a relay; what is in it is a copy; one joins it to the world.
         (
             (*TREE, f"/bridge publishes /tf {TF}", f"/bridge subscribes /robot1/tf {TF}",
              "transform robot1/odom -> robot1/base on /tf by /bridge"),
