@@ -230,6 +230,54 @@ BELOW = "has a namespace; it is placed below each robot's namespace"
             "".join(parameters(it, f"use_sim_time: {it == 'a'}".lower()) for it in "abc"),
             "2 warning use_sim_time is true for a, and false for b",
         ),
+        # What a known parameter holds is a name elsewhere, too.
+        *(
+            (
+                "MB901",
+                parameters("amcl", f"{key}: {value}") + parameters("other", f"acme: {value}"),
+                f"4 note {value!r} is a {kind} of the robot, but its use here is not known" * known,
+            )
+            for key, value, kind, known in (
+                ("scan_topic", "/scan", "topic", True),
+                ("base_frame_id", "base", "frame", True),
+                ("odom_frame_id", "odom", "frame", True),
+                ("scan_topic", "scan", "topic", False),
+                ("global_frame_id", "map", "frame", False),
+            )
+        ),
+        (
+            "MB867",
+            parameters("amcl", "alpha1: 0.1") + parameters("/**", "alpha1: 0.2, alpha2: 0.3"),
+            "4 warning alpha1 of amcl is overridden by the later section **",
+        ),
+        (
+            "MB867",
+            "".join(parameters(it, "alpha1: 0.1") for it in ("/**", "amcl", "/**/amcl")),
+            "6 warning alpha1 of amcl is overridden by the later section **/amcl",
+        ),
+        ("MB867", parameters("amcl", "alpha1: 0.1") + parameters("/**", "alpha2: 0.2"), ""),
+        ("MB867", parameters("amcl", "alpha1: 0.1") + parameters("/**/ekf", "alpha1: 0.2"), ""),
+        (
+            "MB866",
+            parameters("amcl", "alpha1: 0.1") + parameters("amcl", "alpha2: 0.2"),
+            "3 warning section amcl is repeated; the first is in line 1",
+        ),
+        (
+            "MB859",
+            parameters("amcl", "alpha1: 0.1, alpha1: 0.2"),
+            "2 warning 'alpha1' is set twice; the later value counts",
+        ),
+        (
+            "MB877",
+            parameters("collision_monitor", "observation_sources: [frnt], front: {topic: a}"),
+            "2 warning collision_monitor has frnt in observation_sources, without parameters",
+        ),
+        # Another number is another one.
+        (
+            "MB877",
+            parameters("collision_monitor", "observation_sources: [front2], front: {topic: a}"),
+            "",
+        ),
         ("MB863", parameters("x", "t: /robot2/scan"), f"2 error /robot2/scan {FOR_ONE}"),
         ("MB863", parameters("x", "t: /scan/robot2"), f"2 error /scan/robot2 {FOR_ONE}"),
         ("MB863", parameters("x", "t: /model/robot2/y"), f"2 error /model/robot2/y {FOR_ONE}"),
