@@ -476,3 +476,132 @@ def test_a_frame_that_is_called_as_such_a_sensors_is_may_be_meant(type_: str, ca
         (found,) = (it for it in judge(system) if it.code == "MG412")
         assert found.level == "warning"
         assert found.hint == f"set the frame of /robot1/driver to robot1/front_{word}_link"
+
+
+POSE, STRING = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/String"
+GO, STOP = "nav2_msgs/action/NavigateToPose", "std_srvs/srv/Trigger"
+DRIVE = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
+SERVER = f"/robot1/controller_server publishes /robot1/cmd_vel {TWIST}"
+TWO_DRIVES = (DRIVE, SERVER, DRIVE.replace("1", "2"), SERVER.replace("1", "2"))
+NAMES_ROBOT1 = "a namespace, remap rule or parameter of robot2 names robot1"
+CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
+PLAY = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
+
+
+def unread(name: str, meant: str = "/robot1/cmd_vel") -> str:
+    return (
+        f"publishes {name}, which no node reads; /robot1/driver reads {meant}; start it in the"
+        f" robot's namespace, or pass the rule {name}:={meant}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}"),
+            [f"MG308 error /joystick: {unread('/cmd_vel')}"],
+        ),
+        (
+            (*TWO_DRIVES, f"/joystick publishes /cmd_vel {TWIST}"),
+            [f"MG308 error /joystick: {unread('/cmd_vel')} (or that of another of the 2 robots)"],
+        ),
+        # Stamped velocities are others.
+        ((DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}Stamped"), []),
+        # A joystick of the robot itself is meant for the one that it obeys.
+        (
+            (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/joy_vel {TWIST}"),
+            [f"MG308 error /robot1/teleop: {unread('/robot1/joy_vel')}"],
+        ),
+        ((DRIVE, SERVER, f"/joystick publishes /joy_vel {TWIST}"), []),
+        (
+            (f"/robot1/driver subscribes /robot1/wheels/cmd_vel {TWIST}",
+             f"/robot1/twist_mux publishes /robot1/cmd_vel_out {TWIST}"),
+            ["MG308 error /robot1/twist_mux: "
+             + unread("/robot1/cmd_vel_out", "/robot1/wheels/cmd_vel")],
+        ),
+        (
+            (f"/robot1/bt_navigator subscribes /robot1/goal_pose {POSE}",
+             f"/rviz2 publishes /goal_pose {POSE}"),
+            ["MG303 note /robot1/bt_navigator: subscribes to /robot1/goal_pose, which no node"
+             " publishes; /rviz2 publishes /goal_pose; pass the rule /goal_pose:=/robot1/goal_pose"
+             " to /rviz2, or start it in the namespace"],
+        ),
+        (
+            (DRIVE, DRIVE.replace("1", "2"), f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG311 error /robot2/teleop: publishes /robot1/cmd_vel, a name of robot1;"
+             f" {NAMES_ROBOT1}"],
+        ),
+        # Who sends to both coordinates them.
+        (
+            (DRIVE, DRIVE.replace("1", "2"), f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}",
+             f"/robot2/teleop publishes /robot2/cmd_vel {TWIST}"),
+            [],
+        ),
+        (
+            (f"/robot1/nav serves /robot1/go {GO}", f"/robot2/nav serves /robot2/go {GO}",
+             f"/robot2/boss calls /robot1/go {GO}"),
+            [f"MG311 error /robot2/boss: sends goals to /robot1/go, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        (
+            (f"/robot1/a serves /robot1/stop {STOP}", f"/robot2/a serves /robot2/stop {STOP}",
+             f"/robot2/boss calls /robot1/stop {STOP}"),
+            [f"MG311 error /robot2/boss: calls /robot1/stop, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        # Its own robot does not have it.
+        (
+            (f"/robot1/a serves /robot1/stop {STOP}", "/robot2/a",
+             f"/robot2/boss calls /robot1/stop {STOP}"),
+            [],
+        ),
+        # Its own robot waits for it.
+        (
+            (f"/robot1/a subscribes /robot1/halt {STRING}",
+             f"/robot2/a subscribes /robot2/halt {STRING}",
+             f"/robot2/button publishes /robot1/halt {STRING}"),
+            [f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        (
+            (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /robot1/teleop: publishes /robot1/cmd_vel beside"
+             f" /robot1/controller_server, and /robot1/driver obeys both; {CHOOSE}"],
+        ),
+        # Two of Nav2 take turns; a mux chooses.
+        ((DRIVE, SERVER, SERVER.replace("controller", "behavior")), []),
+        (
+            (SERVER, SERVER.replace("controller_server", "teleop"),
+             DRIVE.replace("driver", "twist_mux")),
+            [],
+        ),
+        (
+            (f"/robot1/lidar publishes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/imu {IMU}"),
+            [f"MG313 error /rosbag2_player: plays /robot1/scan into the running system; {PLAY}"],
+        ),
+        (
+            (DRIVE, f"/rosbag2_player publishes /robot1/cmd_vel {TWIST}"),
+            [f"MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system; {PLAY}"],
+        ),
+        # What bags are for.
+        (
+            (f"/robot1/slam subscribes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}"),
+            [],
+        ),
+        # Nobody knows who sends them.
+        (
+            (f"/x publishes /robot1/tf {TF}",
+             "transform robot2/base -> robot2/laser on /robot1/tf"),
+            ["MG405 error robot2: robot2/laser of robot2 on /robot1/tf, which is of robot1; start"
+             " its nodes in its own namespace, with the rules /tf:=tf and /tf_static:=tf_static"],
+        ),
+    ],
+)  # fmt: skip
+def test_orders_and_who_obeys_them(lines: tuple[str, ...], found: list[str]) -> None:
+    """Code, level, node or else robot, message and hint."""
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [
+        f"{it.code} {it.level} {it.node or it.robot}: {it.message}; {it.hint}"
+        for it in judge(system)
+    ] == found
