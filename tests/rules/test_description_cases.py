@@ -75,6 +75,11 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
             "'file:///home/me/a.stl' is a path of one machine (and 1 more)",
         ),
         (
+            "MB704",
+            A + '<material name="m"><texture filename="file:///home/me/a.png"/></material>',
+            "'file:///home/me/a.png' is a path of one machine",
+        ),
+        (
             "MB160",
             A + LIBRARY.format("gz-sim-imuu-system"),
             "no library of Gazebo is called 'gz-sim-imuu-system'; gz::sim::systems::Imu is in"
