@@ -419,6 +419,7 @@ def test_a_healthy_oddity_is_left_alone(oddity: str) -> None:
 
 
 NUMBERS = "write plain numbers with a decimal point, separated by spaces, as many as the place has"
+TAKEN = "write a number that its reader takes, in metres, kilograms and radians"
 MOVE = "delete it, or move it to where it is read; make a remark a comment"
 ADD = "add what is missing, or delete the element that needs it"
 ONE_OF = "use one of the words in the message or hint; case counts"
@@ -619,6 +620,126 @@ def test_what_is_said_of_a_block_of_gazebo(distro: str, inside: str, said: str) 
     """Code, level, what is at its place, message and hint."""
     text = f'<robot name="r">{LINK}{inside}</robot>'
     found = lint_data("r.urdf", text.encode(), NEW._replace(distro=distro))
+    place = said.split(" ")[2] if said else ""
+    assert [f"{it.code} {it.level} {place} {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(said)
+    )
+    assert all(text[it.column - 1 :].startswith(place.rstrip(":")) for it in found)
+
+
+GZ_DRIVE, P3D = "gz-sim-diff-drive-system", "<body_name>a</body_name>"
+MOCK = "mock_components/GenericSystem"
+SPEED_IS = "MB110 warning <wheel_seperation>: " + GZ_DRIVE + " does not read 'wheel_seperation'; "
+RADIUS_IS = (
+    "MB125 warning {0}</wheel_radius>: wheel_radius '{0}' has to be above 0 (DiffDrive.cc:631);"
+)
+
+
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        (
+            system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"),
+            f"{SPEED_IS}did you mean 'wheel_separation'?",
+        ),
+        # What it may be meant to be is there already.
+        (
+            system(
+                *DRIVE,
+                "<wheel_separation>1</wheel_separation><wheel_seperation>1</wheel_seperation>",
+            ),
+            f"{SPEED_IS.replace('MB110 warning', 'MB111 note')}{MOVE}",
+        ),
+        (
+            system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"),
+            f"MB163 warning <wheel_diameter>: {GZ_DRIVE} does not read 'wheel_diameter';"
+            " gazebo_ros_diff_drive does",
+        ),
+        (
+            classic("gazebo_ros_diff_drive", "<wheel_radius>1</wheel_radius>"),
+            "MB163 warning <wheel_radius>: gazebo_ros_diff_drive does not read 'wheel_radius';"
+            f" {GZ_DRIVE} does",
+        ),
+        (
+            system(*DRIVE, "<wheel_radius>ten</wheel_radius>"),
+            "MB120 warning ten</wheel_radius>: wheel_radius 'ten' is not a number, and counts as 0;"
+            f" {NUMBERS}",
+        ),
+        (
+            system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"),
+            f"MB120 warning 0,1</wheel_radius>: wheel_radius '0,1' is read as 0; {NUMBERS}",
+        ),
+        *(
+            (
+                system(*DRIVE, f"<wheel_radius>{it}</wheel_radius>"),
+                f"{RADIUS_IS.format(it)} {TAKEN}",
+            )
+            for it in ("0", "-1")
+        ),
+        (
+            system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
+            "MB125 warning -1</odom_publish_frequency>: odom_publish_frequency '-1' has to be at"
+            f" least 0 (DiffDrive.cc:324); {TAKEN}",
+        ),
+        (system(*DRIVE, "<odom_publish_frequency>0</odom_publish_frequency>"), ""),
+        (
+            system("label", "Label", "<label>256</label>"),
+            f"MB125 warning 256</label>: label '256' may be 255 at most (Label.cc:59); {TAKEN}",
+        ),
+        (system("label", "Label", "<label>255</label>"), ""),
+        (
+            system("thruster", "Thruster"),
+            "MB115 error <plugin: gz-sim-thruster-system needs 'joint_name'; without it, it is not"
+            " loaded (Thruster.cc:242)",
+        ),
+        (
+            system(*MOTOR, "<turningDirection>ccww</turningDirection>"),
+            "MB124 warning ccww</turningDirection>: turningDirection 'ccww' is not a word that"
+            " gz-sim-multicopter-motor-model-system knows; did you mean 'ccw'?",
+        ),
+        # A word that is like none may be one of a later version.
+        (system(*MOTOR, "<turningDirection>zzz</turningDirection>"), ""),
+        (
+            system(
+                "ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"
+            ),
+            "MB170 warning 30</steering_limit>: steering_limit '30' is more than a turn: it is in"
+            " radians; 30 degrees are 0.5236",
+        ),
+        (
+            classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping><ros/>"),
+            "MB112 warning <remapping>odom:=a</remapping>: gazebo_ros_p3d reads 'remapping' in"
+            " <ros>, not beside it; move it into <ros>",
+        ),
+        (classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping>"), ""),
+        (
+            classic("gazebo_ros_p3d", f"{P3D}<ros><remaping>a:=b</remaping></ros>"),
+            "MB110 warning <remaping>a:=b</remaping>: gazebo_ros_p3d does not read 'remaping' in"
+            " <ros>; did you mean 'remapping'?",
+        ),
+        (
+            classic("gazebo_ros_p3d", "<ros/>"),
+            "MB115 error <plugin: gazebo_ros_p3d needs 'body_name'; without it, it is not loaded"
+            " (gazebo_ros_p3d.cpp:115)",
+        ),
+        (
+            classic("gazebo_ros_diff_drive", "<publish_odom>on</publish_odom>"),
+            "MB120 warning on</publish_odom>: publish_odom 'on' is neither true nor false, and"
+            f" counts as false; {NUMBERS}",
+        ),
+        (
+            hardware(MOCK, '<param name="calculate_dynamic">true</param>'),
+            f"MB110 warning <param: {MOCK} does not read 'calculate_dynamic'; did you mean"
+            " 'calculate_dynamics'?",
+        ),
+        # The names of its parameters may be where nobody looked.
+        (hardware(MOCK, '<param name="acme">true</param>'), ""),
+    ],
+)
+def test_what_is_said_of_a_plugin(inside: str, said: str) -> None:
+    """Code, level, what is at its place, message and hint."""
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    found = lint_data("r.urdf", text.encode(), NEW._replace(distro="jazzy"))
     place = said.split(" ")[2] if said else ""
     assert [f"{it.code} {it.level} {place} {it.message}; {it.hint}" for it in found] == (
         [said] * bool(said)
