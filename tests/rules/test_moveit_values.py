@@ -390,3 +390,103 @@ STATE = '<group_state name="home"{}><joint name="{}" value="0"/></group_state>'
 def test_an_srdf_of_pinocchio(rest: str, expected: list[tuple[str, str]], tmp_path: Path) -> None:
     codes = ("MB115", "MB803", "MB804", "MB805", "MB812", "MB901")
     assert linted(tmp_path, "arm.srdf", SRDF.format(rest), codes) == expected
+
+
+CONTROLLER = (
+    "{}:\n  ros__parameters: {{joints: [left, right], command_interfaces: [position],"
+    " state_interfaces: [position]}}\n"
+)
+JTC, DIFF = (
+    "joint_trajectory_controller/JointTrajectoryController",
+    "diff_drive_controller/DiffDriveController",
+)
+LOADED = "controller_manager:\n  ros__parameters: {{arm.type: {}}}\n"
+OF_NONE = "has parameters of a controller that nothing declares; did you mean arm (c.yaml:2)?"
+
+
+@pytest.mark.parametrize(
+    ("type_", "sections", "said"),
+    [
+        (JTC, "arm", []),
+        (JTC, "amr", [f"3:1 warning amr {OF_NONE}"]),
+        # The one section of a kind, and the one controller of that kind that has none.
+        (
+            JTC,
+            "joint_trajectory_controller",
+            [f"3:1 warning joint_trajectory_controller {OF_NONE}"],
+        ),
+        (DIFF, "joint_trajectory_controller", []),
+        (JTC, "joint_trajectory_controller right_joint_trajectory_controller", []),
+        (JTC, "arm joint_trajectory_controller", []),
+    ],
+)
+def test_a_section_that_is_of_no_controller(
+    type_: str, sections: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = LOADED.format(type_) + "".join(CONTROLLER.format(it) for it in sections.split())
+    assert told(tmp_path, "c.yaml", text, "MB878") == said
+
+
+ROW = "type: {}, action_ns: {}, joints: [{}]"
+FOLLOWS, ACTION = "FollowJointTrajectory", "follow_joint_trajectory"
+NO_FILE = "which no parameter file of the robot has"
+
+
+@pytest.mark.parametrize(
+    ("name", "row", "said"),
+    [
+        ("arm", ROW.format(FOLLOWS, ACTION, "left"), []),
+        (
+            "arm",
+            ROW.format(FOLLOWS, ACTION, "lefd"),
+            [
+                f"3:83 warning MoveIt uses joint lefd of arm, {NO_FILE}; did you mean left (c.yaml:4)?"
+            ],
+        ),
+        (
+            "arm",
+            ROW.format(FOLLOWS, ACTION, "zzz"),
+            [f"3:83 warning MoveIt uses joint zzz of arm, {NO_FILE}; see c.yaml:4"],
+        ),
+        (
+            "arm",
+            ROW.format(FOLLOWS, "follow_joint_trajectry", "left"),
+            [
+                f"3:49 warning MoveIt uses action arm/follow_joint_trajectry, {NO_FILE}; did you"
+                " mean arm/follow_joint_trajectory (c.yaml:2)?"
+            ],
+        ),
+        (
+            "arm",
+            ROW.format("GripperCommand", ACTION, "left"),
+            [
+                f"3:15 warning MoveIt uses arm/follow_joint_trajectory as GripperCommand, {NO_FILE};"
+                " did you mean FollowJointTrajectory (c.yaml:2)?"
+            ],
+        ),
+        (
+            "arm2",
+            ROW.format(FOLLOWS, ACTION, "left"),
+            [f"3:3 warning MoveIt uses controller arm2, {NO_FILE}; did you mean arm (c.yaml:2)?"],
+        ),
+        (
+            "leg",
+            ROW.format(FOLLOWS, ACTION, "left"),
+            [
+                f"3:3 warning MoveIt uses controller leg, {NO_FILE}; use the controller's name, its"
+                " joints and its action"
+            ],
+        ),
+        # A launch file fills it in.
+        ("$(var side)_arm", ROW.format(FOLLOWS, ACTION, "left"), []),
+    ],
+)
+def test_a_controller_as_moveit_has_it(
+    name: str, row: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c.yaml").write_text(LOADED.format(JTC) + CONTROLLER.format("arm"))
+    text = f"moveit_simple_controller_manager:\n  controller_names: [{name}]\n  {name}: {{{row}}}\n"
+    found = told(tmp_path, "moveit_controllers.yaml", text, "MB857")
+    assert found == said
