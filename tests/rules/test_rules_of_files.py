@@ -309,3 +309,37 @@ def test_what_is_said_of_a_parameter_file(code: str, text: str, said: str, tmp_p
     (tmp_path / "a.yaml").write_text(text)
     found = lint_file(str(tmp_path / "a.yaml"), Settings(select=(code,), robots=ROBOTS))
     assert [f"{it.line} {it.level} {it.message}" for it in found] == [said] * bool(said)
+
+
+ONE_FILE = "5:25 Description File '/a.urdf' is one description file, shown for every robot;"
+PATTERN = "4:27 Filter (whitelist) 'base.*' is a pattern for frames and stays unchanged;"
+TWICE = "4:18 TF Prefix '{}' adds a prefix to frames that already have the robot's name: it is"
+A_FILE = "Description Source: File\n      Description File: /a.urdf"
+
+
+@pytest.mark.parametrize(
+    ("layout", "display", "row", "said"),
+    [
+        ("both", "RobotModel", A_FILE, f"{ONE_FILE} set Description Source to Topic"),
+        # Each robot has its links alike.
+        ("tf-per-robot", "RobotModel", A_FILE, f"{ONE_FILE} fine if all robots look the same"),
+        ("both", "RobotModel", A_FILE.replace("File\n", "Topic\n"), ""),
+        ("both", "TF", "Filter (whitelist): base.*", f"{PATTERN} make it match the robots' frames"),
+        ("tf-per-robot", "TF", "Filter (whitelist): base.*", ""),
+        (
+            "both",
+            "RobotModel",
+            "TF Prefix: rover",
+            f"{TWICE.format('rover')} emptied; nothing to do; RViz would add the prefix a second time",
+        ),
+        ("tf-per-robot", "RobotModel", "TF Prefix: rover", ""),
+    ],
+)
+def test_what_is_said_of_a_display(
+    layout: str, display: str, row: str, said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.rviz").write_text(AXES.replace("Axes", display).format(row))
+    settings = Settings(select=("MB88",), robots=ROBOTS, naming=make_naming(layout))
+    found = lint_file(str(tmp_path / "a.rviz"), settings)
+    assert [f"{it.line}:{it.column} {it.message}; {it.hint}" for it in found] == [said] * bool(said)
+    assert {it.level for it in found} <= {"warning"}

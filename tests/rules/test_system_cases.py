@@ -605,3 +605,70 @@ def test_orders_and_who_obeys_them(lines: tuple[str, ...], found: list[str]) -> 
         f"{it.code} {it.level} {it.node or it.robot}: {it.message}; {it.hint}"
         for it in judge(system)
     ] == found
+
+
+SENT = "transform odom -> base_link on /robot1/tf by /robot1/ekf"
+STILL = "transform base_link -> laser on /robot1/tf by /robot1/robot_state_publisher"
+INSTEAD = (
+    "/robot1/ekf sends odom -> base_link; use a frame that is sent, or name the node that does"
+)
+
+
+def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") -> list[str]:
+    return [f"MG413 {level} /robot1/{node}: reads frame {frame}, but {rest}"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (SENT, "/robot1/planner looks up base_footprint"),
+            reads("base_footprint", f"no known node sends it; {INSTEAD}"),
+        ),
+        # What sends a description is not named.
+        (
+            (SENT.replace("by ", "by /robot1/robot_state_publisher, "),
+             "/robot1/planner looks up base_footprint"),
+            reads("base_footprint", f"no known node sends it; {INSTEAD}"),
+        ),
+        (
+            (SENT, *(f"/robot1/{it} looks up base_footprint" for it in ("planner", "amcl", "x"))),
+            reads(
+                "base_footprint",
+                f"no known node sends it; the same for /robot1/amcl, /robot1/x; {INSTEAD}",
+            ),
+        ),
+        # A map often comes from elsewhere.
+        (
+            (SENT, "/robot1/planner looks up map"),
+            reads("map", f"no known node sends it; {INSTEAD}", level="note"),
+        ),
+        (
+            (SENT, "/robot1/planner looks up base_lnik"),
+            reads("base_lnik", "nothing sends it; did you mean base_link?"),
+        ),
+        (
+            (SENT, "/robot1/planner looks up tool"),
+            reads("tool", "nothing sends it; send it, or use a frame that is sent"),
+        ),
+        ((SENT, "/robot1/planner looks up base_link"), []),
+        (
+            (STILL, "/robot1/planner looks up odom"),
+            reads("odom", "nothing sends it; send it, or use a frame that is sent"),
+        ),
+        (
+            (STILL, "/robot1/planner looks up odom", f"/robot1/planner subscribes /robot1/tf {TF}"),
+            reads(
+                "odom",
+                "no known node sends it; name the node or stack that sends it",
+                level="note",
+            ),
+        ),
+    ],
+)  # fmt: skip
+def test_frames_that_are_looked_up(lines: tuple[str, ...], found: list[str]) -> None:
+    """Code, level, node, message and hint."""
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in judge(system)] == (
+        found
+    )
