@@ -187,6 +187,8 @@ def parameters(node: str, text: str) -> str:
 NO_NAME = "is not a valid ROS name:"
 LETTERS = "is not a letter, a digit, or one of _ / ~ { }"
 FOR_ONE = "includes the robot name robot2, so the file is for that robot only"
+SAME = "is the same for all robots"
+CALIBRATION = "2 note every robot reads the calibration '{}a.yaml'; real cameras have one each"
 BELOW = "has a namespace; it is placed below each robot's namespace"
 
 
@@ -245,6 +247,36 @@ BELOW = "has a namespace; it is placed below each robot's namespace"
                 ("global_frame_id", "map", "frame", False),
             )
         ),
+        # What each robot has of its own.
+        *(
+            ("MB412", parameters(node, f"{key}: {value}"), f"2 {level} {key} {value} {SAME}")
+            for node, key, value, level in (
+                ("x", "serial_port", "/dev/ttyUSB0", "note"),
+                ("x", "ip_address", "192.168.0.5", "warning"),
+                ("x", "port", "8080", "note"),
+                ("foxglove_bridge", "port", "8765", "warning"),
+            )
+        ),
+        *(
+            (
+                "MB412",
+                parameters("camera", f"camera_info_url: '{it}a.yaml'"),
+                CALIBRATION.format(it),
+            )
+            for it in ("file:///", "package://a/")
+        ),
+        *(
+            ("MB412", parameters("camera", f"camera_info_url: '{it}a.yaml'"), "")
+            for it in ("flash:///", "file://${ROS_HOME}/", "file:///<robot_namespace>/")
+        ),
+        ("MB412", parameters("x", "ip_address: 127.0.0.1"), ""),
+        ("MB412", parameters("x", "port: 80"), ""),
+        (
+            "MB881",
+            parameters("foxglove_bridge", 'topic_whitelist: ["/scan.*"]'),
+            "2 warning names in topic_whitelist '/scan.*' are not rewritten",
+        ),
+        ("MB881", parameters("foxglove_bridge", 'topic_whitelist: [".*"]'), ""),
         (
             "MB867",
             parameters("amcl", "alpha1: 0.1") + parameters("/**", "alpha1: 0.2, alpha2: 0.3"),
@@ -339,7 +371,8 @@ def test_what_is_said_of_a_display(
     layout: str, display: str, row: str, said: str, tmp_path: Path
 ) -> None:
     (tmp_path / "a.rviz").write_text(AXES.replace("Axes", display).format(row))
-    settings = Settings(select=("MB88",), robots=ROBOTS, naming=make_naming(layout))
+    codes = ("MB881", "MB882")
+    settings = Settings(select=codes, robots=ROBOTS, naming=make_naming(layout))
     found = lint_file(str(tmp_path / "a.rviz"), settings)
     assert [f"{it.line}:{it.column} {it.message}; {it.hint}" for it in found] == [said] * bool(said)
     assert {it.level for it in found} <= {"warning"}
