@@ -32,6 +32,10 @@ DRIVE = (
     '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
     "<frame_id>odom</frame_id></plugin></gazebo>"
 )
+CLASSIC_DRIVE = (
+    '<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so">'
+    "<robot_base_frame>a</robot_base_frame></plugin></gazebo>"
+)
 LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>'
 
 
@@ -93,6 +97,16 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
                 f"Gazebo simulates no sensor of type '{it}'" if it in ("ray", "lidar") else "",
             )
             for it in ("ray", "lidar", "gpu_ray", "gpu_lidar")
+        ),
+        (
+            "MB406",
+            A + CLASSIC_DRIVE,
+            "without <odometry_frame> the plugin uses 'odom', the same for every robot",
+        ),
+        (
+            "MB406",
+            A + CLASSIC_DRIVE.replace("</pl", "<odometry_frame>a</odometry_frame></pl"),
+            "",
         ),
         (
             "MB433",
