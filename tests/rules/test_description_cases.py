@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.rules.description.structure.shared import first_names
 from multibot_rewrite.rules.settings import Settings
 
 A, LASER = '<link name="a"/>', '<link name="laser"/>'
@@ -55,6 +56,16 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
         ("MB603", A + NO_MASS, GONE),
         ("MB603", A + NO_MASS + SENSOR, f"{GONE}; sensor 's' goes with it"),
         ("MB603", A + NO_MASS + SENSOR.replace('"a"', '"base"'), GONE),
+        (
+            "MB603",
+            A + NO_MASS + '<ros2_control name="c" type="system"><joint name="j"/></ros2_control>',
+            f"{GONE}; joint 'j' of ros2_control goes with it",
+        ),
+        (
+            "MB603",
+            A + NO_MASS + DRIVE.replace("frame_id>odom</frame_id", "left_joint>j</left_joint"),
+            f"{GONE}; joint 'j' of a plugin goes with it",
+        ),
         # sdformat parser.cc: with auto="true" or "1" the values are computed.
         ("MB606", SDF.format("", 0), "mass of link 'a' is 0, and has to be above 0"),
         ("MB606", SDF.format("", -1), "mass of link 'a' is -1, and has to be above 0"),
@@ -216,3 +227,9 @@ def test_what_is_said_of_limits(joint: str, said: list[str]) -> None:
         f"{'' if text[it.column - 1] == '<' else '='}: {it.message}"
         for it in found
     ) == sorted(said)
+
+
+def test_of_many_names_eight_are_said() -> None:
+    eight = "'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'"
+    assert first_names("abcdefgh") == eight
+    assert first_names("abcdefghij") == f"{eight} and 2 more"
