@@ -672,3 +672,121 @@ def test_frames_that_are_looked_up(lines: tuple[str, ...], found: list[str]) -> 
     assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in judge(system)] == (
         found
     )
+
+
+THING, IMAGE = "acme_msgs/msg/Thing", "sensor_msgs/msg/Image"
+PACKED, GRID = "sensor_msgs/msg/CompressedImage", "nav_msgs/msg/OccupancyGrid"
+STATES = "sensor_msgs/msg/JointState"
+
+
+def hears(name: str, type_: str = THING, node: str = "reader", code: str = "") -> str:
+    return f"/robot1/{node} subscribes /robot1/{name} {type_}{f' as {code}' if code else ''}"
+
+
+def sends(name: str, type_: str = THING, node: str = "sender", code: str = "") -> str:
+    return f"/robot1/{node} publishes /robot1/{name} {type_}{f' as {code}' if code else ''}"
+
+
+# What a node waits for in vain, and what there is instead: by what it is, not by its name alone.
+INSTEAD_OF = {
+    "the only one of its type": ((hears("wanted"), sends("given")), "given"),
+    "two of its type": ((hears("wanted"), sends("given"), sends("other")), ""),
+    "a word in common": ((hears("wheel_wanted"), sends("wheel_given"), sends("other")), "wheel_given"),
+    "a short word in common": ((hears("arm_wanted"), sends("arm_given"), sends("other")), ""),
+    "a word that says nothing": ((hears("data_wanted"), sends("data_given"), sends("other")), ""),
+    "read by another node": ((hears("wanted"), sends("given"), hears("given", node="other")), ""),
+    "of a type for many ends": ((hears("wanted", POSE), sends("given", POSE)), ""),
+    "of such a type with a word in common": (
+        (hears("route_wanted", POSE), sends("route_given", POSE)),
+        "route_given",
+    ),
+    "a name that goes on": ((hears("joy", POSE), sends("joystick", POSE)), "joystick"),
+    "another number": ((hears("thing_1"), sends("thing_2")), ""),
+    "of a node that is called alike": ((hears("wanted", node="a"), sends("given", node="a")), ""),
+    "a topic below its own node": ((hears("reader/wanted"), sends("given")), ""),
+    "a node that merges": (
+        (hears("wanted"), hears("more"), sends("more", node="one"), sends("given")),
+        "",
+    ),
+    "of Nav2": ((hears("wanted"), sends("given", node="controller_server")), ""),
+    "a scan that others read": (
+        (hears("scan", SCAN), sends("laser", SCAN), hears("laser", SCAN, "slam")),
+        "laser",
+    ),
+    "an image that others read": (
+        (hears("image", IMAGE), sends("eye", IMAGE), hears("eye", IMAGE, "slam")),
+        "",
+    ),
+    "joints of two": (
+        (hears("joints", STATES), sends("arm", STATES, "arm"), sends("leg", STATES, "leg")),
+        "",
+    ),
+    "a map": ((hears("map", GRID, "planner"), sends("maps/map", GRID)), "maps/map"),
+    "what a costmap shows": ((hears("map", GRID, "planner"), sends("x", GRID, "local_costmap")), ""),
+    "a scan by its code's name": (
+        (hears("scan", SCAN, "amcl", "scan"), sends("front/scan", SCAN, "l"), sends("r", SCAN, "r")),
+        "front/scan",
+    ),
+    "a text by its code's name": (
+        (hears("word", STRING, code="word"), sends("words", STRING, code="words"),
+         sends("zzz", STRING, code="zzz")),
+        "words",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", INSTEAD_OF)
+def test_what_is_sent_in_place_of_what_is_read(name: str) -> None:
+    lines, meant = INSTEAD_OF[name]
+    node, _, wanted, *_ = lines[0].split()
+    by = next((it.split()[0] for it in lines if f"publishes /robot1/{meant} " in it), "")
+    said = (
+        f"MG303 warning {node}: subscribes to {wanted}, which no node publishes; {by} publishes"
+        f" /robot1/{meant}; pass the rule {wanted}:=/robot1/{meant}, or write /robot1/{meant} in its"
+        " parameters"
+    )
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(meant)
+    )
+
+
+DOORS = "acme_msgs/srv/Door"
+
+
+@pytest.mark.parametrize(
+    ("level", "lines", "meant"),
+    [
+        ("warning", (f"/robot1/a calls /robot1/open {DOORS}",
+                     f"/robot1/b serves /robot1/door {DOORS}"), "/robot1/door"),
+        # Somebody calls it already.
+        ("warning", (f"/robot1/a calls /robot1/open {DOORS}",
+                     f"/robot1/b serves /robot1/door {DOORS}",
+                     f"/robot1/c calls /robot1/door {DOORS}"), ""),
+        ("error", (f"/robot1/a calls /robot1/door_opn {DOORS}",
+                   f"/robot1/b serves /robot1/door_open {DOORS}",
+                   f"/robot1/c serves /robot1/zzz {DOORS}"), "/robot1/door_open"),
+        # Of a type that many have the last word counts.
+        ("", (f"/robot1/a calls /robot1/open {STOP}", f"/robot1/b serves /robot1/door {STOP}"), ""),
+        ("warning", (f"/robot1/a calls /robot1/x/stop {STOP}",
+                     f"/robot1/b serves /robot1/y/stop {STOP}"), "/robot1/y/stop"),
+        # In a namespace without a node, and in one with nodes.
+        ("error", (f"/boss calls /cell/door {DOORS}", f"/gate serves /door {DOORS}"), "/door"),
+        ("warning", (f"/boss calls /cell/door {DOORS}", f"/gate serves /door {DOORS}", "/cell/x"),
+         "/door"),
+    ],
+)  # fmt: skip
+def test_what_is_served_in_place_of_what_is_called(
+    level: str, lines: tuple[str, ...], meant: str
+) -> None:
+    node, _, wanted, _ = lines[0].split()
+    by = next((it.split()[0] for it in lines if f"serves {meant} " in it), "")
+    rest = "start the node that serves it, or leave out what calls it"
+    if meant:
+        rest = f"{by} serves {meant}; pass the rule {wanted}:={meant}, or start it in the namespace"
+        rest += " of the robot"
+    said = f"MG304 {level} {node}: calls {wanted}, which no node serves; {rest}"
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(level)
+    )
