@@ -913,3 +913,38 @@ def test_a_joint_that_a_plugin_turns_needs_an_effort() -> None:
         )
         found = lint_data("r.urdf", text.encode(), Settings(select=("MB515",), distro="jazzy"))
         assert [it.level for it in found] == ["warning"] * (len(names) - 1) + ["note"], library
+
+
+MODEL = '<sdf version="{}"><model name="m"><link name="l">{}</link></model></sdf>'
+FAST = '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor>'
+SYSTEM = '<plugin name="p" filename="{}"/>'
+
+
+@pytest.mark.parametrize(
+    ("version", "inside", "distro", "level"),
+    [
+        # Gazebo Classic wrote SDF up to 1.7, and goes on with what it cannot read.
+        ("1.6", FAST, "jazzy", "warning"),
+        ("1.7", FAST, "jazzy", "warning"),
+        ("1.8", FAST, "jazzy", "error"),
+        ("1.8", FAST, "humble", "warning"),
+        *(
+            ("1.6", FAST + SYSTEM.format(it), "humble", "error")
+            for it in ("ignition-gazebo-imu-system", "gz-sim-imu-system", "libgz_ros2_control.so")
+        ),
+        ("1.6", FAST + SYSTEM.format("ign_ros2_control-system"), "humble", "error"),
+        ("1.6", FAST + SYSTEM.format("libgazebo_ros_imu.so"), "humble", "warning"),
+    ],
+)
+def test_a_model_that_may_be_of_gazebo_classic(
+    version: str, inside: str, distro: str, level: str
+) -> None:
+    text = MODEL.format(version, inside)
+    settings = Settings(select=("MB120",), distro=distro)
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+
+
+def test_the_version_of_a_urdf_is_none_of_gazebo_classic() -> None:
+    text = f'<robot name="r" version="1.0">{LINK}{in_link("<mu1>high</mu1>")}</robot>'
+    settings = Settings(select=("MB120",), distro="jazzy")
+    assert [it.level for it in lint_data("r.urdf", text.encode(), settings)] == ["error"]
