@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.rules.convert import spans
 from multibot_rewrite.rules.description.structure.shared import first_names
 from multibot_rewrite.rules.settings import Settings
 
@@ -233,3 +235,51 @@ def test_of_many_names_eight_are_said() -> None:
     eight = "'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'"
     assert first_names("abcdefgh") == eight
     assert first_names("abcdefghij") == f"{eight} and 2 more"
+
+
+@pytest.mark.parametrize(
+    ("version", "static", "values", "said"),
+    [
+        ("1.9", "", "<ixx>1</ixx>", []),
+        # What is left out is 1, and 0 beside the diagonal.
+        ("1.9", "", "<ixx>3</ixx>", ["error inertia of link 'a' "]),
+        ("1.9", "", "<ixx>0</ixx><iyy>0</iyy><izz>0</izz>", ["error inertia of link 'a' is 0"]),
+        ("1.9", "", "<ixx>-1</ixx>", ["error inertia of link 'a' "]),
+        # Gazebo Classic goes on, and takes nothing of a static model.
+        ("1.6", "", "<ixx>3</ixx>", ["warning inertia of link 'a' "]),
+        ("1.6", "<static>1</static>", "<ixx>3</ixx>", ["note inertia of link 'a' "]),
+        ("1.6", "<static> true </static>", "<ixx>3</ixx>", ["note inertia of link 'a' "]),
+        ("1.6", "<static>false</static>", "<ixx>3</ixx>", ["warning inertia of link 'a' "]),
+        ("1.9", "<static>true</static>", "<ixx>3</ixx>", ["error inertia of link 'a' "]),
+    ],
+)
+def test_the_inertia_of_a_link_of_a_model(
+    version: str, static: str, values: str, said: list[str]
+) -> None:
+    text = (
+        f'<sdf version="{version}"><model name="m">{static}<link name="a"><inertial><mass>1</mass>'
+        f"<inertia>{values}</inertia></inertial></link></model></sdf>"
+    )
+    found = lint_data("a.sdf", text.encode(), Settings(select=("MB606",), distro="jazzy"))
+    assert len(found) == len(said)
+    assert all(
+        f"{it.level} {it.message}".startswith(one) for it, one in zip(found, said, strict=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "rest"),
+    [
+        ('<robot><link name="a"/><b/></robot>', "<b/></robot>"),
+        ('<robot><link name="a"></link ><b/></robot>', "<b/></robot>"),
+        ('<robot><link name="a"><c/></link>b</robot>', "b</robot>"),
+        ("<robot><link><c><link/></c></link><b/></robot>", "<b/></robot>"),
+        # An end tag in a comment is none.
+        ("<robot><link><c/><!-- </link> --></link><b/></robot>", "<b/></robot>"),
+        ("<robot><link><!-- </link> --><!-- </link> --></link></robot>", "</robot>"),
+    ],
+)
+def test_where_an_element_ends(text: str, rest: str) -> None:
+    document = read_document(text.encode(), "a.urdf")
+    link = document.root[0]
+    assert text[spans.end_of(spans.text_of(document), link) :] == rest

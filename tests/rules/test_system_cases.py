@@ -566,6 +566,13 @@ def unread(name: str, meant: str = "/robot1/cmd_vel") -> str:
             ["MG312 warning /robot1/teleop: publishes /robot1/cmd_vel beside"
              f" /robot1/controller_server, and /robot1/driver obeys both; {CHOOSE}"],
         ),
+        # A goal is no motion.
+        (
+            (f"/robot1/bt_navigator subscribes /robot1/goal_pose {POSE}",
+             f"/robot1/a publishes /robot1/goal_pose {POSE}",
+             f"/robot1/b publishes /robot1/goal_pose {POSE}"),
+            [],
+        ),
         # Two of Nav2 take turns; a mux chooses.
         ((DRIVE, SERVER, SERVER.replace("controller", "behavior")), []),
         (
