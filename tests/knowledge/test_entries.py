@@ -45,6 +45,7 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 
 EMPTY = NodeLibrary({}, {}, {})
 FILE = """\
@@ -605,3 +606,11 @@ def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
         {"a::B": "", "a::C": "jazzy,kilted"}, {"a/D": "a::B", "A": "a::B"}, frozenset({"a/D"})
     )
     assert canonical(" a/b::C\n") == "a::b::C"
+
+
+def test_what_is_known_is_listed_in_order() -> None:
+    said = "part 'x' is not known; known: a, b, c"
+    assert unknown("part", "x", {"c": 1, "a": 2, "b": 3}) == said
+    assert unknown("part", "x", ()) == "part 'x' is not known; known: none"
+    near = "part 'abcd' is not known; did you mean 'abce'? known: b"
+    assert unknown("part", "abcd", ("b",), ("abce",)) == near

@@ -127,6 +127,17 @@ LIBRARY = '<gazebo><plugin name="gz::sim::systems::Imu" filename="{}"/></gazebo>
             "without <child_frame_id> the frame is 'MODEL/a', which no robot has in tf",
         ),
         ("MB433", A + DRIVE.replace("</pl", "<child_frame_id>a</child_frame_id></pl"), ""),
+        # Files of macros, of materials and for Webots need no link.
+        *(
+            ("MB502", it, said)
+            for it, said in (
+                ("", "the robot has no link"),
+                ('<joint name="j" type="fixed"/>', "the robot has no link"),
+                ('<material name="m"/><joint name="j" type="fixed"/>', "the robot has no link"),
+                ('<material name="m"/><webots/>', ""),
+                ('<xacro:m xmlns:xacro="http://www.ros.org/wiki/xacro"/><joint name="j"/>', ""),
+            )
+        ),
         ("MB221", A + JOINT.format("a ") + "</joint>", "parent@link is 'a ', the link is 'a'"),
         ("MB221", '<link name="a "/>' + JOINT.format("a ") + "</joint>", ""),
         ("MB515", A + JOINT.format("a") + LIMIT.format(1, 0), "joint 'j': velocity is 0"),

@@ -149,6 +149,16 @@ def told(folder: Path, name: str, text: str, code: str, release: str = "jazzy") 
     return [f"{it.line}:{it.column} {it.level} {it.message}; {it.hint}" for it in found]
 
 
+def test_a_limit_that_is_nearly_called_so(tmp_path: Path) -> None:
+    linted(tmp_path, "a.yaml", "", ())
+    joint = "robot_description_planning.joint_limits.lift."
+    text = limits("lift", "has_velocity_limit: true, max_velocity: 1.0")
+    assert told(tmp_path, "joint_limits.yaml", text, "MB110") == [
+        f"2:10 warning move_group has no parameter '{joint}has_velocity_limit'; did you mean"
+        f" '{joint}has_velocity_limits'?"
+    ]
+
+
 def test_what_is_said_of_a_chain(tmp_path: Path) -> None:
     """filter_chain.hpp loads up to the first number that is not there, and needs name and type."""
     text = """\
