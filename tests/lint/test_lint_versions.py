@@ -348,11 +348,11 @@ def test_a_collision_that_a_sensor_names_keeps_its_capsule() -> None:
 
 
 @pytest.mark.parametrize(
-    ("tag", "plain"), [("verbose", True), ("material", True), ("sensor", False)]
+    ("more", "plain"), [("<verbose/>", True), ('<material name="m"/>', True), ("<sensor/>", False)]
 )
-def test_a_capsule_beside_something_else(tag: str, plain: bool) -> None:
+def test_a_capsule_beside_something_else(more: str, plain: bool) -> None:
     """What a sphere may do without, and what it may not."""
-    body = visual('<capsule length="1" radius="1"/>').replace("</visual>", f"<{tag}/></visual>")
+    body = visual('<capsule length="1" radius="1"/>').replace("</visual>", f"{more}</visual>")
     assert ("capsule" not in fixed(robot("1.1", f"{body}<gazebo/>"))) is plain
 
 
