@@ -370,6 +370,10 @@ HEALTHY = {
     "a value that xacro fills in": sensor("imu", "<update_rate>$(arg rate)</update_rate>"),
     "a reference that is not there": '<gazebo reference="x"><mu1>high</mu1></gazebo>',
     "a plugin of our own": classic("our_drive", "<wheel_seperation>x</wheel_seperation>"),
+    **{
+        f"a plugin of our own beside those of Classic, {it}": classic(f"gazebo_ros_{it}")
+        for it in ("gp", "fan", "rate")
+    },
     "a plugin of our own among systems": a_plugin("our::Drive", "gz-sim-our-drive-system"),
     "a versioned library": a_plugin("gz::sim::systems::Imu", "libgz-sim8-imu-system.so"),
     "joints named twice": system(*DRIVE, "<left_joint>j</left_joint><left_joint>k</left_joint>"),

@@ -333,6 +333,26 @@ DECLARED = {
     JTC + "action_monitor_rate: 0}": (
         "error joint_trajectory_controller: action_monitor_rate is an int, not a double; write 0.0"
     ),
+    # Whose section it is: by its type, its name, or all parameters that tell a controller.
+    **{
+        f"{it} action_monitor_rate: 1}}": (
+            f"error {it.split()[0]}: action_monitor_rate is an int, not a double; write 1.0" * known
+        )
+        for it, known in (
+            (
+                "arm {joints: [a], command_interfaces: [position], state_interfaces: [position],",
+                True,
+            ),
+            ("arm {joints: [a], command_interfaces: [position],", False),
+            (
+                "arm {type: acme/Arm, joints: [a], command_interfaces: [position],"
+                " state_interfaces: [position],",
+                False,
+            ),
+            ("joint_trajectory_controller {", True),
+            ("my_joint_trajectory_controller {", False),
+        )
+    },
     DIFF + "wheel_radius: 0}": "error diff: wheel_radius is an int, not a double; write 0.0",
     DIFF + "publish_tf: true}": (
         "warning diff has no parameter 'publish_tf'; did you mean 'enable_odom_tf'?"
