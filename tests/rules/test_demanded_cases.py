@@ -333,6 +333,10 @@ DECLARED = {
     JTC + "action_monitor_rate: 0}": (
         "error joint_trajectory_controller: action_monitor_rate is an int, not a double; write 0.0"
     ),
+    # What every node has, whoever wrote it.
+    "amcl {use_sim_time: 'true'}": f"error amcl: use_sim_time is a string, not a bool; {THROWS}",
+    "acme {use_sim_time: 'true'}": f"error acme: use_sim_time is a string, not a bool; {THROWS}",
+    "acme {use_sim_time: true}": "",
     # Whose section it is: by its type, its name, or all parameters that tell a controller.
     **{
         f"{it} action_monitor_rate: 1}}": (
