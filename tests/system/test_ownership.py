@@ -8,6 +8,7 @@ import pytest
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.system.ownership import (
     NameOwnership,
+    name_ownership,
     whose_by_plan,
     without_name,
     without_tag_once,
@@ -183,6 +184,22 @@ def test_a_plan_with_robots_at_the_end_of_names() -> None:
     assert whose.robot("/a/b") == "b"
     assert not whose_by_plan(PLAN).of_names.robot_is_last
     assert whose_by_plan(System(robots=(Robot("f/g/a"),))).robot("/f/g/a/scan") == "f/g/a"
+
+
+@pytest.mark.parametrize(
+    ("names", "last"),
+    [
+        ("/lidar/max /lidar/rex", True),
+        ("/max/lidar /rex/lidar", False),
+        # More at the end than at the beginning.
+        ("/lidar/max /lidar/rex /max/arm", True),
+        ("/lidar/max /max/arm", False),
+    ],
+)
+def test_where_most_names_have_their_robot(names: str, last: bool) -> None:
+    nodes = tuple(Node(it, robot="max" if "max" in it else "rex") for it in names.split())
+    plan = System(nodes=nodes, robots=(Robot("max", tf_topic="/tf"), Robot("rex", tf_topic="/tf")))
+    assert name_ownership(plan).robot_is_last is last
 
 
 def test_a_plan_of_one_robot_without_its_namespace() -> None:
