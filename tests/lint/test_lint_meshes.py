@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MB7: which files are looked for where, and how they may be named."""
+"""MB7: which files are looked for where, and how they may be named.
+
+Of ``rules/description/meshes``: boxes, lookup, paths, shared.
+"""
 
 from __future__ import annotations
 

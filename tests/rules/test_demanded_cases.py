@@ -2,6 +2,9 @@
 """What nodes demand of their parameters: each demand where it is not met, and beside it where it is.
 
 The places of the demands in the nodes' sources are in ``knowledge/demanded.schema``.
+
+Of ``rules/files``: declared, demands, given, missing, parameter_facts, plugin_names, plugins,
+section_facts.
 """
 
 from __future__ import annotations

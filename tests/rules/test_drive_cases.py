@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A drive on two wheels: where they stand, how they turn and how large they are, and what is said."""
+"""A drive on two wheels: where they stand, how they turn and how large they are, and what is said.
+
+Of ``rules/facts/drives.py`` and ``rules/description/physics/drives.py``.
+"""
 
 from __future__ import annotations
 

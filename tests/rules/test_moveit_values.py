@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says."""
+"""Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says.
+
+Of ``rules/files``: chains, controllers, costmaps, joystick, limits, moveit.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small plans beside small graphs: what is said of them, and what is right and stays unsaid."""
+"""Small plans beside small graphs: what is said of them, and what is right and stays unsaid.
+
+Of ``rules/pair``: leaks, planned_states, nodes, endpoints, tf_causes, transforms, frame_names.
+"""
 
 from __future__ import annotations
 

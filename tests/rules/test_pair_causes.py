@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was probably meant, and what is to do about it: names beside names, and the whole sentences."""
+"""What was probably meant, and what is to do about it: names beside names, and the whole sentences.
+
+Of ``rules/pair``: causes, frame_prefixes, leaks, name_variants, similar_names.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place."""
+"""One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place.
+
+Of ``rules/files``: keys, names, rcl_rules, robot_words, ros_names, same_for_all, sections.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small systems without a plan: all that is said of them, and where an exception ends."""
+"""Small systems without a plan: all that is said of them, and where an exception ends.
+
+Of ``rules/system``: clocks, commands, differing, frame_ids, instead, likes, lookups, matching, names,
+states, tf_topics, transforms.
+"""
 
 from __future__ import annotations
 
@@ -797,3 +801,56 @@ def test_what_is_served_in_place_of_what_is_called(
     assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in found] == (
         [said] * bool(level)
     )
+
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+PARTS = {
+    "driver": ("publishes", "odom", ODOMETRY),
+    "planner": ("subscribes", "odom", ODOMETRY),
+    "lidar": ("publishes", "scan", SCAN),
+    "odometer": ("subscribes", "scan", SCAN),
+}
+LACKS_SCAN = (
+    "/robot2/lidar: lacks /robot2/scan beside /robot1/lidar, which publishes /robot1/scan;"
+    " /robot2/odometer has it in vain; a remap rule, a parameter or a version of its own?"
+)
+
+
+def made_of(robot: int, *but: str) -> tuple[str, ...]:
+    """A robot of the usual parts but for some."""
+    left = ((node, *it) for node, it in PARTS.items() if node not in but)
+    return tuple(f"/robot{robot}/{node} {does} /robot{robot}/{name} {type_}"
+                 for node, does, name, type_ in left)  # fmt: skip
+
+
+def has_no(robot: int, node: str) -> list[str]:
+    lacks = f"robot{robot} has no {node}, as robot1 has (/robot1/{node})"
+    return [f"robot{robot}: {lacks}; start it for this robot too, if the two are to be equal"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ((*made_of(1), *made_of(2)), []),
+        ((*made_of(1), *made_of(2, "lidar")), has_no(2, "lidar")),
+        # Of two robots nobody waits for it; of three the one differs from the others.
+        ((*made_of(1), *made_of(2, "lidar", "odometer")), []),
+        ((*made_of(1), *made_of(2), *made_of(3, "odometer")), has_no(3, "odometer")),
+        # Each has one of its own.
+        ((*made_of(1), *made_of(2, "lidar"), "/robot2/camera"), []),
+        # Two nodes in common say nothing.
+        ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), []),
+        ((*made_of(1), *made_of(2, "lidar"), "/robot2/lidar"), [LACKS_SCAN]),
+        (
+            (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),
+            [LACKS_SCAN],
+        ),
+        # A tool, and what is called after its process.
+        ((*made_of(1), "/robot1/rviz2", *made_of(2)), []),
+        ((*made_of(1), "/robot1/x_12345", *made_of(2), *made_of(3)), []),
+    ],
+)
+def test_what_a_robot_lacks_that_its_likes_have(lines: tuple[str, ...], found: list[str]) -> None:
+    judged = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    told = [it for it in judged if it.code == "MG327"]
+    assert [f"{it.node or it.robot}: {it.message}; {it.hint}" for it in told] == found
