@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small descriptions: what is said of them in whole sentences, and what is right and stays unsaid.
 
-Of ``rules/description``: duplicates, frames, inertia, limits, mass, sensors, tree; of ``rules/convert``:
-spans.
+Of ``rules/description``: duplicates, frames, inertia, limits, mass, sensors, tree; of spans.
 """
 
 from __future__ import annotations
