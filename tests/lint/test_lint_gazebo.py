@@ -952,3 +952,53 @@ def test_the_version_of_a_urdf_is_none_of_gazebo_classic() -> None:
     text = f'<robot name="r" version="1.0">{LINK}{in_link("<mu1>high</mu1>")}</robot>'
     settings = Settings(select=("MB120",), distro="jazzy")
     assert [it.level for it in lint_data("r.urdf", text.encode(), settings)] == ["error"]
+
+
+ABOVE_0 = "which has to be above 0"
+
+
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        (sensor("imu", "<update_rate>-1</update_rate>"), "update_rate is -1, which is below 0"),
+        (sensor("imu", "<update_rate>0</update_rate>"), ""),
+        (camera("<image><width>0</width></image>"), f"width is 0, {ABOVE_0}"),
+        (camera("<image><height>0</height></image>"), f"height is 0, {ABOVE_0}"),
+        (camera("<image><height>1</height></image>"), ""),
+        (camera("<clip><near>0</near></clip>"), f"near is 0, {ABOVE_0}"),
+        *(
+            (
+                sensor(type_, f"<{tag}><range><max>0</max></range></{tag}>"),
+                f"max is 0, {ABOVE_0}",
+            )
+            for type_, tag in (("gpu_lidar", "lidar"), ("gpu_ray", "ray"), ("ray", "ray"))
+        ),
+        (
+            sensor("gpu_lidar", SCAN.format("<samples>0</samples>")),
+            f"samples is 0, {ABOVE_0}",
+        ),
+        # What is no lidar has no rays.
+        (sensor("imu", "<ray><range><max>0</max></range></ray>"), ""),
+        (
+            sensor("gpu_lidar", "<lidar><range><min>20</min><max>2000</max></range></lidar>"),
+            "max is 2000, which is a length in metres",
+        ),
+        (sensor("gpu_lidar", "<lidar><range><min>19</min><max>2000</max></range></lidar>"), ""),
+        (sensor("gpu_lidar", "<lidar><range><min>20</min><max>1999</max></range></lidar>"), ""),
+        (
+            "<transmission><actuator><mechanicalReduction>0</mechanicalReduction></actuator>"
+            "</transmission>",
+            "mechanicalReduction is 0, by which is divided",
+        ),
+        (
+            classic("ours", "<min_speed>3</min_speed><max_speed>2</max_speed>"),
+            "min_speed is 3, above max_speed (2)",
+        ),
+        (classic("ours", "<min_speed>2</min_speed><max_speed>2</max_speed>"), ""),
+    ],
+)
+def test_numbers_with_which_nothing_is_seen(inside: str, said: str) -> None:
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    settings = Settings(select=("MB125",), distro="jazzy")
+    found = [it for it in lint_data("r.urdf", text.encode(), settings) if it.level == "warning"]
+    assert [it.message for it in found] == [said] * bool(said)
