@@ -299,6 +299,8 @@ DECLARED = {
         f"warning {OF_VOXELS} has no parameter 'scan.raytrace_max_rnge'; did you mean"
         " 'scan.raytrace_max_range'?"
     ),
+    # In a block of a block it has none.
+    VOXELS + "v.scan.a.raytrace_max_rnge: 3.0}": "",
     # The name of Foxy, unless that of today is there, too.
     VOXELS + "v.scan.obstacle_range: 3.0}": (
         f"warning {OF_VOXELS} has no parameter 'scan.obstacle_range'; did you mean"
