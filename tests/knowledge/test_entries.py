@@ -614,3 +614,12 @@ def test_what_is_known_is_listed_in_order() -> None:
     assert unknown("part", "x", ()) == "part 'x' is not known; known: none"
     near = "part 'abcd' is not known; did you mean 'abce'? known: b"
     assert unknown("part", "abcd", ("b",), ("abce",)) == near
+
+
+def test_a_node_that_activates_itself_has_its_life_cycle_in_those_releases() -> None:
+    text = "parts: {lifecycle: {serves: {~/change_state: lifecycle_msgs/srv/ChangeState}}}\n"
+    text += "nodes: {a: {package: p, unmanaged: <=humble}, b: {package: p}}\n"
+    nodes = extend(EMPTY, text, "f.yaml").nodes
+    change = Endpoint("service", "serves", "~/change_state", "lifecycle_msgs/srv/ChangeState")
+    assert nodes["a"].endpoints == (change._replace(releases="<=humble"),)
+    assert nodes["b"].endpoints == ()

@@ -9,9 +9,15 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, nodes_of
+from multibot_rewrite.knowledge.nodl.document import Parameter
+from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, _frames, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import (
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    SentTransform,
+)
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
@@ -325,3 +331,24 @@ def test_a_document_alone_is_a_stack_by_its_name(tmp_path: Path) -> None:
     assert node_of("other/gripper", str(tmp_path)).package == "other"
     with pytest.raises(UsageError, match="stack 'griper' is not known"):
         node_of("griper", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("known", "frames"),
+    [
+        (NodeFacts("a", "p", ()), [("base_frame", "body"), ("tool_frame", "tool")]),
+        # What the library names is all of it.
+        (
+            NodeFacts("a", "p", (), frames=(FrameParameter("base_frame", "base"),)),
+            [("base_frame", "body")],
+        ),
+        (NodeFacts("a", "p", (), sends=(SentTransform("base_frame", "tool_frame"),)), []),
+    ],
+)
+def test_which_frames_are_taken_of_a_document(
+    known: NodeFacts, frames: list[tuple[str, str]]
+) -> None:
+    given = (Parameter("base_frame", "string", "body"), Parameter("tool_frame", "string", "tool"))
+    assert [
+        tuple(it)[:2] for it in _frames(known, (*given, Parameter("x", "string", "y")))
+    ] == frames
