@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from multibot_rewrite.base.model import UsageError
@@ -18,6 +20,8 @@ from multibot_rewrite.knowledge.node_library import (
     with_included,
 )
 from multibot_rewrite.knowledge.parameters import (
+    _anywhere,
+    _node,
     guess,
     is_absolute,
     is_below_costmap,
@@ -623,3 +627,33 @@ def test_a_node_that_activates_itself_has_its_life_cycle_in_those_releases() -> 
     change = Endpoint("service", "serves", "~/change_state", "lifecycle_msgs/srv/ChangeState")
     assert nodes["a"].endpoints == (change._replace(releases="<=humble"),)
     assert nodes["b"].endpoints == ()
+
+
+@pytest.mark.parametrize(
+    ("params", "taken"),
+    [
+        # The name says it, or several nodes mean the same by it.
+        (("a.tool_frame: frame",), ["a.tool_frame"]),
+        (("a.tool: frame",), []),
+        (("a.tool: frame", "a.tool: frame"), ["a.tool"]),
+        (("a.tool: frame", "a.tool: joint"), []),
+        (("tool_frame: topic",), []),
+        # A joint or a link is one wherever a parameter is called so.
+        (("elbow: joint",), ["elbow"]),
+        (("hand: link",), ["hand"]),
+        # What is [position] in one controller may be [elbow/position] in another.
+        (("state_interfaces: keep", "state_interfaces: keep"), []),
+        (("rates: keep", "rates: keep"), ["rates"]),
+        # What each node has for itself, and words in brackets.
+        (("port: port", "port: port"), []),
+        (("<x>.tool_frame: frame",), []),
+        (("*.tool_frame: frame",), []),
+    ],
+)
+def test_what_parameters_of_known_nodes_say_of_others(
+    params: tuple[str, ...], taken: list[str]
+) -> None:
+    pairs = (it.split(": ") for it in params)
+    nodes = [_node(NodeParameters("a", "p", (Param(*it),)), "jazzy") for it in pairs]
+    guessing = re.compile(r"(?P<interface>\w*interfaces)|(?P<frame>\w*frame)")
+    assert [it.path for it in _anywhere(nodes, guessing)] == taken
