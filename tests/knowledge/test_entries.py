@@ -19,6 +19,7 @@ from multibot_rewrite.knowledge.node_library import (
     stack_of,
     with_included,
 )
+from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.parameters import (
     _anywhere,
     _node,
@@ -657,3 +658,18 @@ def test_what_parameters_of_known_nodes_say_of_others(
     nodes = [_node(NodeParameters("a", "p", (Param(*it),)), "jazzy") for it in pairs]
     guessing = re.compile(r"(?P<interface>\w*interfaces)|(?P<frame>\w*frame)")
     assert [it.path for it in _anywhere(nodes, guessing)] == taken
+
+
+@pytest.mark.parametrize(
+    ("param", "there"),
+    [
+        (Param("a", "frame", "base"), True),
+        (Param("a", "frame"), False),
+        # An empty prefix is one.
+        (Param("a", "joint_prefix"), True),
+        (Param("<x>.a", "frame", "base"), False),
+        (Param("<x>.a", "joint_prefix"), False),
+    ],
+)
+def test_a_parameter_with_a_default(param: Param, there: bool) -> None:
+    assert has_default(param) is there
