@@ -41,6 +41,7 @@ PACKAGE = "multibot_rewrite"
 ROOMS = (*sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")), ".")
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
+CODE = re.compile(r"\bM[A-Z]\d{3}\b")
 AT_ONCE, MOST_TESTS, FEW_TESTS, WHOLE_SECONDS = 80, 600, 10, 1800
 # A bug may make a loop that never ends and keeps all that it makes.
 MOST_MEMORY = 6 << 30
@@ -164,8 +165,8 @@ def _outcomes(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[
 
 def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
     """Tests that call the function with the bug, and of the module where few do: what is made once is
-    made in one test. A module of data is asked by those of its folder. Those of files that name the
-    module most often come first."""
+    made in one test. A module of data is asked by those of its folder. Those named after a rule of the
+    module come first, then those of files that name the module and its rules most often."""
     found = set(bench.called.get(f"{bug.file}:{bug.function}", ()))
     if len(found) < FEW_TESTS:
         found |= _tests_in(f"{bug.file}:", bench)
@@ -174,11 +175,17 @@ def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
         folder = folder.rpartition("/")[0]
         found = _tests_in(folder, bench)
     name = Path(bug.file).stem if Path(bug.file).stem != "__init__" else Path(bug.file).parent.name
+    rules = {*CODE.findall((bench.copy / PACKAGE / bug.file).read_text())}
     # Notes of an earlier run may name files that are gone.
     files = {it for test in found if (bench.copy / (it := test.partition("::")[0])).exists()}
     found = {test for test in found if test.partition("::")[0] in files}
-    named = {it: (bench.copy / it).read_text().count(name) for it in files}
-    nearest = sorted(found, key=lambda it: (-named[it.partition("::")[0]], it))
+    texts = {it: (bench.copy / it).read_text() for it in files}
+    named = {it: sum(map(text.count, (name, *rules))) for it, text in texts.items()}
+
+    def away(test: str) -> tuple[bool, int, str]:
+        return not any(it in test for it in rules), -named[test.partition("::")[0]], test
+
+    nearest = sorted(found, key=away)
     near, far = nearest[:AT_ONCE], nearest[AT_ONCE:]
     return near + chance.sample(far, min(MOST_TESTS - AT_ONCE, len(far)))
 

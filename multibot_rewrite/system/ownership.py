@@ -79,13 +79,7 @@ class NameOwnership(NamedTuple):
         slash = "/" if name.startswith("/") else ""
         if "/" in tag:
             return slash + f"{name.strip('/')}/".removeprefix(f"{tag}/").rstrip("/")
-        bare = name.strip("/")
-        # The usual cases, checked first because that is fast.
-        if self.robot_is_last and bare.endswith(f"/{tag}"):
-            return slash + bare[: -len(tag) - 1]
-        if not self.robot_is_last and bare.startswith(f"{tag}/"):
-            return slash + bare[len(tag) + 1 :]
-        segments = bare.split("/")
+        segments = name.strip("/").split("/")
         places = [at for at, segment in enumerate(segments) if segment == tag]
         if places and len(segments) > 1:
             del segments[places[-1 if self.robot_is_last else 0]]

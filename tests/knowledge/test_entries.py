@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from multibot_rewrite.base.model import UsageError
@@ -17,7 +19,10 @@ from multibot_rewrite.knowledge.node_library import (
     stack_of,
     with_included,
 )
+from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.parameters import (
+    _anywhere,
+    _node,
     guess,
     is_absolute,
     is_below_costmap,
@@ -44,7 +49,8 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.knowledge.stacks import is_apart
-from multibot_rewrite.knowledge.worlds import DEFAULTS, SYSTEMS
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
+from multibot_rewrite.knowledge.yaml_with_lines import unknown
 
 EMPTY = NodeLibrary({}, {}, {})
 FILE = """\
@@ -476,7 +482,13 @@ def test_programs_of_nodes() -> None:
     assert program_of(NodeFacts("driver", "", ()), "jazzy") is None
     assert program_of(NodeFacts("Component", "acme", ()), "jazzy") is None
     assert known_program("amcl", "jazzy").executable == "amcl"
-    assert NAV2[-1] == "lifecycle_manager"
+    started = (
+        "map_server amcl controller_server smoother_server planner_server route_server"
+        " behavior_server bt_navigator waypoint_follower velocity_smoother collision_monitor"
+        " docking_server following_server costmap_filter_info_server map_saver slam_toolbox"
+    )
+    # The manager last, so that what it manages is there.
+    assert (*started.split(), "lifecycle_manager") == NAV2
 
 
 @pytest.mark.parametrize(
@@ -521,6 +533,10 @@ def test_a_world_needs_a_system_for_each_sensor() -> None:
         **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
     }
     assert DEFAULTS == ("physics", "user-commands", "scene-broadcaster")
+    assert dict(SENT_BY_ANY) == {"clock": "Clock", "stats": "WorldStatistics"}
+    poses, scene = ("pose/info", "dynamic_pose/info"), {"scene/info": "Scene"}
+    sent = {**dict.fromkeys(poses, "Pose_V"), **scene, "scene/deletion": "UInt32_V"}
+    assert dict(SENT_BY) == {"scene-broadcaster": {**sent, "state": "SerializedStepMap"}}
 
 
 def test_a_word_in_brackets_stands_for_something() -> None:
@@ -601,3 +617,65 @@ def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
         {"a::B": "", "a::C": "jazzy,kilted"}, {"a/D": "a::B", "A": "a::B"}, frozenset({"a/D"})
     )
     assert canonical(" a/b::C\n") == "a::b::C"
+
+
+def test_what_is_known_is_listed_in_order() -> None:
+    said = "part 'x' is not known; known: a, b, c"
+    assert unknown("part", "x", {"c": 1, "a": 2, "b": 3}) == said
+    assert unknown("part", "x", ()) == "part 'x' is not known; known: none"
+    near = "part 'abcd' is not known; did you mean 'abce'? known: b"
+    assert unknown("part", "abcd", ("b",), ("abce",)) == near
+
+
+def test_a_node_that_activates_itself_has_its_life_cycle_in_those_releases() -> None:
+    text = "parts: {lifecycle: {serves: {~/change_state: lifecycle_msgs/srv/ChangeState}}}\n"
+    text += "nodes: {a: {package: p, unmanaged: <=humble}, b: {package: p}}\n"
+    nodes = extend(EMPTY, text, "f.yaml").nodes
+    change = Endpoint("service", "serves", "~/change_state", "lifecycle_msgs/srv/ChangeState")
+    assert nodes["a"].endpoints == (change._replace(releases="<=humble"),)
+    assert nodes["b"].endpoints == ()
+
+
+@pytest.mark.parametrize(
+    ("params", "taken"),
+    [
+        # The name says it, or several nodes mean the same by it.
+        (("a.tool_frame: frame",), ["a.tool_frame"]),
+        (("a.tool: frame",), []),
+        (("a.tool: frame", "a.tool: frame"), ["a.tool"]),
+        (("a.tool: frame", "a.tool: joint"), []),
+        (("tool_frame: topic",), []),
+        # A joint or a link is one wherever a parameter is called so.
+        (("elbow: joint",), ["elbow"]),
+        (("hand: link",), ["hand"]),
+        # What is [position] in one controller may be [elbow/position] in another.
+        (("state_interfaces: keep", "state_interfaces: keep"), []),
+        (("rates: keep", "rates: keep"), ["rates"]),
+        # What each node has for itself, and words in brackets.
+        (("port: port", "port: port"), []),
+        (("<x>.tool_frame: frame",), []),
+        (("*.tool_frame: frame",), []),
+    ],
+)
+def test_what_parameters_of_known_nodes_say_of_others(
+    params: tuple[str, ...], taken: list[str]
+) -> None:
+    pairs = (it.split(": ") for it in params)
+    nodes = [_node(NodeParameters("a", "p", (Param(*it),)), "jazzy") for it in pairs]
+    guessing = re.compile(r"(?P<interface>\w*interfaces)|(?P<frame>\w*frame)")
+    assert [it.path for it in _anywhere(nodes, guessing)] == taken
+
+
+@pytest.mark.parametrize(
+    ("param", "there"),
+    [
+        (Param("a", "frame", "base"), True),
+        (Param("a", "frame"), False),
+        # An empty prefix is one.
+        (Param("a", "joint_prefix"), True),
+        (Param("<x>.a", "frame", "base"), False),
+        (Param("<x>.a", "joint_prefix"), False),
+    ],
+)
+def test_a_parameter_with_a_default(param: Param, there: bool) -> None:
+    assert has_default(param) is there

@@ -9,9 +9,15 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, nodes_of
+from multibot_rewrite.knowledge.nodl.document import Parameter
+from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, _frames, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import (
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    SentTransform,
+)
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
@@ -110,6 +116,14 @@ def test_two_documents_of_a_node_are_refused(tmp_path: Path) -> None:
         find_interfaces([str(tmp_path)])
 
 
+def test_documents_are_in_order_whatever_the_disk_says(tmp_path: Path) -> None:
+    names = [f"p{it}/n{it}.nodl.yaml" for it in range(9)]
+    for name in reversed(names):
+        written(tmp_path, name, document())
+    found = find_interfaces([str(tmp_path)]).given
+    assert [*found.values()] == [str(tmp_path / it) for it in names]
+
+
 @pytest.mark.parametrize("name", ["missing", "empty"])
 def test_a_path_without_documents_is_refused(name: str, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
@@ -167,6 +181,15 @@ def test_a_name_of_two_documents_is_refused(tmp_path: Path) -> None:
         load(path, NONE)
 
 
+def test_a_parameter_of_two_documents_is_refused(tmp_path: Path) -> None:
+    rate = "parameters: {rate: {type: double, default_value: 1.0}}\n"
+    other = written(tmp_path, "b.nodl.yaml", document(more=rate))
+    path = written(tmp_path, "a.nodl.yaml", document(include="local://b.nodl.yaml", more=rate))
+    with pytest.raises(UsageError) as caught:
+        load(path, NONE)
+    assert str(caught.value) == f"{other}: parameter rate is in {path} too, which includes it"
+
+
 # ---------------------------------------------------------------- what a node becomes
 
 
@@ -215,6 +238,8 @@ def test_an_image_and_its_transports_are_one_and_tf_may_be_a_helpers(tmp_path: P
         f"  - {{name: image, type: {image}, {QOS}}}\n"
         f"  - {{name: image/compressed, type: {packed}, {QOS}}}\n"
         f"  - {{name: map/compressed, type: {packed}, {QOS}}}\n"
+        f"  - {{name: eye/left/image, type: {image}, {QOS}}}\n"
+        f"  - {{name: eye/left/image/theora, type: {packed}, {QOS}}}\n"
         f"subscriptions:\n  - {{name: /tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
         f"  - {{name: /tf_static, type: {image}, {QOS}}}\n"
         f"  - {{name: other/tf, type: tf2_msgs/msg/TFMessage, {QOS}}}\n"
@@ -223,6 +248,7 @@ def test_an_image_and_its_transports_are_one_and_tf_may_be_a_helpers(tmp_path: P
     assert {name: end.transport for name, end in ends(node).items()} == {
         "image": True,
         "map/compressed": False,
+        "eye/left/image": True,
     }
     assert [name for name, end in ends(node, SUBSCRIBES).items() if end.helper] == ["/tf"]
     assert not any(end.helper for end in ends(node).values())
@@ -305,3 +331,24 @@ def test_a_document_alone_is_a_stack_by_its_name(tmp_path: Path) -> None:
     assert node_of("other/gripper", str(tmp_path)).package == "other"
     with pytest.raises(UsageError, match="stack 'griper' is not known"):
         node_of("griper", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("known", "frames"),
+    [
+        (NodeFacts("a", "p", ()), [("base_frame", "body"), ("tool_frame", "tool")]),
+        # What the library names is all of it.
+        (
+            NodeFacts("a", "p", (), frames=(FrameParameter("base_frame", "base"),)),
+            [("base_frame", "body")],
+        ),
+        (NodeFacts("a", "p", (), sends=(SentTransform("base_frame", "tool_frame"),)), []),
+    ],
+)
+def test_which_frames_are_taken_of_a_document(
+    known: NodeFacts, frames: list[tuple[str, str]]
+) -> None:
+    given = (Parameter("base_frame", "string", "body"), Parameter("tool_frame", "string", "tool"))
+    assert [
+        tuple(it)[:2] for it in _frames(known, (*given, Parameter("x", "string", "y")))
+    ] == frames

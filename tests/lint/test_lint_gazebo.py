@@ -370,6 +370,10 @@ HEALTHY = {
     "a value that xacro fills in": sensor("imu", "<update_rate>$(arg rate)</update_rate>"),
     "a reference that is not there": '<gazebo reference="x"><mu1>high</mu1></gazebo>',
     "a plugin of our own": classic("our_drive", "<wheel_seperation>x</wheel_seperation>"),
+    **{
+        f"a plugin of our own beside those of Classic, {it}": classic(f"gazebo_ros_{it}")
+        for it in ("gp", "fan", "rate")
+    },
     "a plugin of our own among systems": a_plugin("our::Drive", "gz-sim-our-drive-system"),
     "a versioned library": a_plugin("gz::sim::systems::Imu", "libgz-sim8-imu-system.so"),
     "joints named twice": system(*DRIVE, "<left_joint>j</left_joint><left_joint>k</left_joint>"),
@@ -416,6 +420,335 @@ HEALTHY = {
 @pytest.mark.parametrize("oddity", HEALTHY)
 def test_a_healthy_oddity_is_left_alone(oddity: str) -> None:
     assert codes(HEALTHY[oddity]) == []
+
+
+NUMBERS = "write plain numbers with a decimal point, separated by spaces, as many as the place has"
+TAKEN = "write a number that its reader takes, in metres, kilograms and radians"
+MOVE = "delete it, or move it to where it is read; make a remark a comment"
+ADD = "add what is missing, or delete the element that needs it"
+ONE_OF = "use one of the words in the message or hint; case counts"
+RATE, FORMAT = "<update_rate>9</update_rate>", "<image><format>{}</format></image>"
+OF_CLASSIC = '<plugin name="p" filename="libgazebo_ros_camera.so"/>'
+SCAN = "<lidar><scan><horizontal>{}</horizontal></scan></lidar>"
+NO_EFFECT = "<{}> in the <gazebo> of a {} has no effect; it is read in that of a {}"
+NO_EFFECT += ": name it with reference="
+
+
+@pytest.mark.parametrize(
+    ("distro", "inside", "said"),
+    [
+        (
+            "jazzy",
+            sensor("imu", "<updateRate>9</updateRate>"),
+            "MB110 warning <updateRate>: Gazebo reads no <updateRate> in <sensor>; did you mean"
+            " <update_rate>?",
+        ),
+        # What it may be meant to be is there already.
+        (
+            "jazzy",
+            sensor("imu", RATE + "<updateRate>9</updateRate>"),
+            f"MB111 note <updateRate>: Gazebo reads no <updateRate> in <sensor>; {MOVE}",
+        ),
+        (
+            "jazzy",
+            "<gazebo><whatever/></gazebo>",
+            f"MB111 note <whatever/>: Gazebo reads no <whatever> in <model>; {MOVE}",
+        ),
+        (
+            "jazzy",
+            camera(RATE),
+            "MB112 warning <update_rate>: Gazebo reads no <update_rate> in <camera>; move it into"
+            " <sensor>",
+        ),
+        (
+            "jazzy",
+            sensor("camera", "<horizontal_fov>1</horizontal_fov>"),
+            "MB112 warning <horizontal_fov>: Gazebo reads no <horizontal_fov> in <sensor>; move it"
+            " into <camera> or <logical_camera>",
+        ),
+        (
+            "jazzy",
+            sensor("imu", '<pose relativeto="b">0 0 0 0 0 0</pose>'),
+            "MB110 warning relativeto=: Gazebo reads no attribute 'relativeto' of <pose>; did you"
+            " mean 'relative_to'?",
+        ),
+        ("jazzy", in_link('<sensor name="s" type="imu" whatever="1"/>'), ""),
+        # The name is there.
+        ("jazzy", in_link('<sensor name="s" type="imu" names="1"/>'), ""),
+        (
+            "jazzy",
+            in_link('<sensor name=" " type="imu"/>'),
+            f"MB115 error <sensor: <sensor> has no 'name'; {ADD}",
+        ),
+        (
+            "jazzy",
+            in_link('<sensor name="s"/>'),
+            f"MB115 error <sensor: <sensor> has no 'type'; {ADD}",
+        ),
+        (
+            "jazzy",
+            sensor("imu", "<pose>0 0 0 7 -90 8</pose>"),
+            "MB170 warning 0: <pose> '0 0 0 7 -90 8' is more than a turn: it is in radians; -90"
+            " degrees are -1.571",
+        ),
+        ("jazzy", sensor("imu", '<pose degrees="1">0 0 0 0 0 90</pose>'), ""),
+        (
+            "jazzy",
+            sensor("imu", '<pose degrees="0">0 0 0 0 0 90</pose>'),
+            "MB170 warning 0: <pose> '0 0 0 0 0 90' is more than a turn: it is in radians; 90"
+            " degrees are 1.571",
+        ),
+        (
+            "jazzy",
+            sensor("imu", '<pose rotation_format="quat_xyzw">0 0 0 0 0 0</pose>'),
+            f"MB120 error 0: <pose> '0 0 0 0 0 0' has 6 numbers of 7; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            sensor("imu", '<pose rotation_format="euler_rpy">0 0 0 0 0</pose>'),
+            f"MB120 error 0: <pose> '0 0 0 0 0' has 5 numbers of 6; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            sensor("gpu_lidar", SCAN.format("<min_angle>-180</min_angle>")),
+            "MB170 warning -180</min_angle>: <min_angle> '-180' is more than a turn: it is in"
+            " radians; -180 degrees are -3.142",
+        ),
+        (
+            "jazzy",
+            sensor("gpu_lidar", SCAN.format("<samples>-5</samples>")),
+            "MB120 warning -5</samples>: <samples> '-5' is below 0, and is read as a number above 4"
+            f" billion; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            sensor("imu", "<update_rate>fast</update_rate>"),
+            f"MB120 error fast</update_rate>: <update_rate> 'fast' is not a number; {NUMBERS}",
+        ),
+        # libsdformat 9 goes on.
+        (
+            "humble",
+            sensor("imu", "<update_rate>fast</update_rate>"),
+            f"MB120 warning fast</update_rate>: <update_rate> 'fast' is not a number; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            sensor("imu", "<update_rate>30 Hz</update_rate>"),
+            f"MB120 warning 30: <update_rate> '30 Hz' is read as 30; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            camera("<horizontal_fov>60</horizontal_fov>"),
+            "MB125 error 60</horizontal_fov>: <horizontal_fov> '60' is above 6.283186, the most"
+            " that SDF allows; 60 degrees are 1.047 radians",
+        ),
+        (
+            "humble",
+            camera("<horizontal_fov>60</horizontal_fov>"),
+            "MB125 note 60</horizontal_fov>: <horizontal_fov> '60' is above 6.283186, the most"
+            " that SDF allows; 60 degrees are 1.047 radians",
+        ),
+        (
+            "jazzy",
+            camera(FORMAT.format("rgb8")),
+            f"MB124 error rgb8</format>: <format> is 'rgb8', which SDF does not know; {ONE_OF}",
+        ),
+        (
+            "jazzy",
+            camera(FORMAT.format("FLOAT32")),
+            "MB124 error FLOAT32</format>: <format> is 'FLOAT32', which SDF does not know; did you"
+            " mean 'R_FLOAT32'?",
+        ),
+        (
+            "humble",
+            camera(FORMAT.format("FLOAT32")),
+            "MB124 warning FLOAT32</format>: <format> is 'FLOAT32', which SDF does not know; did"
+            " you mean 'R_FLOAT32'?",
+        ),
+        *(
+            ("jazzy", sensor("camera", f"<camera>{FORMAT.format(it)}</camera>{OF_CLASSIC}"), "")
+            for it in ("FLOAT16", "FLOAT32")
+        ),
+        (
+            "jazzy",
+            sensor("Camera"),
+            "MB124 error type=\"Camera\">: sensor@type is 'Camera', which SDF does not know; did you"
+            " mean 'camera'?",
+        ),
+        (
+            "jazzy",
+            in_link("<mu1>high</mu1>"),
+            f"MB120 error high</mu1>: mu1 'high' is not a number; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            in_link('<mu1 value="high"/>'),
+            f"MB120 error value=: mu1 'high' is not a number; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            in_link("<mu1>1.5x</mu1>"),
+            f"MB120 warning 1.5x</mu1>: mu1 '1.5x' is read as 1.5; {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            in_link("<selfCollide>maybe</selfCollide>"),
+            "MB120 warning maybe</selfCollide>: selfCollide 'maybe' is neither true nor false;"
+            f" {NUMBERS}",
+        ),
+        (
+            "jazzy",
+            "<gazebo><mu1>1</mu1></gazebo>",
+            "MB112 warning <mu1>1</mu1>: " + NO_EFFECT.format("mu1", "model", "link"),
+        ),
+        (
+            "jazzy",
+            in_link("<fudgeFactor>1</fudgeFactor>"),
+            "MB112 warning <fudgeFactor>: " + NO_EFFECT.format("fudgeFactor", "link", "joint"),
+        ),
+        (
+            "jazzy",
+            "<gazebo><dampingFactor>1</dampingFactor></gazebo>",
+            "MB112 warning <dampingFactor>: "
+            + NO_EFFECT.format("dampingFactor", "model", "link or joint"),
+        ),
+        (
+            "jazzy",
+            sensor("imu", "<frame_id>a</frame_id>"),
+            "MB157 note <frame_id>: <frame_id> in <sensor> is of SDF 1.12; Gazebo of this release"
+            " reads up to SDF 1.11",
+        ),
+    ],
+)
+def test_what_is_said_of_a_block_of_gazebo(distro: str, inside: str, said: str) -> None:
+    """Code, level, what is at its place, message and hint."""
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    found = lint_data("r.urdf", text.encode(), NEW._replace(distro=distro))
+    place = said.split(" ")[2] if said else ""
+    assert [f"{it.code} {it.level} {place} {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(said)
+    )
+    assert all(text[it.column - 1 :].startswith(place.rstrip(":")) for it in found)
+
+
+GZ_DRIVE, P3D = "gz-sim-diff-drive-system", "<body_name>a</body_name>"
+MOCK = "mock_components/GenericSystem"
+SPEED_IS = "MB110 warning <wheel_seperation>: " + GZ_DRIVE + " does not read 'wheel_seperation'; "
+RADIUS_IS = (
+    "MB125 warning {0}</wheel_radius>: wheel_radius '{0}' has to be above 0 (DiffDrive.cc:631);"
+)
+
+
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        (
+            system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"),
+            f"{SPEED_IS}did you mean 'wheel_separation'?",
+        ),
+        # What it may be meant to be is there already.
+        (
+            system(
+                *DRIVE,
+                "<wheel_separation>1</wheel_separation><wheel_seperation>1</wheel_seperation>",
+            ),
+            f"{SPEED_IS.replace('MB110 warning', 'MB111 note')}{MOVE}",
+        ),
+        (
+            system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"),
+            f"MB163 warning <wheel_diameter>: {GZ_DRIVE} does not read 'wheel_diameter';"
+            " gazebo_ros_diff_drive does",
+        ),
+        (
+            classic("gazebo_ros_diff_drive", "<wheel_radius>1</wheel_radius>"),
+            "MB163 warning <wheel_radius>: gazebo_ros_diff_drive does not read 'wheel_radius';"
+            f" {GZ_DRIVE} does",
+        ),
+        (
+            system(*DRIVE, "<wheel_radius>ten</wheel_radius>"),
+            "MB120 warning ten</wheel_radius>: wheel_radius 'ten' is not a number, and counts as 0;"
+            f" {NUMBERS}",
+        ),
+        (
+            system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"),
+            f"MB120 warning 0,1</wheel_radius>: wheel_radius '0,1' is read as 0; {NUMBERS}",
+        ),
+        *(
+            (
+                system(*DRIVE, f"<wheel_radius>{it}</wheel_radius>"),
+                f"{RADIUS_IS.format(it)} {TAKEN}",
+            )
+            for it in ("0", "-1")
+        ),
+        (
+            system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
+            "MB125 warning -1</odom_publish_frequency>: odom_publish_frequency '-1' has to be at"
+            f" least 0 (DiffDrive.cc:324); {TAKEN}",
+        ),
+        (system(*DRIVE, "<odom_publish_frequency>0</odom_publish_frequency>"), ""),
+        (
+            system("label", "Label", "<label>256</label>"),
+            f"MB125 warning 256</label>: label '256' may be 255 at most (Label.cc:59); {TAKEN}",
+        ),
+        (system("label", "Label", "<label>255</label>"), ""),
+        (
+            system("thruster", "Thruster"),
+            "MB115 error <plugin: gz-sim-thruster-system needs 'joint_name'; without it, it is not"
+            " loaded (Thruster.cc:242)",
+        ),
+        (
+            system(*MOTOR, "<turningDirection>ccww</turningDirection>"),
+            "MB124 warning ccww</turningDirection>: turningDirection 'ccww' is not a word that"
+            " gz-sim-multicopter-motor-model-system knows; did you mean 'ccw'?",
+        ),
+        # A word that is like none may be one of a later version.
+        (system(*MOTOR, "<turningDirection>zzz</turningDirection>"), ""),
+        (
+            system(
+                "ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"
+            ),
+            "MB170 warning 30</steering_limit>: steering_limit '30' is more than a turn: it is in"
+            " radians; 30 degrees are 0.5236",
+        ),
+        (
+            classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping><ros/>"),
+            "MB112 warning <remapping>odom:=a</remapping>: gazebo_ros_p3d reads 'remapping' in"
+            " <ros>, not beside it; move it into <ros>",
+        ),
+        (classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping>"), ""),
+        (
+            classic("gazebo_ros_p3d", f"{P3D}<ros><remaping>a:=b</remaping></ros>"),
+            "MB110 warning <remaping>a:=b</remaping>: gazebo_ros_p3d does not read 'remaping' in"
+            " <ros>; did you mean 'remapping'?",
+        ),
+        (
+            classic("gazebo_ros_p3d", "<ros/>"),
+            "MB115 error <plugin: gazebo_ros_p3d needs 'body_name'; without it, it is not loaded"
+            " (gazebo_ros_p3d.cpp:115)",
+        ),
+        (
+            classic("gazebo_ros_diff_drive", "<publish_odom>on</publish_odom>"),
+            "MB120 warning on</publish_odom>: publish_odom 'on' is neither true nor false, and"
+            f" counts as false; {NUMBERS}",
+        ),
+        (
+            hardware(MOCK, '<param name="calculate_dynamic">true</param>'),
+            f"MB110 warning <param: {MOCK} does not read 'calculate_dynamic'; did you mean"
+            " 'calculate_dynamics'?",
+        ),
+        # The names of its parameters may be where nobody looked.
+        (hardware(MOCK, '<param name="acme">true</param>'), ""),
+    ],
+)
+def test_what_is_said_of_a_plugin(inside: str, said: str) -> None:
+    """Code, level, what is at its place, message and hint."""
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    found = lint_data("r.urdf", text.encode(), NEW._replace(distro="jazzy"))
+    place = said.split(" ")[2] if said else ""
+    assert [f"{it.code} {it.level} {place} {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(said)
+    )
+    assert all(text[it.column - 1 :].startswith(place.rstrip(":")) for it in found)
 
 
 def test_a_name_is_required_in_humble_alone() -> None:
@@ -584,3 +917,88 @@ def test_a_joint_that_a_plugin_turns_needs_an_effort() -> None:
         )
         found = lint_data("r.urdf", text.encode(), Settings(select=("MB515",), distro="jazzy"))
         assert [it.level for it in found] == ["warning"] * (len(names) - 1) + ["note"], library
+
+
+MODEL = '<sdf version="{}"><model name="m"><link name="l">{}</link></model></sdf>'
+FAST = '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor>'
+SYSTEM = '<plugin name="p" filename="{}"/>'
+
+
+@pytest.mark.parametrize(
+    ("version", "inside", "distro", "level"),
+    [
+        # Gazebo Classic wrote SDF up to 1.7, and goes on with what it cannot read.
+        ("1.6", FAST, "jazzy", "warning"),
+        ("1.7", FAST, "jazzy", "warning"),
+        ("1.8", FAST, "jazzy", "error"),
+        ("1.8", FAST, "humble", "warning"),
+        *(
+            ("1.6", FAST + SYSTEM.format(it), "humble", "error")
+            for it in ("ignition-gazebo-imu-system", "gz-sim-imu-system", "libgz_ros2_control.so")
+        ),
+        ("1.6", FAST + SYSTEM.format("ign_ros2_control-system"), "humble", "error"),
+        ("1.6", FAST + SYSTEM.format("libgazebo_ros_imu.so"), "humble", "warning"),
+    ],
+)
+def test_a_model_that_may_be_of_gazebo_classic(
+    version: str, inside: str, distro: str, level: str
+) -> None:
+    text = MODEL.format(version, inside)
+    settings = Settings(select=("MB120",), distro=distro)
+    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
+
+
+def test_the_version_of_a_urdf_is_none_of_gazebo_classic() -> None:
+    text = f'<robot name="r" version="1.0">{LINK}{in_link("<mu1>high</mu1>")}</robot>'
+    settings = Settings(select=("MB120",), distro="jazzy")
+    assert [it.level for it in lint_data("r.urdf", text.encode(), settings)] == ["error"]
+
+
+ABOVE_0 = "which has to be above 0"
+
+
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        (sensor("imu", "<update_rate>-1</update_rate>"), "update_rate is -1, which is below 0"),
+        (sensor("imu", "<update_rate>0</update_rate>"), ""),
+        (camera("<image><width>0</width></image>"), f"width is 0, {ABOVE_0}"),
+        (camera("<image><height>0</height></image>"), f"height is 0, {ABOVE_0}"),
+        (camera("<image><height>1</height></image>"), ""),
+        (camera("<clip><near>0</near></clip>"), f"near is 0, {ABOVE_0}"),
+        *(
+            (
+                sensor(type_, f"<{tag}><range><max>0</max></range></{tag}>"),
+                f"max is 0, {ABOVE_0}",
+            )
+            for type_, tag in (("gpu_lidar", "lidar"), ("gpu_ray", "ray"), ("ray", "ray"))
+        ),
+        (
+            sensor("gpu_lidar", SCAN.format("<samples>0</samples>")),
+            f"samples is 0, {ABOVE_0}",
+        ),
+        # What is no lidar has no rays.
+        (sensor("imu", "<ray><range><max>0</max></range></ray>"), ""),
+        (
+            sensor("gpu_lidar", "<lidar><range><min>20</min><max>2000</max></range></lidar>"),
+            "max is 2000, which is a length in metres",
+        ),
+        (sensor("gpu_lidar", "<lidar><range><min>19</min><max>2000</max></range></lidar>"), ""),
+        (sensor("gpu_lidar", "<lidar><range><min>20</min><max>1999</max></range></lidar>"), ""),
+        (
+            "<transmission><actuator><mechanicalReduction>0</mechanicalReduction></actuator>"
+            "</transmission>",
+            "mechanicalReduction is 0, by which is divided",
+        ),
+        (
+            classic("ours", "<min_speed>3</min_speed><max_speed>2</max_speed>"),
+            "min_speed is 3, above max_speed (2)",
+        ),
+        (classic("ours", "<min_speed>2</min_speed><max_speed>2</max_speed>"), ""),
+    ],
+)
+def test_numbers_with_which_nothing_is_seen(inside: str, said: str) -> None:
+    text = f'<robot name="r">{LINK}{inside}</robot>'
+    settings = Settings(select=("MB125",), distro="jazzy")
+    found = [it for it in lint_data("r.urdf", text.encode(), settings) if it.level == "warning"]
+    assert [it.message for it in found] == [said] * bool(said)

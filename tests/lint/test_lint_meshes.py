@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MB7: which files are looked for where, and how they may be named."""
+"""MB7: which files are looked for where, and how they may be named.
+
+Of ``rules/description/meshes``: boxes, lookup, paths, shared.
+"""
 
 from __future__ import annotations
 
@@ -100,6 +103,80 @@ def linted(workspace: Path, *names: str, select: str = "MB7", roots: bool = True
 )
 def test_one_mesh(name: str, expected: list[str], workspace: Path) -> None:
     assert sorted(linted(workspace, name)) == expected
+
+
+PLACED = "write package://NAME/..."
+LOADED = "use .stl, .dae or .obj"
+MILLIMETRES = 'add scale="0.001 0.001 0.001"'
+SAID = {
+    "package://arm/Meshes/base.stl": [
+        "MB703 error 'Meshes/base.stl' is 'meshes/Base.stl' on the disk; use 'meshes/Base.stl'",
+    ],
+    "package://arm/meshes/Bass.stl": [
+        "MB701 error 'package://arm/meshes/Bass.stl' does not exist; did you mean 'Base.stl'?",
+    ],
+    # A package is told once.
+    "package://leg/meshes/a.stl package://leg/b/c.stl": [
+        "MB702 note package 'leg' was not found; give its folder with --roots",
+    ],
+    "package://arm": [f"MB707 warning 'package://arm': it has no extension; {LOADED}"],
+    "package://leg/a.step": [
+        "MB702 note package 'leg' was not found; give its folder with --roots",
+        f"MB707 warning 'package://leg/a.step': no program can load .step; {LOADED}",
+    ],
+    "package://leg/a.glb": [
+        "MB702 note package 'leg' was not found; give its folder with --roots",
+        "MB708 note 'package://leg/a.glb': Gazebo Classic and gz before Garden cannot read glTF;"
+        f" {LOADED}",
+    ],
+    "Base.stl": [
+        "MB713 note 'Base.stl' is not there from here; use package://arm/meshes/Base.stl",
+    ],
+    "/home/me/Base.stl file:///home/me/Bass.stl": [
+        f"MB704 warning '/home/me/Base.stl' is a path of one machine (and 1 more); {PLACED}",
+    ],
+    r"package://arm\meshes\Base.stl": [
+        r"MB705 warning 'package://arm\\meshes\\Base.stl' has backslashes; write"
+        " 'package://arm/meshes/Base.stl'",
+    ],
+    "model://arm/meshes/Base.stl": [
+        "MB710 warning RViz cannot load 'model://arm/meshes/Base.stl'; write package://",
+    ],
+    "https://example.org/Base.stl": [
+        "MB711 note 'https://example.org/Base.stl' needs the network; put it into a package",
+    ],
+    "file://$(arg)/Base.stl": [
+        f"MB712 warning 'file://$(arg)/Base.stl' holds a xacro substitution; {PLACED}",
+    ],
+    "": [
+        "MB706 error <mesh> has an empty file name; add the file name, or remove the visual or"
+        " collision",
+    ],
+    "package://arm/meshes/a.dae": [
+        "MB714 warning 'package://arm/meshes/a.dae' is 300 m long; correct <unit meter> in the file,"
+        f" or {MILLIMETRES}",
+    ],
+    "package://arm/meshes/a.stl package://arm/meshes/a.stl": [
+        "MB714 warning 'package://arm/meshes/a.stl' is 300 m long; are these millimetres?"
+        f" {MILLIMETRES}",
+    ],
+}
+
+
+@pytest.mark.parametrize("names", SAID)
+def test_what_is_said_of_meshes(names: str, workspace: Path) -> None:
+    (workspace / "src/arm/meshes/a.dae").write_bytes(collada(unit="100"))
+    (workspace / "src/arm/meshes/a.stl").write_bytes(binary_stl(*SIDES))
+    text = "".join(
+        f'<link name="l{at}"><visual><geometry><mesh filename="{name}"/></geometry></visual></link>'
+        for at, name in enumerate(names.split(" "))
+    )
+    text = f'<robot name="r">{text}</robot>'
+    file = workspace / "src/arm/urdf/r.urdf"
+    file.write_text(text)
+    found = lint_file(str(file), Settings(select=("MB7",), roots=(str(workspace),)))
+    assert [f"{it.code} {it.level} {it.message}; {it.hint}" for it in found] == SAID[names]
+    assert {text[it.column - 1 :].partition("=")[0] for it in found} == {"filename"}
 
 
 def test_its_own_package_is_found_without_roots(workspace: Path) -> None:

@@ -347,6 +347,15 @@ def test_a_collision_that_a_sensor_names_keeps_its_capsule() -> None:
     assert "capsule" not in fixed(robot("1.1", f"{body}<gazebo/>"))
 
 
+@pytest.mark.parametrize(
+    ("more", "plain"), [("<verbose/>", True), ('<material name="m"/>', True), ("<sensor/>", False)]
+)
+def test_a_capsule_beside_something_else(more: str, plain: bool) -> None:
+    """What a sphere may do without, and what it may not."""
+    body = visual('<capsule length="1" radius="1"/>').replace("</visual>", f"{more}</visual>")
+    assert ("capsule" not in fixed(robot("1.1", f"{body}<gazebo/>"))) is plain
+
+
 def test_two_rotations_of_which_one_is_ignored_differ() -> None:
     text = robot("1.0", turned('rpy="1 0 0" quat_xyzw="0 0 0 1"'))
     assert fixed(text) == text

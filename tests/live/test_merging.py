@@ -82,6 +82,34 @@ def test_frames_are_joined_with_all_their_publishers() -> None:
     assert frame == Edge("base", "odom", "/tf", True, ("/robot1/drive", "/robot2/drive"))
 
 
+def test_transforms_are_in_the_order_of_their_topics_and_names() -> None:
+    edges = [
+        Edge("c", "b", "/tf", False, ()),
+        Edge("b", "a", "/tf", False, (), several=True, rate=2.0),
+        Edge("z", "y", "/a/tf", False, (), rate=3.0),
+    ]
+    slow = edges[1]._replace(several=False, rate=1.0)
+    both = join(look()._replace(edges=edges[:1]), look()._replace(edges=(*edges[1:], slow)))
+    assert both.edges == (edges[2], edges[1], edges[0])
+
+
+def test_what_was_around_the_looks_is_that_of_all() -> None:
+    one = {"range": "SUBNET", "static_peers": ("a", "b"), "rmw": "rmw_fastrtps_cpp", "seconds": 9.0}
+    two = {"range": "LOCALHOST", "static_peers": ("b", "c"), "rmw": "rmw_cyclonedds_cpp"}
+    looks = (look(**one, super_client=True), look(**two, discovery_server="s", settled="timeout"))
+    for both in (join(*looks).environment, join(*looks, looks[0]).environment):
+        assert both._replace(caveats=()) == environment()._replace(
+            range="SUBNET, LOCALHOST",
+            static_peers=("a", "b", "c"),
+            rmw="rmw_fastrtps_cpp, rmw_cyclonedds_cpp",
+            discovery_server="s",
+            super_client=False,
+            participants=0,
+            settled="timeout",
+            seconds=9.0,
+        )
+
+
 def test_a_transform_is_kept_from_the_look_that_has_it() -> None:
     plain = Edge("base", "odom", "/tf", False, ())
     numbers = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)

@@ -2,6 +2,9 @@
 """What nodes demand of their parameters: each demand where it is not met, and beside it where it is.
 
 The places of the demands in the nodes' sources are in ``knowledge/demanded.schema``.
+
+Of ``rules/files``: declared, demands, given, missing, parameter_facts, plugin_names, plugins,
+section_facts.
 """
 
 from __future__ import annotations
@@ -26,7 +29,7 @@ def said(
     lines = [line.partition(" ") for line in text.splitlines()]
     file = folder / "a.yaml"
     file.write_text("".join(f"{node}:\n  ros__parameters: {its}\n" for node, _, its in lines))
-    found = lint_file(str(file), Settings(select=(code,), distro=distro))
+    found = lint_file(str(file), Settings(select=tuple(code.split()), distro=distro))
     return [f"{it.level} {it.message}{f'; {it.hint}' * hints}" for it in found]
 
 
@@ -280,3 +283,146 @@ def test_a_node_of_another_name_since_humble(tmp_path: Path) -> None:
     assert said("MB110", "recoveries_server {a: 1}", tmp_path) == [
         "warning no supported release has a node recoveries_server: it is called behavior_server"
     ]
+
+
+VOXELS = (
+    "local_costmap/local_costmap {plugins: [v], v.plugin: 'nav2_costmap_2d::VoxelLayer',"
+    " v.observation_sources: scan, "
+)
+OF_VOXELS = "local_costmap/local_costmap: v (nav2_costmap_2d::VoxelLayer)"
+DIFF = "diff {type: diff_drive_controller/DiffDriveController, "
+OF_MPPI = "controller_server: M (nav2_mppi_controller::MPPIController)"
+THROWS = "rclcpp throws InvalidParameterTypeException, and the node does not come up"
+# What generate_parameter_library's files and the code of each node declare.
+DECLARED = {
+    VOXELS + "v.scan.raytrace_max_rnge: 3.0}": (
+        f"warning {OF_VOXELS} has no parameter 'scan.raytrace_max_rnge'; did you mean"
+        " 'scan.raytrace_max_range'?"
+    ),
+    # In a block of a block it has none.
+    VOXELS + "v.scan.a.raytrace_max_rnge: 3.0}": "",
+    # The name of Foxy, unless that of today is there, too.
+    VOXELS + "v.scan.obstacle_range: 3.0}": (
+        f"warning {OF_VOXELS} has no parameter 'scan.obstacle_range'; did you mean"
+        " 'scan.obstacle_max_range'?"
+    ),
+    VOXELS + "v.scan.obstacle_range: 3.0, v.scan.obstacle_max_range: 3.0}": "",
+    VOXELS + "v.scan.clearing: 'true'}": (
+        f"error {OF_VOXELS}: scan.clearing is a string, not a bool; {THROWS}"
+    ),
+    VOXELS + "v.z_voxels: 16.5}": f"error {OF_VOXELS}: z_voxels is a double, not an int; {THROWS}",
+    "amcl {max_particels: 20}": (
+        "warning amcl has no parameter 'max_particels'; did you mean 'max_particles'?"
+    ),
+    "amcl {max_particels: 20, max_particles: 30}": "",
+    # Others may read it.
+    "amcl {acme: 20}": "",
+    "amcl {alpha1: 1}": "error amcl: alpha1 is an int, not a double; write 1.0",
+    "amcl {alpha1: []}": "",
+    "amcl {alpha1: ALPHA_ONE}": "",
+    "amcl {tf_broadcast: 1}": f"error amcl: tf_broadcast is an int, not a bool; {THROWS}",
+    JTC + "joints: j}": (
+        f"error joint_trajectory_controller: joints is a string, not a string_array; {THROWS}"
+    ),
+    JTC + "joints: [1]}": (
+        f"error joint_trajectory_controller: joints is an int_array, not a string_array; {THROWS}"
+    ),
+    JTC + "gains.j.p: 1}": (
+        "error joint_trajectory_controller: gains.j.p is an int, not a double; write 1.0"
+    ),
+    JTC + "constraints.j.trajectory: 0.1, joints: [k]}": (
+        "note joint_trajectory_controller: constraints.j.trajectory is for 'j', which is not in"
+        " joints; nothing reads it"
+    ),
+    JTC + "constraints.k.trajectory: 0.1, joints: [k]}": "",
+    JTC + "action_monitor_rate: 0}": (
+        "error joint_trajectory_controller: action_monitor_rate is an int, not a double; write 0.0"
+    ),
+    # What every node has, whoever wrote it.
+    "amcl {use_sim_time: 'true'}": f"error amcl: use_sim_time is a string, not a bool; {THROWS}",
+    "acme {use_sim_time: 'true'}": f"error acme: use_sim_time is a string, not a bool; {THROWS}",
+    "acme {use_sim_time: true}": "",
+    # Whose section it is: by its type, its name, or all parameters that tell a controller.
+    **{
+        f"{it} action_monitor_rate: 1}}": (
+            f"error {it.split()[0]}: action_monitor_rate is an int, not a double; write 1.0" * known
+        )
+        for it, known in (
+            (
+                "arm {joints: [a], command_interfaces: [position], state_interfaces: [position],",
+                True,
+            ),
+            ("arm {joints: [a], command_interfaces: [position],", False),
+            (
+                "arm {type: acme/Arm, joints: [a], command_interfaces: [position],"
+                " state_interfaces: [position],",
+                False,
+            ),
+            ("joint_trajectory_controller {", True),
+            ("my_joint_trajectory_controller {", False),
+        )
+    },
+    DIFF + "wheel_radius: 0}": "error diff: wheel_radius is an int, not a double; write 0.0",
+    DIFF + "publish_tf: true}": (
+        "warning diff has no parameter 'publish_tf'; did you mean 'enable_odom_tf'?"
+    ),
+    DIFF + "linear.x.has_jerk: true}": (
+        "warning diff has no parameter 'linear.x.has_jerk'; did you mean"
+        " 'linear.x.has_jerk_limits'?"
+    ),
+    DIFF + "linear.x.max_velocty: 1.0}": (
+        "warning diff has no parameter 'linear.x.max_velocty'; did you mean"
+        " 'linear.x.max_velocity'?"
+    ),
+    DIFF + "pose_covariance_diagonal: [1, 2, 3, 4, 5, 6]}": (
+        "error diff: pose_covariance_diagonal is an int_array, not a double_array; write [1.0, 2.0,"
+        " 3.0, 4.0, 5.0, 6.0]"
+    ),
+    "controller_server {" + MPPI + "M.batch_siz: 1}": (
+        f"warning {OF_MPPI} has no parameter 'batch_siz'; did you mean 'batch_size'?"
+    ),
+    "controller_server {" + MPPI + "M.acme: 1}": "",
+    "controller_server {" + DWB + "D.critics: [GoalDist], D.GoalDist.scal: 1.0}": (
+        "warning controller_server: D.GoalDist (dwb_critics::GoalDistCritic) has no parameter"
+        " 'scal'; did you mean 'scale'?"
+    ),
+    TYPE + "joint_trajectory_controller/JointTrajectoryController, arm.joints: [a]}": (
+        "warning controller_manager: arm.joints is a parameter of arm, and not read here; move it"
+        " to arm: ros__parameters:"
+    ),
+    TYPE + "joint_trajectory_controller/JointTrajectoryController, arm.params_file: a}": "",
+}
+
+
+@pytest.mark.parametrize("text", DECLARED)
+def test_parameters_that_a_node_does_not_declare_or_not_so(text: str, tmp_path: Path) -> None:
+    found = said("MB110 MB111 MB120 MB125", text, tmp_path, hints=True)
+    assert found == [DECLARED[text]] * bool(DECLARED[text])
+
+
+BEYOND = {
+    DIFF + "wheel_radius: 0.0}": "diff: wheel_radius is 0.0, and has to be above 0.0",
+    DIFF + "wheel_radius: 0.1}": "",
+    DIFF + "pose_covariance_diagonal: [1.0, 2.0]}": (
+        "diff: pose_covariance_diagonal is [1.0, 2.0], and has to be with a size above 5"
+    ),
+    JTC + "action_monitor_rate: 0.0}": (
+        "joint_trajectory_controller: action_monitor_rate is 0.0, and has to be at least 0.1"
+    ),
+    JTC + "command_interfaces: [posiion]}": (
+        "joint_trajectory_controller: command_interfaces is ['posiion'], and has to be of position,"
+        " velocity, acceleration, effort"
+    ),
+    "controller_server {" + MPPI + "M.batch_size: -1}": (
+        f"{OF_MPPI}: batch_size is -1, and has to be above 0"
+    ),
+    "controller_server {controller_frequency: 0.0}": (
+        "controller_server: controller_frequency is 0.0, and has to be above 0.0"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", BEYOND)
+def test_values_that_a_node_refuses(text: str, tmp_path: Path) -> None:
+    expected = [f"warning {BEYOND[text]}"] if BEYOND[text] else []
+    assert said("MB120 MB125", text, tmp_path) == expected

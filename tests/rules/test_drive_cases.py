@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A drive on two wheels: where they stand, how they turn and how large they are, and what is said."""
+"""A drive on two wheels: where they stand, how they turn and how large they are, and what is said.
+
+Of ``rules/facts/drives.py`` and ``rules/description/physics/drives.py``.
+"""
 
 from __future__ import annotations
 
@@ -160,3 +163,16 @@ def test_sizes_of_wheels(
 ) -> None:
     wheels = wheel("l", LEFT, shape=shape) + wheel("r", RIGHT, shape=shape)
     assert said(wheels, tmp_path, sizes) == expected
+
+
+def test_a_sphere_has_its_radius_however_it_is_turned_and_a_cylinder_about_its_axis(
+    tmp_path: Path,
+) -> None:
+    for shape, expected in (
+        ('<sphere radius="0.1"/>', ["warning wheel_radius is 0.12 m, but the wheels have 0.1 m"]),
+        (ROUND, [FLAT.format("l"), FLAT.format("r")]),
+    ):
+        wheels = wheel("l", LEFT, shape=shape, rpy="0 0 0") + wheel(
+            "r", RIGHT, shape=shape, rpy="0 0 0"
+        )
+        assert said(wheels, tmp_path, ("0.4", "0.12")) == expected

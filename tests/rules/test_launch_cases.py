@@ -182,10 +182,25 @@ def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("package", "program", "hint"),
+    ("package", "program", "text"),
     [
         ("nav2_amcl", "amcl", ""),
-        ("nav2_amcl", "amcll", "did you mean amcl?"),
+        (
+            "nav2_amcl",
+            "amcll",
+            "package nav2_amcl has no program amcll; did you mean amcl?",
+        ),
+        # No slip: another package may have it.
+        ("nav2_amcl", "map_server", ""),
+        (
+            "nav2_amlc",
+            "amcl",
+            "there is no package nav2_amlc here with amcl; did you mean nav2_amcl?",
+        ),
+        ("nav2_amlc", "amclx", ""),
+        # Another number is another package.
+        ("nav3_amcl", "amcl", ""),
+        ("acme_amcl", "amcl", ""),
         ("nav2_amcl", "nav2_amcl::AmclNod", ""),
         ("robot_state_publisher", "robot_state_publisher_node", ""),
         ("robot_state_publisher", "robot_state_publisher.py", ""),
@@ -193,10 +208,10 @@ def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
     ],
 )
 def test_a_program_that_a_package_has_not(
-    package: str, program: str, hint: str, known: Knowledge
+    package: str, program: str, text: str, known: Knowledge
 ) -> None:
     found = judged(known, "MG714", started(package, program, "x"))
-    assert [it.hint for it in found] == ([hint] if hint else [])
+    assert said(found) == ([text] if text else [])
 
 
 def test_a_launch_that_ends_with_an_error(known: Knowledge) -> None:

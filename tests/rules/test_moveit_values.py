@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says."""
+"""Values of MoveIt, filters, joysticks and SRDFs of Pinocchio: what the consumer's source says.
+
+Of ``rules/files``: chains, controllers, costmaps, joystick, limits, moveit.
+"""
 
 from __future__ import annotations
 
@@ -142,6 +145,213 @@ def test_a_chain_of_filters(
     assert linted(tmp_path, "filters.yaml", text, ("MB896",)) == expected
 
 
+def told(folder: Path, name: str, text: str, code: str, release: str = "jazzy") -> list[str]:
+    """Place, level, message and hint of each finding."""
+    (folder / name).write_text(text)
+    found = lint_files([str(folder / name)], Settings(select=(code,), distro=release), jobs=1)
+    return [f"{it.line}:{it.column} {it.level} {it.message}; {it.hint}" for it in found]
+
+
+def test_a_limit_that_is_nearly_called_so(tmp_path: Path) -> None:
+    linted(tmp_path, "a.yaml", "", ())
+    joint = "robot_description_planning.joint_limits.lift."
+    text = limits("lift", "has_velocity_limit: true, max_velocity: 1.0")
+    assert told(tmp_path, "joint_limits.yaml", text, "MB110") == [
+        f"2:10 warning move_group has no parameter '{joint}has_velocity_limit'; did you mean"
+        f" '{joint}has_velocity_limits'?"
+    ]
+
+
+def test_what_is_said_of_a_chain(tmp_path: Path) -> None:
+    """filter_chain.hpp loads up to the first number that is not there, and needs name and type."""
+    text = """\
+scan_to_scan_filter_chain:
+  ros__parameters:
+    filter1: {name: a, type: laser_filters/InterpolationFilter}
+    filter2: {name: a, type: laser_filters/InterpolationFilter}
+    filter3: {label: c}
+    filter5: {name: b, type: laser_filters/InterpolationFilter}
+    filter: {name: c, type: laser_filters/InterpolationFilter}
+    other:
+      filter1: {name: a, type: laser_filters/InterpolationFilter}
+"""
+    chain, number = "scan_to_scan_filter_chain", "filters are called filter1, filter2 and so on"
+    unset = "the chain is not configured without"
+    assert told(tmp_path, "filters.yaml", text, "MB896") == [
+        f"4:21 error {chain}: filter2 has the name 'a', as filter1 has; give it another name",
+        f"5:15 error {chain}: filter3 has no name; {unset}",
+        f"5:15 error {chain}: filter3 has no type; {unset}",
+        f"6:15 warning {chain}: filter5 is not loaded: there is no filter4; {number}, without a gap",
+        f"7:14 warning {chain}: filter is not loaded: there is no filter4; {number}, without a gap",
+    ]
+    other = text.replace("scan_to_scan_filter_chain", "chain")
+    assert told(tmp_path, "filters.yaml", other, "MB896") == []
+
+
+COSTMAP = """\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      {}
+      plugins: [inflation]
+      inflation: {{plugin: "nav2_costmap_2d::InflationLayer", inflation_radius: 0.5}}
+"""
+SQUARE = 'footprint: "[[{0}, {0}], [{0}, -{0}], [-{0}, -{0}], [-{0}, {0}]]"'
+SIZED = "local_costmap/local_costmap"
+BESIDE = f"{SIZED}: robot_radius has no effect beside a footprint, and is another size"
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        ("robot_radius: 0.5", []),
+        (
+            "robot_radius: 0.6",
+            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+             " 0.6 m; the robot is as large as robot_radius says; inflate further than that"],
+        ),
+        (SQUARE.format(0.5), []),
+        (
+            SQUARE.format(0.6),
+            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+             " 0.6 m; the robot is as large as footprint says; inflate further than that"],
+        ),
+        # The footprint counts.
+        ("robot_radius: 0.6\n      " + SQUARE.format(0.5), []),
+        # A tenth below its nearest edge, half above its farthest point.
+        ("robot_radius: 0.45\n      " + SQUARE.format(0.5), []),
+        (
+            "robot_radius: 0.44\n      " + SQUARE.format(0.5),
+            [f"4:21 warning {BESIDE}; leave out robot_radius"],
+        ),
+        ("robot_radius: 1.06\n      " + SQUARE.format(0.5), []),
+        (
+            "robot_radius: 1.07\n      " + SQUARE.format(0.5),
+            [f"4:21 warning {BESIDE}; leave out robot_radius"],
+        ),
+        # Of two points nothing is a footprint.
+        ('robot_radius: 0.4\n      footprint: "[[9, 9], [8, 8]]"', []),
+        ("robot_radius: 0.0", []),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_the_size_in_a_costmap(size: str, said: list[str], tmp_path: Path) -> None:
+    found = told(tmp_path, "nav2.yaml", COSTMAP.format(size), "MB895")
+    assert [it.replace(f"{7 + size.count(chr(10))}:", "6:") for it in found] == said
+
+
+@pytest.mark.parametrize(
+    ("size", "said"),
+    [
+        ("robot_radius: 0.4", []),
+        (
+            "robot_radius: 0.1",
+            [f"4:21 warning {SIZED}: robot_radius reaches 0.1 m from the middle alone; the"
+             " description reaches 1 m; write metres"],
+        ),
+        ("robot_radius: 3.0", []),
+        (
+            "robot_radius: 3.1",
+            [f"4:21 warning {SIZED}: robot_radius reaches 3.1 m from the middle; the description"
+             " reaches 1 m; write metres"],
+        ),
+        # An eighth.
+        ("robot_radius: 0.125", []),
+    ],
+)  # fmt: skip
+def test_the_size_in_a_costmap_beside_the_description(
+    size: str, said: list[str], tmp_path: Path
+) -> None:
+    body = '<collision><geometry><box size="1.2 1.6 1"/></geometry></collision>'
+    (tmp_path / "package.xml").write_text(PACKAGE.format("ament_cmake"))
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{body}</link></robot>')
+    text = COSTMAP.format(size).replace("0.5}", "9.5}")
+    assert told(tmp_path, "nav2.yaml", text, "MB895") == said
+
+
+TELEOP = "joy_teleop:\n  ros__parameters:\n    go: {{{}}}\n"
+START, NAMED = "deadman_buttons: [1]", "interface_type: std_msgs/msg/Bool, topic_name: a"
+TWIST = "type: topic, interface_type: geometry_msgs/msg/Twist, topic_name: a, deadman_axes: [1]"
+AXIS = "{axis: 1, scale: 1.0, offset: 0.0}"
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (
+            "type: topics, topic_name: a",
+            ["is of type 'topics'; write one of topic, service, action"],
+        ),
+        ("topic_name: a", ["has no type; write one of topic, service, action"]),
+        (
+            f"type: topic, {START}, message_value: {{a: 1}}",
+            ["has no interface_type; add interface_type", "has no topic_name; add topic_name"],
+        ),
+        (
+            "type: service, interface_type: a/msg/B, axes: [1]",
+            ["has no service_name; add service_name",
+             "has the interface_type 'a/msg/B'; write PACKAGE/srv/B"],
+        ),
+        (
+            "type: service, interface_type: B, service_name: b, buttons: []",
+            ["has the interface_type 'B'; write PACKAGE/srv/B",
+             "is started by nothing; add buttons, or axes or axes_negative"],
+        ),
+        (
+            f"type: topic, {NAMED}, message_value: {{a: 1}}",
+            ["is started by nothing; add deadman_buttons, or deadman_axes or deadman_axes_negative"],
+        ),
+        ("type: action, interface_type: a/action/B, action_name: b, axes_negative: [1]", []),
+        ("type: service, interface_type: a/srv/B, service_name: b, axes: [1]", []),
+        (
+            f"type: topic, {NAMED}, {START}",
+            ["has neither message_value nor axis_mappings; give it one of the two"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, message_value: {{a: 1}}, axis_mappings: {{a: {AXIS}}}",
+            ["has both message_value and axis_mappings; give it one of the two"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{scale: 1.0}}, b: {{button: 1}}}}",
+            ["has no axis, button or value for a; add one of them"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1}}, b: {{value: 1}}}}",
+            ["has no scale and no offset for a; add scale and offset of the axis"],
+        ),
+        (
+            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1, scale: 1.0}}}}",
+            ["has no offset for a; add scale and offset of the axis"],
+        ),
+        (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}, -angular-z: {AXIS}}}", []),
+        (
+            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}",
+            ["sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; see"
+             " the message"],
+        ),
+        (
+            f"{TWIST}, axis_mappings: {{linear-x: {AXIS}}}".replace("Twist,", "TwistStamped,"),
+            ["sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; see"
+             " the message"],
+        ),
+        (
+            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}".replace("st,", "stStamped,"),
+            [],
+        ),
+        # Blocks of another node that is called so.
+        ("x: 1, y: 2", []),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_a_joysticks_command(command: str, said: list[str], tmp_path: Path) -> None:
+    """joy_teleop.py: what each type of a command asks for."""
+    found = told(tmp_path, "joy.yaml", TELEOP.format(command), "MB897")
+    assert found == [f"3:10 error joy_teleop: command 'go' {it}" for it in said]
+
+
+def test_settings_of_qos_are_no_command_of_a_joystick(tmp_path: Path) -> None:
+    text = TELEOP.replace("go", "qos_overrides").format("type: topics")
+    assert told(tmp_path, "joy.yaml", text, "MB897") == []
+
+
 COMMAND = "type: topic, interface_type: std_msgs/msg/Bool, topic_name: a, deadman_buttons: [1]"
 
 
@@ -193,3 +403,103 @@ STATE = '<group_state name="home"{}><joint name="{}" value="0"/></group_state>'
 def test_an_srdf_of_pinocchio(rest: str, expected: list[tuple[str, str]], tmp_path: Path) -> None:
     codes = ("MB115", "MB803", "MB804", "MB805", "MB812", "MB901")
     assert linted(tmp_path, "arm.srdf", SRDF.format(rest), codes) == expected
+
+
+CONTROLLER = (
+    "{}:\n  ros__parameters: {{joints: [left, right], command_interfaces: [position],"
+    " state_interfaces: [position]}}\n"
+)
+JTC, DIFF = (
+    "joint_trajectory_controller/JointTrajectoryController",
+    "diff_drive_controller/DiffDriveController",
+)
+LOADED = "controller_manager:\n  ros__parameters: {{arm.type: {}}}\n"
+OF_NONE = "has parameters of a controller that nothing declares; did you mean arm (c.yaml:2)?"
+
+
+@pytest.mark.parametrize(
+    ("type_", "sections", "said"),
+    [
+        (JTC, "arm", []),
+        (JTC, "amr", [f"3:1 warning amr {OF_NONE}"]),
+        # The one section of a kind, and the one controller of that kind that has none.
+        (
+            JTC,
+            "joint_trajectory_controller",
+            [f"3:1 warning joint_trajectory_controller {OF_NONE}"],
+        ),
+        (DIFF, "joint_trajectory_controller", []),
+        (JTC, "joint_trajectory_controller right_joint_trajectory_controller", []),
+        (JTC, "arm joint_trajectory_controller", []),
+    ],
+)
+def test_a_section_that_is_of_no_controller(
+    type_: str, sections: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = LOADED.format(type_) + "".join(CONTROLLER.format(it) for it in sections.split())
+    assert told(tmp_path, "c.yaml", text, "MB878") == said
+
+
+ROW = "type: {}, action_ns: {}, joints: [{}]"
+FOLLOWS, ACTION = "FollowJointTrajectory", "follow_joint_trajectory"
+NO_FILE = "which no parameter file of the robot has"
+
+
+@pytest.mark.parametrize(
+    ("name", "row", "said"),
+    [
+        ("arm", ROW.format(FOLLOWS, ACTION, "left"), []),
+        (
+            "arm",
+            ROW.format(FOLLOWS, ACTION, "lefd"),
+            [
+                f"3:83 warning MoveIt uses joint lefd of arm, {NO_FILE}; did you mean left (c.yaml:4)?"
+            ],
+        ),
+        (
+            "arm",
+            ROW.format(FOLLOWS, ACTION, "zzz"),
+            [f"3:83 warning MoveIt uses joint zzz of arm, {NO_FILE}; see c.yaml:4"],
+        ),
+        (
+            "arm",
+            ROW.format(FOLLOWS, "follow_joint_trajectry", "left"),
+            [
+                f"3:49 warning MoveIt uses action arm/follow_joint_trajectry, {NO_FILE}; did you"
+                " mean arm/follow_joint_trajectory (c.yaml:2)?"
+            ],
+        ),
+        (
+            "arm",
+            ROW.format("GripperCommand", ACTION, "left"),
+            [
+                f"3:15 warning MoveIt uses arm/follow_joint_trajectory as GripperCommand, {NO_FILE};"
+                " did you mean FollowJointTrajectory (c.yaml:2)?"
+            ],
+        ),
+        (
+            "arm2",
+            ROW.format(FOLLOWS, ACTION, "left"),
+            [f"3:3 warning MoveIt uses controller arm2, {NO_FILE}; did you mean arm (c.yaml:2)?"],
+        ),
+        (
+            "leg",
+            ROW.format(FOLLOWS, ACTION, "left"),
+            [
+                f"3:3 warning MoveIt uses controller leg, {NO_FILE}; use the controller's name, its"
+                " joints and its action"
+            ],
+        ),
+        # A launch file fills it in.
+        ("$(var side)_arm", ROW.format(FOLLOWS, ACTION, "left"), []),
+    ],
+)
+def test_a_controller_as_moveit_has_it(
+    name: str, row: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c.yaml").write_text(LOADED.format(JTC) + CONTROLLER.format("arm"))
+    text = f"moveit_simple_controller_manager:\n  controller_names: [{name}]\n  {name}: {{{row}}}\n"
+    found = told(tmp_path, "moveit_controllers.yaml", text, "MB857")
+    assert found == said

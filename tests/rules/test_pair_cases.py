@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small plans beside small graphs: what is said of them, and what is right and stays unsaid."""
+"""Small plans beside small graphs: what is said of them, and what is right and stays unsaid.
+
+Of ``rules/pair``: leaks, planned_states, nodes, endpoints, tf_causes, transforms, frame_names.
+"""
 
 from __future__ import annotations
 
@@ -290,3 +293,68 @@ def test_how_many_robots_use_a_name_of_none() -> None:
     two = lines + USES.format("subscribes", "/x", TEXT).replace("robot1", "robot2")
     said = {it.message for it in check(*read_example(two)) if "which is not" in it.message}
     assert said == {f"uses /x, which is not a name of robot{it}: 2 robots use it" for it in (1, 2)}
+
+
+STATE_TF = "/robot1/robot_state_publisher publishes /robot1/tf_static tf2_msgs/msg/TFMessage"
+STATIC = "running: transform {} -> {} on {} by /robot1/robot_state_publisher\n"
+TREE = (
+    "planned: frames of robot1 on /robot1/tf: robot1/base_link, robot1/laser, robot1/tool\n"
+    f"as planned: {STATE_TF}\n"
+)
+OWN_TF = "/robot1/tf_static"
+LASER = STATIC.format("robot1/base_link", "robot1/laser", OWN_TF)
+SENT = LASER + STATIC.format("{}", "robot1/tool", OWN_TF)
+PIECES = "MG406 the tf tree of robot1 on /robot1/tf has 2 roots: {}; "
+NO_RULE = "the remap rule /tf_static:=tf_static is missing for /robot1/robot_state_publisher"
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (TREE + SENT.format("robot1/base_link"), []),
+        # A frame that is like none but for the robot's name is no slip.
+        (
+            TREE + SENT.format("robot1/arm"),
+            [PIECES.format("robot1/arm, robot1/base_link") + "a transform between them is missing:"
+             " joint states of a moving joint, odometry or localization"],
+        ),
+        (
+            TREE + SENT.format("robot1/base_lnk"),
+            [PIECES.format("robot1/base_link, robot1/base_lnk") + "robot1/tool is sent below"
+             " robot1/base_lnk, but nothing sends that: did you mean robot1/base_link?"],
+        ),
+        (
+            TREE + SENT.format("base_link"),
+            [PIECES.format("base_link, robot1/base_link") + "base_link and robot1/base_link are one"
+             " frame with two names: by the plan /robot1/robot_state_publisher sends the second,"
+             " robot1/base_link"],
+        ),
+        (
+            TREE.replace(", robot1/tool", "")
+            + LASER + STATIC.format("robot1/laser", "robot1/base_link", OWN_TF),
+            ["MG403 the transforms on /robot1/tf go round in a circle: robot1/laser ->"
+             " robot1/base_link -> robot1/laser; the node that sends on /robot1/tf:"
+             " /robot1/robot_state_publisher"],
+        ),
+        (
+            TREE + SENT.format("robot1/base_link").replace(OWN_TF, "/tf_static"),
+            ["MG405 frame robot1/laser of robot1 is on /tf_static, expected on /robot1/tf; the same"
+             f" for robot1/tool; {NO_RULE}"],
+        ),
+        (
+            TREE.replace(", robot1/tool", "") + LASER.replace(OWN_TF, "/tf_static"),
+            ["MG405 frame robot1/laser of robot1 is on /tf_static, expected on /robot1/tf;"
+             f" {NO_RULE}"],
+        ),
+        (
+            TREE.replace(", robot1/tool", "").replace("/robot1/tf", "/tf")
+            + "planned: frames of robot2 on /tf: robot2/base_link\n" + LASER,
+            ["MG405 frame robot1/laser of robot1 is on /robot1/tf_static, expected on /tf; the"
+             " layout has one /tf for all robots: remove the rule /tf:=... from"
+             " /robot1/robot_state_publisher"],
+        ),
+    ],
+)  # fmt: skip
+def test_why_a_tree_is_not_as_planned(lines: str, said: list[str]) -> None:
+    plan, graph = read_example(lines)
+    assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said

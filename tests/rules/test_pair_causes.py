@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was probably meant, and what is to do about it: names beside names, and the whole sentences."""
+"""What was probably meant, and what is to do about it: names beside names, and the whole sentences.
+
+Of ``rules/pair``: causes, frame_prefixes, leaks, name_variants, similar_names.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,7 @@ from multibot_rewrite.rules.pair.causes import (
     why_other_name,
 )
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
+from multibot_rewrite.rules.pair.leaks import _why_leaked
 from multibot_rewrite.rules.pair.name_variants import name_variants
 from multibot_rewrite.rules.pair.similar_names import probable_matches, similar
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
@@ -187,6 +191,20 @@ def test_a_rule_that_a_plugin_should_have(code: str, hint: str) -> None:
     end = plan.system.ends[0]._replace(code_name=code)
     assert why_not_remapped(plan, end) == (hint, "arm.urdf", 12)
     assert how_to_remap(plan, end) == ""
+
+
+def test_why_a_node_uses_a_name_of_no_robot() -> None:
+    def why(robots_last: bool = False, **changes: Any) -> tuple[object, ...]:
+        node = ("/lidar/robot{}" if robots_last else "/robot{}/lidar").format
+        plan = plan_of(f"{node(1)} publishes {node(1)}/out\n{node(2)}", **changes)
+        return _why_leaked(plan, node(1), "/scan", None)
+
+    given = "no namespace or remap rule for it, see arm.urdf:12"
+    assert why(plugin=PLACE) == (f"plugin lidar has {given}", "arm.urdf", 12)
+    passed = "an absolute name in its code or parameters; pass {0} with --ros-args -r {0}, or with"
+    passed += " remappings=[('/scan', '{1}')] in the launch file"
+    for last, name in ((False, "/robot1/scan"), (True, "/scan/robot1")):
+        assert why(last) == (passed.format(f"/scan:={name}", name), "", 0)
 
 
 PAIR = "remappings=[('/a', 'b')]"

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place."""
+"""One table of broken files: ``urdf-lint`` and ``build`` say the same of each, at one place.
+
+Of ``rules/files``: keys, names, rcl_rules, robot_words, ros_names, same_for_all, sections.
+"""
 
 from __future__ import annotations
 
@@ -187,6 +190,8 @@ def parameters(node: str, text: str) -> str:
 NO_NAME = "is not a valid ROS name:"
 LETTERS = "is not a letter, a digit, or one of _ / ~ { }"
 FOR_ONE = "includes the robot name robot2, so the file is for that robot only"
+SAME = "is the same for all robots"
+CALIBRATION = "2 note every robot reads the calibration '{}a.yaml'; real cameras have one each"
 BELOW = "has a namespace; it is placed below each robot's namespace"
 
 
@@ -220,6 +225,94 @@ BELOW = "has a namespace; it is placed below each robot's namespace"
             parameters("rover/**", "a: 1"),
             "1 error section rover/** is for one robot only: its name includes a namespace",
         ),
+        (
+            "MG503",
+            "".join(parameters(it, f"use_sim_time: {it != 'a'}".lower()) for it in "abc"),
+            "2 warning use_sim_time is false for a, and true for b",
+        ),
+        (
+            "MG503",
+            "".join(parameters(it, f"use_sim_time: {it == 'a'}".lower()) for it in "abc"),
+            "2 warning use_sim_time is true for a, and false for b",
+        ),
+        # What a known parameter holds is a name elsewhere, too.
+        *(
+            (
+                "MB901",
+                parameters("amcl", f"{key}: {value}") + parameters("other", f"acme: {value}"),
+                f"4 note {value!r} is a {kind} of the robot, but its use here is not known" * known,
+            )
+            for key, value, kind, known in (
+                ("scan_topic", "/scan", "topic", True),
+                ("base_frame_id", "base", "frame", True),
+                ("odom_frame_id", "odom", "frame", True),
+                ("scan_topic", "scan", "topic", False),
+                ("global_frame_id", "map", "frame", False),
+            )
+        ),
+        # What each robot has of its own.
+        *(
+            ("MB412", parameters(node, f"{key}: {value}"), f"2 {level} {key} {value} {SAME}")
+            for node, key, value, level in (
+                ("x", "serial_port", "/dev/ttyUSB0", "note"),
+                ("x", "ip_address", "192.168.0.5", "warning"),
+                ("x", "port", "8080", "note"),
+                ("foxglove_bridge", "port", "8765", "warning"),
+            )
+        ),
+        *(
+            (
+                "MB412",
+                parameters("camera", f"camera_info_url: '{it}a.yaml'"),
+                CALIBRATION.format(it),
+            )
+            for it in ("file:///", "package://a/")
+        ),
+        *(
+            ("MB412", parameters("camera", f"camera_info_url: '{it}a.yaml'"), "")
+            for it in ("flash:///", "file://${ROS_HOME}/", "file:///<robot_namespace>/")
+        ),
+        ("MB412", parameters("x", "ip_address: 127.0.0.1"), ""),
+        ("MB412", parameters("x", "port: 80"), ""),
+        (
+            "MB881",
+            parameters("foxglove_bridge", 'topic_whitelist: ["/scan.*"]'),
+            "2 warning names in topic_whitelist '/scan.*' are not rewritten",
+        ),
+        ("MB881", parameters("foxglove_bridge", 'topic_whitelist: [".*"]'), ""),
+        (
+            "MB867",
+            parameters("amcl", "alpha1: 0.1") + parameters("/**", "alpha1: 0.2, alpha2: 0.3"),
+            "4 warning alpha1 of amcl is overridden by the later section **",
+        ),
+        (
+            "MB867",
+            "".join(parameters(it, "alpha1: 0.1") for it in ("/**", "amcl", "/**/amcl")),
+            "6 warning alpha1 of amcl is overridden by the later section **/amcl",
+        ),
+        ("MB867", parameters("amcl", "alpha1: 0.1") + parameters("/**", "alpha2: 0.2"), ""),
+        ("MB867", parameters("amcl", "alpha1: 0.1") + parameters("/**/ekf", "alpha1: 0.2"), ""),
+        (
+            "MB866",
+            parameters("amcl", "alpha1: 0.1") + parameters("amcl", "alpha2: 0.2"),
+            "3 warning section amcl is repeated; the first is in line 1",
+        ),
+        (
+            "MB859",
+            parameters("amcl", "alpha1: 0.1, alpha1: 0.2"),
+            "2 warning 'alpha1' is set twice; the later value counts",
+        ),
+        (
+            "MB877",
+            parameters("collision_monitor", "observation_sources: [frnt], front: {topic: a}"),
+            "2 warning collision_monitor has frnt in observation_sources, without parameters",
+        ),
+        # Another number is another one.
+        (
+            "MB877",
+            parameters("collision_monitor", "observation_sources: [front2], front: {topic: a}"),
+            "",
+        ),
         ("MB863", parameters("x", "t: /robot2/scan"), f"2 error /robot2/scan {FOR_ONE}"),
         ("MB863", parameters("x", "t: /scan/robot2"), f"2 error /scan/robot2 {FOR_ONE}"),
         ("MB863", parameters("x", "t: /model/robot2/y"), f"2 error /model/robot2/y {FOR_ONE}"),
@@ -251,3 +344,38 @@ def test_what_is_said_of_a_parameter_file(code: str, text: str, said: str, tmp_p
     (tmp_path / "a.yaml").write_text(text)
     found = lint_file(str(tmp_path / "a.yaml"), Settings(select=(code,), robots=ROBOTS))
     assert [f"{it.line} {it.level} {it.message}" for it in found] == [said] * bool(said)
+
+
+ONE_FILE = "5:25 Description File '/a.urdf' is one description file, shown for every robot;"
+PATTERN = "4:27 Filter (whitelist) 'base.*' is a pattern for frames and stays unchanged;"
+TWICE = "4:18 TF Prefix '{}' adds a prefix to frames that already have the robot's name: it is"
+A_FILE = "Description Source: File\n      Description File: /a.urdf"
+
+
+@pytest.mark.parametrize(
+    ("layout", "display", "row", "said"),
+    [
+        ("both", "RobotModel", A_FILE, f"{ONE_FILE} set Description Source to Topic"),
+        # Each robot has its links alike.
+        ("tf-per-robot", "RobotModel", A_FILE, f"{ONE_FILE} fine if all robots look the same"),
+        ("both", "RobotModel", A_FILE.replace("File\n", "Topic\n"), ""),
+        ("both", "TF", "Filter (whitelist): base.*", f"{PATTERN} make it match the robots' frames"),
+        ("tf-per-robot", "TF", "Filter (whitelist): base.*", ""),
+        (
+            "both",
+            "RobotModel",
+            "TF Prefix: rover",
+            f"{TWICE.format('rover')} emptied; nothing to do; RViz would add the prefix a second time",
+        ),
+        ("tf-per-robot", "RobotModel", "TF Prefix: rover", ""),
+    ],
+)
+def test_what_is_said_of_a_display(
+    layout: str, display: str, row: str, said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.rviz").write_text(AXES.replace("Axes", display).format(row))
+    codes = ("MB881", "MB882")
+    settings = Settings(select=codes, robots=ROBOTS, naming=make_naming(layout))
+    found = lint_file(str(tmp_path / "a.rviz"), settings)
+    assert [f"{it.line}:{it.column} {it.message}; {it.hint}" for it in found] == [said] * bool(said)
+    assert {it.level for it in found} <= {"warning"}

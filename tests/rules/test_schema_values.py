@@ -7,7 +7,7 @@ import pytest
 
 from multibot_rewrite.rules.schema.readers import RVIZ, highest_version, reader_of
 from multibot_rewrite.rules.schema.sdf_values import misread, number_in
-from multibot_rewrite.rules.schema.srdf import numbers_in
+from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.schema.values import is_fine, shortened, wrong_numbers
 from multibot_rewrite.rules.schema.versions import is_known, read_version
 
@@ -186,3 +186,30 @@ def test_numbers_of_a_state(text: str, numbers: list[float] | None) -> None:
 def test_what_reads_a_description_in_a_release() -> None:
     assert [highest_version(it) for it in ("jazzy", "lyrical")] == [(1, 0), (1, 2)]
     assert str(reader_of("humble", RVIZ)) == "RViz 11.2.28 of humble"
+
+
+def test_what_srdfdom_reads_of_each_element() -> None:
+    """srdfdom model.cpp: element: needed attributes, others, children."""
+    rows = """\
+        group: name, , link joint passive_joint chain group
+        group/link: name, ,
+        group/joint: name, ,
+        group/passive_joint: name, ,
+        group/chain: base_link tip_link, ,
+        group/group: name, ,
+        group_state: name group, , joint
+        group_state/joint: name value, ,
+        end_effector: name group parent_link, parent_group,
+        virtual_joint: name child_link parent_frame type, ,
+        passive_joint: name, ,
+        disable_collisions: link1 link2, reason,
+        enable_collisions: link1 link2, reason,
+        disable_default_collisions: link, ,
+        link_sphere_approximation: link, , sphere
+        link_sphere_approximation/sphere: center radius, ,
+        joint_property: joint_name property_name value, ,
+    """
+    pairs = (row.strip().partition(": ") for row in rows.strip().splitlines())
+    assert {name: tuple(tuple(it.split()) for it in row.split(",")) for name, _, row in pairs} == (
+        ELEMENTS
+    )

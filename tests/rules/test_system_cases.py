@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small systems without a plan: all that is said of them, and where an exception ends."""
+"""Small systems without a plan: all that is said of them, and where an exception ends.
+
+Of ``rules/system``: clocks, commands, differing, frame_ids, instead, likes, lookups, matching, names,
+states, tf_topics, transforms.
+"""
 
 from __future__ import annotations
 
@@ -249,6 +253,17 @@ SAME = "MB412 has the same as /robot1/a: "
 WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
 
 
+CHANGE, TF = "lifecycle_msgs/srv/ChangeState", "tf2_msgs/msg/TFMessage"
+TREE = (
+    f"/robot1/state publishes /robot1/tf {TF}",
+    "transform robot1/base -> robot1/laser on /robot1/tf by /robot1/state",
+)
+ELSEWHERE = (
+    "but the tf of robot1 is on /robot1/tf; pass -r /tf:=tf -r /tf_static:=tf_static: to the whole"
+    " process, where the node shares one"
+)
+
+
 @pytest.mark.parametrize(
     ("lines", "found"),
     [
@@ -342,6 +357,101 @@ WAITS = f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan"
              f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
             [],
         ),
+        (
+            ("/robot1/manager controls a/position by arm", "/robot1/gz controls a/position by arm"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and arm of /robot1/gz;"
+             " two controller managers for one robot: stop one, or unload its controller"],
+        ),
+        (
+            ("/robot1/manager controls a/position by arm",
+             "/robot1/manager controls a/position by hand"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
+             " spawn one of them with --inactive"],
+        ),
+        # Two interfaces of the same two are told once; each robot has its own.
+        (
+            ("/robot1/manager controls a/position by arm",
+             "/robot1/manager controls a/position by hand",
+             "/robot1/manager controls b/position by arm",
+             "/robot1/manager controls b/position by hand",
+             "/robot2/manager controls a/position by arm"),
+            ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
+             " spawn one of them with --inactive"],
+        ),
+        (
+            ("/robot1/manager keeps arm inactive", "/robot1/manager keeps hand unconfigured"),
+            ["MG513 none of its controllers is active: arm (inactive), hand (unconfigured);"
+             " ros2 control list_controllers -c /robot1/manager; see the log of the spawners"],
+        ),
+        (
+            ("/robot1/manager keeps arm inactive", "/robot1/manager controls a/position by hand"),
+            [],
+        ),
+        (
+            ("/robot1/a is inactive", "/robot1/b is inactive", "/robot1/c is active"),
+            ["MG511 /robot1/a, /robot1/b are inactive, not active; no node activates it: is that"
+             " meant?; ros2 lifecycle get /robot1/a"],
+        ),
+        (
+            (f"/robot1/manager calls /robot1/a/change_state {CHANGE}",
+             f"/robot1/a serves /robot1/a/change_state {CHANGE}", "/robot1/a is inactive"),
+            ["MG511 /robot1/a is inactive, not active; see the log of /robot1/manager; ros2"
+             " lifecycle get /robot1/a"],
+        ),
+        # Whose frames are on which topic.
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /bridge"),
+            ["MG405 /bridge sends robot1/base on /tf, but the tf of robot1 is on /robot1/tf; start"
+             " it in the namespace of robot1, with the rules /tf:=tf and /tf_static:=tf_static"],
+        ),
+        # What hears the tree may be a relay; what is in it is a copy; one joins it to the world.
+        (
+            (*TREE, f"/bridge publishes /tf {TF}", f"/bridge subscribes /robot1/tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform robot1/base -> robot1/laser on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/bridge publishes /tf {TF}",
+             "transform world -> robot1/base on /tf by /bridge"),
+            [],
+        ),
+        (
+            (*TREE, f"/robot1/driver publishes /tf {TF}",
+             "transform robot1/odom -> robot1/base on /tf by /robot1/driver"),
+            [f"MG405 /robot1/driver sends tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /tf {TF}"),
+            [f"MG405 /robot1/amcl hears tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /tf {TF}", f"/robot1/nav subscribes /tf {TF}"),
+            [f"MG405 /robot1/amcl, /robot1/nav hear tf on /tf, {ELSEWHERE}"],
+        ),
+        (
+            (*TREE, f"/robot1/amcl subscribes /robot2/tf {TF}",
+             f"/robot2/state publishes /robot2/tf {TF}"),
+            ["MG405 /robot1/amcl hears tf on /robot2/tf, but the tf of robot1 is on /robot1/tf;"
+             " a namespace or remap rule of robot1 names robot2"],
+        ),
+        (
+            (*TREE, f"/rviz2 subscribes /tf {TF}"),
+            ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it"
+             " with -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
+        ),
+        ((*TREE, f"/rviz2 subscribes /robot1/tf {TF}"), []),
+        (
+            ("/robot1/a has use_sim_time true", "/robot1/b has use_sim_time false",
+             "/robot1/c has use_sim_time false", "/robot1/rviz2 has use_sim_time true"),
+            ["MG514 use_sim_time is true for /robot1/a, and not for /robot1/b, /robot1/c;"
+             " use_sim_time has to be the same for all nodes of a robot"],
+        ),
     ],
 )  # fmt: skip
 def test_what_is_wrong_and_what_to_do(lines: tuple[str, ...], found: list[str]) -> None:
@@ -370,3 +480,377 @@ def test_a_frame_that_is_called_as_such_a_sensors_is_may_be_meant(type_: str, ca
         (found,) = (it for it in judge(system) if it.code == "MG412")
         assert found.level == "warning"
         assert found.hint == f"set the frame of /robot1/driver to robot1/front_{word}_link"
+
+
+POSE, STRING = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/String"
+GO, STOP = "nav2_msgs/action/NavigateToPose", "std_srvs/srv/Trigger"
+DRIVE = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
+SERVER = f"/robot1/controller_server publishes /robot1/cmd_vel {TWIST}"
+TWO_DRIVES = (DRIVE, SERVER, DRIVE.replace("1", "2"), SERVER.replace("1", "2"))
+NAMES_ROBOT1 = "a namespace, remap rule or parameter of robot2 names robot1"
+CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
+PLAY = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
+
+
+def unread(name: str, meant: str = "/robot1/cmd_vel") -> str:
+    return (
+        f"publishes {name}, which no node reads; /robot1/driver reads {meant}; start it in the"
+        f" robot's namespace, or pass the rule {name}:={meant}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}"),
+            [f"MG308 error /joystick: {unread('/cmd_vel')}"],
+        ),
+        (
+            (*TWO_DRIVES, f"/joystick publishes /cmd_vel {TWIST}"),
+            [f"MG308 error /joystick: {unread('/cmd_vel')} (or that of another of the 2 robots)"],
+        ),
+        # Stamped velocities are others.
+        ((DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}Stamped"), []),
+        # A joystick of the robot itself is meant for the one that it obeys.
+        (
+            (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/joy_vel {TWIST}"),
+            [f"MG308 error /robot1/teleop: {unread('/robot1/joy_vel')}"],
+        ),
+        ((DRIVE, SERVER, f"/joystick publishes /joy_vel {TWIST}"), []),
+        (
+            (f"/robot1/driver subscribes /robot1/wheels/cmd_vel {TWIST}",
+             f"/robot1/twist_mux publishes /robot1/cmd_vel_out {TWIST}"),
+            ["MG308 error /robot1/twist_mux: "
+             + unread("/robot1/cmd_vel_out", "/robot1/wheels/cmd_vel")],
+        ),
+        (
+            (f"/robot1/bt_navigator subscribes /robot1/goal_pose {POSE}",
+             f"/rviz2 publishes /goal_pose {POSE}"),
+            ["MG303 note /robot1/bt_navigator: subscribes to /robot1/goal_pose, which no node"
+             " publishes; /rviz2 publishes /goal_pose; pass the rule /goal_pose:=/robot1/goal_pose"
+             " to /rviz2, or start it in the namespace"],
+        ),
+        (
+            (DRIVE, DRIVE.replace("1", "2"), f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG311 error /robot2/teleop: publishes /robot1/cmd_vel, a name of robot1;"
+             f" {NAMES_ROBOT1}"],
+        ),
+        # Who sends to both coordinates them.
+        (
+            (DRIVE, DRIVE.replace("1", "2"), f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}",
+             f"/robot2/teleop publishes /robot2/cmd_vel {TWIST}"),
+            [],
+        ),
+        (
+            (f"/robot1/nav serves /robot1/go {GO}", f"/robot2/nav serves /robot2/go {GO}",
+             f"/robot2/boss calls /robot1/go {GO}"),
+            [f"MG311 error /robot2/boss: sends goals to /robot1/go, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        (
+            (f"/robot1/a serves /robot1/stop {STOP}", f"/robot2/a serves /robot2/stop {STOP}",
+             f"/robot2/boss calls /robot1/stop {STOP}"),
+            [f"MG311 error /robot2/boss: calls /robot1/stop, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        # Its own robot does not have it.
+        (
+            (f"/robot1/a serves /robot1/stop {STOP}", "/robot2/a",
+             f"/robot2/boss calls /robot1/stop {STOP}"),
+            [],
+        ),
+        # Its own robot waits for it.
+        (
+            (f"/robot1/a subscribes /robot1/halt {STRING}",
+             f"/robot2/a subscribes /robot2/halt {STRING}",
+             f"/robot2/button publishes /robot1/halt {STRING}"),
+            [f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1}"],
+        ),
+        (
+            (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}"),
+            ["MG312 warning /robot1/teleop: publishes /robot1/cmd_vel beside"
+             f" /robot1/controller_server, and /robot1/driver obeys both; {CHOOSE}"],
+        ),
+        # A goal is no motion.
+        (
+            (f"/robot1/bt_navigator subscribes /robot1/goal_pose {POSE}",
+             f"/robot1/a publishes /robot1/goal_pose {POSE}",
+             f"/robot1/b publishes /robot1/goal_pose {POSE}"),
+            [],
+        ),
+        # Two of Nav2 take turns; a mux chooses.
+        ((DRIVE, SERVER, SERVER.replace("controller", "behavior")), []),
+        (
+            (SERVER, SERVER.replace("controller_server", "teleop"),
+             DRIVE.replace("driver", "twist_mux")),
+            [],
+        ),
+        (
+            (f"/robot1/lidar publishes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/imu {IMU}"),
+            [f"MG313 error /rosbag2_player: plays /robot1/scan into the running system; {PLAY}"],
+        ),
+        (
+            (DRIVE, f"/rosbag2_player publishes /robot1/cmd_vel {TWIST}"),
+            [f"MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system; {PLAY}"],
+        ),
+        # What bags are for.
+        (
+            (f"/robot1/slam subscribes /robot1/scan {SCAN}",
+             f"/rosbag2_player publishes /robot1/scan {SCAN}"),
+            [],
+        ),
+        # Nobody knows who sends them.
+        (
+            (f"/x publishes /robot1/tf {TF}",
+             "transform robot2/base -> robot2/laser on /robot1/tf"),
+            ["MG405 error robot2: robot2/laser of robot2 on /robot1/tf, which is of robot1; start"
+             " its nodes in its own namespace, with the rules /tf:=tf and /tf_static:=tf_static"],
+        ),
+    ],
+)  # fmt: skip
+def test_orders_and_who_obeys_them(lines: tuple[str, ...], found: list[str]) -> None:
+    """Code, level, node or else robot, message and hint."""
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [
+        f"{it.code} {it.level} {it.node or it.robot}: {it.message}; {it.hint}"
+        for it in judge(system)
+    ] == found
+
+
+SENT = "transform odom -> base_link on /robot1/tf by /robot1/ekf"
+STILL = "transform base_link -> laser on /robot1/tf by /robot1/robot_state_publisher"
+INSTEAD = (
+    "/robot1/ekf sends odom -> base_link; use a frame that is sent, or name the node that does"
+)
+
+
+def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") -> list[str]:
+    return [f"MG413 {level} /robot1/{node}: reads frame {frame}, but {rest}"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (
+            (SENT, "/robot1/planner looks up base_footprint"),
+            reads("base_footprint", f"no known node sends it; {INSTEAD}"),
+        ),
+        # What sends a description is not named.
+        (
+            (SENT.replace("by ", "by /robot1/robot_state_publisher, "),
+             "/robot1/planner looks up base_footprint"),
+            reads("base_footprint", f"no known node sends it; {INSTEAD}"),
+        ),
+        (
+            (SENT, *(f"/robot1/{it} looks up base_footprint" for it in ("planner", "amcl", "x"))),
+            reads(
+                "base_footprint",
+                f"no known node sends it; the same for /robot1/amcl, /robot1/x; {INSTEAD}",
+            ),
+        ),
+        # A map often comes from elsewhere.
+        (
+            (SENT, "/robot1/planner looks up map"),
+            reads("map", f"no known node sends it; {INSTEAD}", level="note"),
+        ),
+        (
+            (SENT, "/robot1/planner looks up base_lnik"),
+            reads("base_lnik", "nothing sends it; did you mean base_link?"),
+        ),
+        (
+            (SENT, "/robot1/planner looks up tool"),
+            reads("tool", "nothing sends it; send it, or use a frame that is sent"),
+        ),
+        ((SENT, "/robot1/planner looks up base_link"), []),
+        (
+            (STILL, "/robot1/planner looks up odom"),
+            reads("odom", "nothing sends it; send it, or use a frame that is sent"),
+        ),
+        (
+            (STILL, "/robot1/planner looks up odom", f"/robot1/planner subscribes /robot1/tf {TF}"),
+            reads(
+                "odom",
+                "no known node sends it; name the node or stack that sends it",
+                level="note",
+            ),
+        ),
+    ],
+)  # fmt: skip
+def test_frames_that_are_looked_up(lines: tuple[str, ...], found: list[str]) -> None:
+    """Code, level, node, message and hint."""
+    system = read_system("\n".join(f"running: {it}" for it in lines))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in judge(system)] == (
+        found
+    )
+
+
+THING, IMAGE = "acme_msgs/msg/Thing", "sensor_msgs/msg/Image"
+PACKED, GRID = "sensor_msgs/msg/CompressedImage", "nav_msgs/msg/OccupancyGrid"
+STATES = "sensor_msgs/msg/JointState"
+
+
+def hears(name: str, type_: str = THING, node: str = "reader", code: str = "") -> str:
+    return f"/robot1/{node} subscribes /robot1/{name} {type_}{f' as {code}' if code else ''}"
+
+
+def sends(name: str, type_: str = THING, node: str = "sender", code: str = "") -> str:
+    return f"/robot1/{node} publishes /robot1/{name} {type_}{f' as {code}' if code else ''}"
+
+
+# What a node waits for in vain, and what there is instead: by what it is, not by its name alone.
+INSTEAD_OF = {
+    "the only one of its type": ((hears("wanted"), sends("given")), "given"),
+    "two of its type": ((hears("wanted"), sends("given"), sends("other")), ""),
+    "a word in common": ((hears("wheel_wanted"), sends("wheel_given"), sends("other")), "wheel_given"),
+    "a short word in common": ((hears("arm_wanted"), sends("arm_given"), sends("other")), ""),
+    "a word that says nothing": ((hears("data_wanted"), sends("data_given"), sends("other")), ""),
+    "read by another node": ((hears("wanted"), sends("given"), hears("given", node="other")), ""),
+    "of a type for many ends": ((hears("wanted", POSE), sends("given", POSE)), ""),
+    "of such a type with a word in common": (
+        (hears("route_wanted", POSE), sends("route_given", POSE)),
+        "route_given",
+    ),
+    "a name that goes on": ((hears("joy", POSE), sends("joystick", POSE)), "joystick"),
+    "another number": ((hears("thing_1"), sends("thing_2")), ""),
+    "of a node that is called alike": ((hears("wanted", node="a"), sends("given", node="a")), ""),
+    "a topic below its own node": ((hears("reader/wanted"), sends("given")), ""),
+    "a node that merges": (
+        (hears("wanted"), hears("more"), sends("more", node="one"), sends("given")),
+        "",
+    ),
+    "of Nav2": ((hears("wanted"), sends("given", node="controller_server")), ""),
+    "a scan that others read": (
+        (hears("scan", SCAN), sends("laser", SCAN), hears("laser", SCAN, "slam")),
+        "laser",
+    ),
+    "an image that others read": (
+        (hears("image", IMAGE), sends("eye", IMAGE), hears("eye", IMAGE, "slam")),
+        "",
+    ),
+    "joints of two": (
+        (hears("joints", STATES), sends("arm", STATES, "arm"), sends("leg", STATES, "leg")),
+        "",
+    ),
+    "a map": ((hears("map", GRID, "planner"), sends("maps/map", GRID)), "maps/map"),
+    "what a costmap shows": ((hears("map", GRID, "planner"), sends("x", GRID, "local_costmap")), ""),
+    "a scan by its code's name": (
+        (hears("scan", SCAN, "amcl", "scan"), sends("front/scan", SCAN, "l"), sends("r", SCAN, "r")),
+        "front/scan",
+    ),
+    "a text by its code's name": (
+        (hears("word", STRING, code="word"), sends("words", STRING, code="words"),
+         sends("zzz", STRING, code="zzz")),
+        "words",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", INSTEAD_OF)
+def test_what_is_sent_in_place_of_what_is_read(name: str) -> None:
+    lines, meant = INSTEAD_OF[name]
+    node, _, wanted, *_ = lines[0].split()
+    by = next((it.split()[0] for it in lines if f"publishes /robot1/{meant} " in it), "")
+    said = (
+        f"MG303 warning {node}: subscribes to {wanted}, which no node publishes; {by} publishes"
+        f" /robot1/{meant}; pass the rule {wanted}:=/robot1/{meant}, or write /robot1/{meant} in its"
+        " parameters"
+    )
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(meant)
+    )
+
+
+DOORS = "acme_msgs/srv/Door"
+
+
+@pytest.mark.parametrize(
+    ("level", "lines", "meant"),
+    [
+        ("warning", (f"/robot1/a calls /robot1/open {DOORS}",
+                     f"/robot1/b serves /robot1/door {DOORS}"), "/robot1/door"),
+        # Somebody calls it already.
+        ("warning", (f"/robot1/a calls /robot1/open {DOORS}",
+                     f"/robot1/b serves /robot1/door {DOORS}",
+                     f"/robot1/c calls /robot1/door {DOORS}"), ""),
+        ("error", (f"/robot1/a calls /robot1/door_opn {DOORS}",
+                   f"/robot1/b serves /robot1/door_open {DOORS}",
+                   f"/robot1/c serves /robot1/zzz {DOORS}"), "/robot1/door_open"),
+        # Of a type that many have the last word counts.
+        ("", (f"/robot1/a calls /robot1/open {STOP}", f"/robot1/b serves /robot1/door {STOP}"), ""),
+        ("warning", (f"/robot1/a calls /robot1/x/stop {STOP}",
+                     f"/robot1/b serves /robot1/y/stop {STOP}"), "/robot1/y/stop"),
+        # In a namespace without a node, and in one with nodes.
+        ("error", (f"/boss calls /cell/door {DOORS}", f"/gate serves /door {DOORS}"), "/door"),
+        ("warning", (f"/boss calls /cell/door {DOORS}", f"/gate serves /door {DOORS}", "/cell/x"),
+         "/door"),
+    ],
+)  # fmt: skip
+def test_what_is_served_in_place_of_what_is_called(
+    level: str, lines: tuple[str, ...], meant: str
+) -> None:
+    node, _, wanted, _ = lines[0].split()
+    by = next((it.split()[0] for it in lines if f"serves {meant} " in it), "")
+    rest = "start the node that serves it, or leave out what calls it"
+    if meant:
+        rest = f"{by} serves {meant}; pass the rule {wanted}:={meant}, or start it in the namespace"
+        rest += " of the robot"
+    said = f"MG304 {level} {node}: calls {wanted}, which no node serves; {rest}"
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [f"{it.code} {it.level} {it.node}: {it.message}; {it.hint}" for it in found] == (
+        [said] * bool(level)
+    )
+
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+PARTS = {
+    "driver": ("publishes", "odom", ODOMETRY),
+    "planner": ("subscribes", "odom", ODOMETRY),
+    "lidar": ("publishes", "scan", SCAN),
+    "odometer": ("subscribes", "scan", SCAN),
+}
+LACKS_SCAN = (
+    "/robot2/lidar: lacks /robot2/scan beside /robot1/lidar, which publishes /robot1/scan;"
+    " /robot2/odometer has it in vain; a remap rule, a parameter or a version of its own?"
+)
+
+
+def made_of(robot: int, *but: str) -> tuple[str, ...]:
+    """A robot of the usual parts but for some."""
+    left = ((node, *it) for node, it in PARTS.items() if node not in but)
+    return tuple(f"/robot{robot}/{node} {does} /robot{robot}/{name} {type_}"
+                 for node, does, name, type_ in left)  # fmt: skip
+
+
+def has_no(robot: int, node: str) -> list[str]:
+    lacks = f"robot{robot} has no {node}, as robot1 has (/robot1/{node})"
+    return [f"robot{robot}: {lacks}; start it for this robot too, if the two are to be equal"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ((*made_of(1), *made_of(2)), []),
+        ((*made_of(1), *made_of(2, "lidar")), has_no(2, "lidar")),
+        # Of two robots nobody waits for it; of three the one differs from the others.
+        ((*made_of(1), *made_of(2, "lidar", "odometer")), []),
+        ((*made_of(1), *made_of(2), *made_of(3, "odometer")), has_no(3, "odometer")),
+        # Each has one of its own.
+        ((*made_of(1), *made_of(2, "lidar"), "/robot2/camera"), []),
+        # Two nodes in common say nothing.
+        ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), []),
+        ((*made_of(1), *made_of(2, "lidar"), "/robot2/lidar"), [LACKS_SCAN]),
+        (
+            (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),
+            [LACKS_SCAN],
+        ),
+        # A tool, and what is called after its process.
+        ((*made_of(1), "/robot1/rviz2", *made_of(2)), []),
+        ((*made_of(1), "/robot1/x_12345", *made_of(2), *made_of(3)), []),
+    ],
+)
+def test_what_a_robot_lacks_that_its_likes_have(lines: tuple[str, ...], found: list[str]) -> None:
+    judged = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    told = [it for it in judged if it.code == "MG327"]
+    assert [f"{it.node or it.robot}: {it.message}; {it.hint}" for it in told] == found

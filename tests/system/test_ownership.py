@@ -5,8 +5,25 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.system.ownership import NameOwnership, whose_by_plan, without_tag_once
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Node, Robot, System
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.system.ownership import (
+    NameOwnership,
+    name_ownership,
+    whose_by_plan,
+    without_name,
+    without_tag_once,
+)
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    TOPIC,
+    Edge,
+    End,
+    Node,
+    Parameter,
+    Robot,
+    System,
+    Topic,
+)
 
 
 def by_tags(*robots: str, last: bool = False, words: tuple[str, ...] = ()) -> NameOwnership:
@@ -167,3 +184,45 @@ def test_a_plan_with_robots_at_the_end_of_names() -> None:
     assert whose.robot("/a/b") == "b"
     assert not whose_by_plan(PLAN).of_names.robot_is_last
     assert whose_by_plan(System(robots=(Robot("f/g/a"),))).robot("/f/g/a/scan") == "f/g/a"
+
+
+@pytest.mark.parametrize(
+    ("names", "last"),
+    [
+        ("/lidar/max /lidar/rex", True),
+        ("/max/lidar /rex/lidar", False),
+        # More at the end than at the beginning.
+        ("/lidar/max /lidar/rex /max/arm", True),
+        ("/lidar/max /max/arm", False),
+    ],
+)
+def test_where_most_names_have_their_robot(names: str, last: bool) -> None:
+    nodes = tuple(Node(it, robot="max" if "max" in it else "rex") for it in names.split())
+    plan = System(nodes=nodes, robots=(Robot("max", tf_topic="/tf"), Robot("rex", tf_topic="/tf")))
+    assert name_ownership(plan).robot_is_last is last
+
+
+def test_a_plan_of_one_robot_without_its_namespace() -> None:
+    """All that has the namespace loses it; what only begins with the same letters does not."""
+    end = End("topic", "publishes", "/r/scan", "", "", "/r/lidar", None, "")
+    finding = Finding("MG103", "error", "in /r/x and /rover", "see /r/y", node="/r/lidar")
+    plan = System(
+        nodes=(Node("/r/lidar", robot="r", taker="/r/box"), Node("/rover/arm"), Node("/r")),
+        ends=(end, end._replace(name="/rover/scan", node="/rover/arm")),
+        edges=(Edge("b", "a", "/r/tf", False, ("/r/lidar", "/rover/arm")),),
+        robots=(Robot("r", tf_topic="/r/tf"),),
+        gaps=(finding._replace(names=("/r/scan", "/rover/scan")),),
+        parameters=(Parameter("/r/lidar", "a", "1"),),
+        topics=(Topic("/r/scan", ("/r/lidar",)),),
+    )
+    assert without_name(plan) == System(
+        nodes=(Node("/lidar", robot="r", taker="/box"), Node("/rover/arm"), Node("/")),
+        ends=(end._replace(name="/scan", node="/lidar"),
+              end._replace(name="/rover/scan", node="/rover/arm")),
+        edges=(Edge("b", "a", "/tf", False, ("/lidar", "/rover/arm")),),
+        robots=(Robot("r", tf_topic="/tf"),),
+        gaps=(finding._replace(message="in /x and /rover", hint="see /y", node="/lidar",
+                               names=("/scan", "/rover/scan")),),
+        parameters=(Parameter("/lidar", "a", "1"),),
+        topics=(Topic("/scan", ("/lidar",)),),
+    )  # fmt: skip

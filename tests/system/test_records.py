@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from multibot_rewrite.system import records
 from multibot_rewrite.system.json_values import FARTHEST, WrongValue, read_transform, shown
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.parameters import Answer, parameter_text, parameter_value, with_answers
@@ -265,3 +266,19 @@ def test_looks_are_merged_in_order_and_named_up_to_four() -> None:
         assert [it.name for it in found.parameters] == ["x", "y"]
         said = found.environment.caveats[0].message
         assert said == f"made of {count} looks: {names}"
+
+
+def test_the_words_of_the_records() -> None:
+    """Files of earlier versions have them."""
+    assert records.KINDS == ("topic", "service", "action")
+    assert records.ROLES == ("publishes", "subscribes", "serves", "calls")
+    parts = (records.COMMAND, records.STATE, records.JOINT, records.EXPORTS, records.CLAIMS)
+    assert parts == ("command", "state", "joint", "exports", "claims")
+    held = (records.DEVICE, records.CALIBRATION, records.COMPUTER, records.OWN)
+    assert held == ("device", "calibration", "computer", "own")
+    ends = (records.EXPECTED, records.QUIET, records.TIMEOUT, records.CHANGING)
+    assert ends == ("expected", "quiet", "timeout", "changing")
+    sure = (records.RUNS, records.MAY, records.UNKNOWN, records.OFF)
+    assert [it.word for it in sure] == ["runs", "may", "unknown", "off"]
+    assert (records.ZENOH, records.SIM_TIME) == ("rmw_zenoh_cpp", "use_sim_time")
+    assert records.Environment() == (0, "", (), "", "", False, 0, "expected", 0.0, ())

@@ -132,6 +132,7 @@ def test_what_one_body_and_what_one_device_measures(type_: str, body: bool, sens
         ("/out", "velodyne_msgs/msg/VelodyneScan", True),
         ("/out", "ouster_sensor_msgs/msg/PacketMsg", True),
         ("/out", "livox_ros_driver2/msg/CustomMsg", True),
+        ("/out", "mavros_msgs/msg/State", True),
         ("/cmd_vel", TWIST, True),
         ("/wind", TWIST, False),
         ("/robot_description", TEXT, True),

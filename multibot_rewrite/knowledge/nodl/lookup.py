@@ -73,14 +73,14 @@ def _below(path: str) -> Iterator[tuple[Identity, str]]:
     if not os.path.isdir(path):
         raise UsageError(f"{path}: does not exist; name a NoDL file or a folder of them")
     index = os.path.join(path, INDEX)
-    found = list(_indexed(index) if os.path.isdir(index) else _in_folder(path))
+    found = sorted(_indexed(index) if os.path.isdir(index) else _in_folder(path))
     if not found:
         raise UsageError(f"{path}: there is no NoDL file (*.nodl.yaml) in this folder")
     yield from found
 
 
 def _indexed(index: str) -> Iterator[tuple[Identity, str]]:
-    for key in sorted(os.listdir(index)):
+    for key in os.listdir(index):
         package, between, name = key.partition(_BETWEEN)
         if between and os.path.isfile(os.path.join(index, key)):
             yield Identity(package, name), os.path.join(index, key)
@@ -89,12 +89,11 @@ def _indexed(index: str) -> Iterator[tuple[Identity, str]]:
 def _in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
     seen = 0
     for place, folders, names in os.walk(folder):
-        folders[:] = sorted(it for it in folders if not it.startswith("."))
+        folders[:] = (it for it in folders if not it.startswith("."))
         seen += len(names)
         if seen > MAX_FILES:
             raise UsageError(f"{folder}: over {MAX_FILES} files; name the folder of the NoDL files")
-        for name in sorted(it for it in names if it.endswith(SUFFIXES)):
-            path = os.path.join(place, name)
+        for path in (os.path.join(place, it) for it in names if it.endswith(SUFFIXES)):
             yield _identity(path, folder), path
 
 

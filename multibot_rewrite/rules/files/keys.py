@@ -88,7 +88,7 @@ def overridden(file: NamedFile) -> Iterator[Remark]:
     """What a wildcard section sets after the section of a node that it matches."""
     sections = [section for section, _ in file.pages]
     for at, section in enumerate(sections):
-        if not section.wild or not any(not it.wild for it in sections[:at]):
+        if not section.wild:
             continue
         matches = re.compile(pattern_of(section.full)).fullmatch
         here = dict(flattened(section.body))

@@ -148,7 +148,7 @@ def _critics(it: Demand) -> Iterator[Remark]:
     if f"{it.section.at}default_critic_namespaces" in whole:
         return
     for word in words_of(it.given):
-        plain = "::" not in word and f"{it.section.at}{word}.class" not in whole
+        plain = f"{it.section.at}{word}.class" not in whole
         short = scope == _DWB and f"{word}{_CRITIC}" in names
         if plain and word not in names and not short:
             shown = [n.removesuffix(_CRITIC) for n in names] if scope == _DWB else [*names]

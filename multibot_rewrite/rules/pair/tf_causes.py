@@ -30,7 +30,7 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
     unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
     causes = (
         _two_names(plan, robot, roots, edges),
-        _misspelled(robot, roots, edges),
+        _misspelled(plan, robot, roots, edges),
         *(_not_sent(plan, seen, robot, it) for it in unsent),
         *(_silent(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
         _bridged(plan, seen, robot),
@@ -54,25 +54,28 @@ def _two_names(
     edges: Sequence[Edge],
 ) -> Cause | None:
     """A root that is in the tree under another name, with the robot's or without."""
-    children = {edge.child for edge in edges}
+    names = {*roots, *(edge.child for edge in edges)}
     for root in roots:
         plain = plan.of_frames.without_robot(root, robot.name)
         variants = name_variants(plain, root, plan.of_frames.tag(robot.name))
-        other = next((name for name in variants if name in children), "")
+        other = next((name for name in variants if name in names), "")
         if other:
             right, wrong = (root, other) if root in robot.frames else (other, root)
             return _wrongly_named(plan, robot, right, wrong)
     return None
 
 
-def _misspelled(robot: Robot, roots: Sequence[str], edges: Sequence[Edge]) -> Cause | None:
-    """A root that is called nearly as a frame of the robot is."""
-    for edge in edges:
-        known = {*robot.frames, *robot.other_frames}
-        odd = edge.parent in roots and edge.parent not in known
-        if near := nearest(edge.parent, sorted(known), MISTYPED) if odd else "":
+def _misspelled(
+    plan: Index, robot: Robot, roots: Sequence[str], edges: Sequence[Edge]
+) -> Cause | None:
+    """A root that is called nearly as a frame of the robot is, the robot's name apart."""
+    frames = (*robot.frames, *robot.other_frames)
+    known = {plan.of_frames.without_robot(it, robot.name): it for it in sorted(frames)}
+    for edge in (it for it in edges if it.parent in roots and it.parent not in frames):
+        plain = plan.of_frames.without_robot(edge.parent, robot.name)
+        if near := nearest(plain, known, MISTYPED):
             sent = f"{edge.child} is sent below {edge.parent}, but nothing sends that"
-            return Cause(f"{sent}: did you mean {near}?")
+            return Cause(f"{sent}: did you mean {known[near]}?")
     return None
 
 

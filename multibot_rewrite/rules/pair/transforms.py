@@ -103,7 +103,7 @@ def _wrong_topic(plan: Index, tree: TfTree, robot: Robot, edges: Sequence[Edge])
         f"frame {frames[0]} of {robot.name} is on {edges[0].topic}, expected on {robot.tf_topic}"
     )
     if len(frames) > 1:
-        message += f"; so are {len(frames) - 1} more of its frames"
+        message += f"; the same for {shorten(frames[1:])}"
     cause = _why_wrong_topic(plan, tree, robot, edges)
     return tf_on_two_topics.finding(message, **cause._asdict(), robot=robot.name, names=frames)
 

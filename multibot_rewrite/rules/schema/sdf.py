@@ -107,6 +107,7 @@ def _block(block: _Element, robot: Robot, version: Version, taken: Described) ->
 
 def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
     """A tag that the converter itself reads."""
+    at = "value" if child.get("value") else ""
     text = child.get("value") or text_of(child)
     if not text or "$" in text:
         return
@@ -120,7 +121,7 @@ def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
     if wrong:
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
-        yield Fault("value", child, "", message, "", level)
+        yield Fault("value", child, at, message, "", level)
 
 
 def _belongs(tag: str) -> tuple[str, ...]:

@@ -22,8 +22,6 @@ from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
 _FILE = "urdf.schema"
 ROBOT = "robot"
 NO_LATER: Mapping[str, Version] = {}
-# Combinations longer than this are not worth remembering: the children of <robot>.
-_FEW = 40
 
 
 class Kind(NamedTuple):
@@ -199,12 +197,9 @@ def typed_attributes(
     )
 
 
+@lru_cache(maxsize=2048)
 def sections_below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
     """The sections of children, empty where not checked; None where the children have a fault."""
-    return _known_below(version, name, tags) if len(tags) < _FEW else _below(version, name, tags)
-
-
-def _below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
     section = schema(version).sections[name]
     known = section.children
     if any(tag in section.later for tag in tags):
@@ -220,9 +215,6 @@ def _below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...
         return None
     sections = {tag: known[tag].section for tag in count}
     return tuple([sections.get(tag, "") for tag in tags])
-
-
-_known_below = lru_cache(maxsize=2048)(_below)
 
 
 def sections_once(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...]:

@@ -280,7 +280,7 @@ running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twi
 def several_command_senders(seen: Index) -> Iterator[Finding]:
     """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
     for ends in seen.orders.values():
-        if len(ends.publishers) < 2 or not words.moves(seen.plain(ends.name), ends.type):
+        if not words.moves(seen.plain(ends.name), ends.type):
             continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.

@@ -75,7 +75,8 @@ def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str
     there = [it for it in planned if it[0] in senders] or planned[:1]
     known = [node for node, _ in there]
     nodes = sorted(senders, key=lambda it: (it not in known, seen.robot(it) != owner))
-    sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
+    which = "two of the nodes that send" if nodes[1:] else "the node that sends"
+    sent = f"{which} on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
     if there:
         by_plan = " and ".join(f"{node} sends {above} -> {it}" for node, (above, it) in there)
         return f"by the plan {by_plan}; {sent}"

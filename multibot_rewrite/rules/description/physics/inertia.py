@@ -109,7 +109,7 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
             yield Problem(inertial, f"{message}, and has to be above 0", None, level=level)
         found = [] if inertia is None else [_moment(inertia, it) for it in _MOMENTS]
         moments = tuple(it for it in found if it is not None)
-        if len(moments) != len(_MOMENTS) or inertia is None or _is_possible(moments):
+        if len(moments) != len(_MOMENTS) or inertia is None:
             continue
         low, middle, high = own = eigenvalues(moments) if any(moments) else (0.0, 0.0, 0.0)
         if high < NOTHING or is_negative(own) or high > (low + middle) * (1 + ROUNDING):

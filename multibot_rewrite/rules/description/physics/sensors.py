@@ -69,7 +69,7 @@ def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
     """Links with optical at the end of their names that are not turned, and neither is what they are
     fixed to."""
     for link in subject.robot.links:
-        if "optical" not in link.name.lower() or not _OPTICAL.search(link.name.lower()):
+        if not _OPTICAL.search(link.name.lower()):
             continue
         joint = next(iter(subject.robot.above.get(link.name, ())), None)
         if joint is None or joint.type != "fixed" or "optical" in joint.parent.lower():
