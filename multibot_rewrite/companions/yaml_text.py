@@ -6,8 +6,10 @@ Comments, quoting, order and line ends stay. Positions are character offsets.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator
+from math import inf
 
 import yaml
 
@@ -148,7 +150,14 @@ def quoted(value: str, style: str = "") -> str:
         return value
     if value.isprintable():
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
+    return str(yaml.dump(value, default_style='"', width=inf)).rstrip("\n")
+
+
+def joined_text(files: Iterable[str], root: yaml.Node) -> bytes:
+    """A file that is made of others; called by their names, it is the same from every working
+    directory."""
+    names = ", ".join(dict.fromkeys(map(os.path.basename, files)))
+    return f"# joined by multibot from {names}\n{yaml.serialize(root, width=inf)}".encode()
 
 
 def spliced(document: YamlText, splices: Iterable[Splice]) -> str:

@@ -12,6 +12,7 @@ import re
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from math import inf
 
 from multibot_rewrite.base.bounded import load_json, load_yaml
 from multibot_rewrite.base.file_kinds import PLAN, refuse_others
@@ -93,7 +94,7 @@ def _quoted(value: str) -> str:
         return value
     import yaml
 
-    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
+    return str(yaml.dump(value, default_style='"', width=inf)).rstrip("\n")
 
 
 def read_plan(data: bytes, file: str) -> System:

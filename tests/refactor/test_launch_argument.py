@@ -201,7 +201,8 @@ def test_what_belongs_to_the_description_is_in_the_namespace(of_xacro: bool) -> 
 def test_a_namespace_that_no_xacro_takes_is_for_what_belongs_to_the_description(
     package: str, of_robot: bool
 ) -> None:
-    source = f'{HEAD}t = Command(["xacro ", "r.urdf.xacro"])\nx = LaunchDescription([Node(package="{package}")])\n'
+    command = 't = Command(["xacro ", "r.urdf.xacro"])'
+    source = f'{HEAD}{command}\nx = LaunchDescription([Node(package="{package}")])\n'
     xml = XML.replace("robot_state_publisher", package)
     space = Space("namespace", False)
     for path, text in (("a.launch.py", source), ("a.launch.xml", xml)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from math import inf
 from typing import Any
 
 from multibot_rewrite.base.editors import FLEET, schema_line
@@ -104,7 +105,7 @@ def _block(key: str, value: Any) -> Iterator[str]:
 def _flow(value: Any) -> str:
     import yaml
 
-    text = yaml.safe_dump(value, default_flow_style=True, width=10_000, sort_keys=False)
+    text = yaml.safe_dump(value, default_flow_style=True, width=inf, sort_keys=False)
     return text.removesuffix("\n").removesuffix("\n...")
 
 
