@@ -198,7 +198,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
     assert first == "// On robot2: zenoh-bridge-ros2dds -c robot2.json5"
     none = ("subscribers", "service_servers", "service_clients", "action_clients")
     allow = {
-        **dict.fromkeys(none, []),
+        **{it: [] for it in none},
         "publishers": ["/robot2/tf", "/robot2/battery_state"],
         "action_servers": ["/robot2/navigate_to_pose"],
     }

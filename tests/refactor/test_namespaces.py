@@ -50,7 +50,7 @@ def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...
     ],
 )
 def test_the_first_name_that_is_free_is_taken(form: str, tmp_path: Path) -> None:
-    """By an argument, a property or a parameter of a macro, with a default or without (xacro README)."""
+    """By an argument, a property or a parameter of a macro, with a default or without."""
     tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
     (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(form.format("one")))
     found = read_package(str(tmp_path), tree, how).descriptions
