@@ -13,7 +13,7 @@ from multibot_rewrite.fleet.proposal.looking import Looked
 @pytest.mark.parametrize(
     ("given", "names", "plain"),
     [
-        ("{robot}_", {"robot1_base", "robot1/x", "other", "robot1_"}, {"base", "x", "other", "robot1_"}),
+        ("{robot}_", {"robot1_base", "robot1/x", "y", "robot1_"}, {"base", "x", "y", "robot1_"}),
         ("{robot}", {"robot1_base", "robot1base"}, {"base", "robot1base"}),
         ("tool_", {"tool_base", "robot1_base"}, {"tool_base", "robot1_base"}),
     ],
