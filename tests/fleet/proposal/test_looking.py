@@ -85,7 +85,8 @@ def test_arguments_that_name_robots_are_empty_but_for_needed_and_given_ones() ->
     [
         ("prefix", "{robot}_"), ("tf_prefix", "{robot}_"), ("name", "{robot}"),
         ("robot_name", "{robot}"), ("namespace", "{robot}"), ("ns", "{robot}"),
-        ("model", "ur5"), ("size", "small"), ("both", "b"), ("mode", "sim"), ("nobody", ""), ("mod", ""),
+        ("model", "ur5"), ("size", "small"), ("both", "b"), ("mode", "sim"), ("nobody", ""),
+        ("mod", ""),
     ],
 )  # fmt: skip
 def test_a_needed_argument_has_the_value_of_launch_files(
