@@ -114,7 +114,9 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield _finding(NO_SHARED_FRAME, robot, what, hint)
         return
     sent = _sent(plan, robot)
-    placing = {node: [it for it in edges if _is_placing(it, naming)] for node, edges in sent.items()}
+    placing = {
+        node: [it for it in edges if _is_placing(it, naming)] for node, edges in sent.items()
+    }
     locators = [node for node, edges in placing.items() if any(not it.static for it in edges)]
     if AMCL in locators:
         yield InitialPose(name, AMCL, initial_pose(pose))
