@@ -325,6 +325,16 @@ def test_saved_views_are_there_for_each_robot() -> None:
     ]
 
 
+def test_the_current_view_is_saved_for_each_robot_behind_those_that_are() -> None:
+    listed = "Saved:\n" + "".join(
+        f"      - Class: c\n        Name: {it}\n        Target Frame: map\n"
+        for it in ("near", "far")
+    )
+    made = manager(text=CONFIG.replace("Saved: ~", listed.rstrip()))["Views"]["Saved"]
+    names = [view["Name"] for view in made]
+    assert names == ["near", "far", "robot1 Current View", "robot2 Current View"]
+
+
 def test_windows_and_paths_follow_the_names() -> None:
     result = shown()
     assert list(result["Window Geometry"]) == ["robot1 Eye", "robot2 Eye", "Width"]
