@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.fleet import note_interfaces, words_of
+from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
@@ -78,7 +78,7 @@ def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Find
     """Report what is wrong with the files and the remap table; does it stop the build?"""
     both = {*found, *plan.fleet.table.problems}
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
-    about = About([options.fleet], words_of(plan.fleet), plan.file.distro)
+    about = About([options.fleet], plan.fleet.words, plan.file.distro)
     return report_beside(options, chosen(options, ordered), about)
 
 

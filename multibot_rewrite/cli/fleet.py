@@ -115,13 +115,7 @@ def _is_nodl(path: str) -> bool:
 
 def about(options: argparse.Namespace, made: Fleet) -> About:
     """What the findings of a fleet are about."""
-    return About([options.input], words_of(made), made.table.release)
-
-
-def words_of(made: Fleet) -> dict[str, str]:
-    """The words that stand for each robot of a fleet."""
-    prefixes = {tag: robot for robot, tag in made.tags.items()}
-    return {**{it: it for it in made.inventories}, **prefixes}
+    return About([options.input], made.words, made.table.release)
 
 
 def findings(options: argparse.Namespace, made: Fleet) -> list[Finding]:

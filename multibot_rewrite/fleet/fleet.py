@@ -76,6 +76,11 @@ class Fleet(NamedTuple):
     described: Mapping[str, Inventory] = ALIKE
     apart: Apart = TOGETHER
 
+    @property
+    def words(self) -> dict[str, str]:
+        """The words that stand for each robot."""
+        return {**{it: it for it in self.inventories}, **{tag: it for it, tag in self.tags.items()}}
+
 
 def make_fleet(
     source: Source,

@@ -31,7 +31,10 @@ def hint(of: System, node: str) -> str:
     ("release", "words"),
     [
         # On Humble, and made by the plugin of the description.
-        ("humble", "in the description: <remapping>/tf:=tf</remapping> of the plugin of "),
+        (
+            "humble",
+            "in the description: <remapping>/tf:=tf</remapping> in <ros> of the plugin of ",
+        ),
         ("lyrical", '--controller-ros-args "-r /tf:=tf"'),
     ],
 )

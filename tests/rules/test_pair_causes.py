@@ -204,7 +204,7 @@ ARGS = f"--ros-args -r /a:=b, or with {PAIR} in the launch file"
         ({"way": SPAWNER}, 'it to its spawner: --controller-ros-args "-r /a:=b"'),
         (
             {"way": PLUGIN, "taker": "gazebo"},
-            "it in the description: <remapping>/a:=b</remapping> of the plugin of gazebo",
+            "it in the description: <remapping>/a:=b</remapping> in <ros> of the plugin of gazebo",
         ),
         (
             {"way": HOST, "taker": "/robot1/host"},

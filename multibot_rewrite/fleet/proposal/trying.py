@@ -7,7 +7,9 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding, by_place
+from multibot_rewrite.base.findings.formats.shared import said
+from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
@@ -125,8 +127,13 @@ def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, s
             found |= {*read_back(plan, made, folder)}
     except MultibotError as error:
         return [("", without_dict(str(error)))]
-    errors = (it for it in found if it.level == ERROR)
-    return [(_file(it), f"{it.code} {it.message}") for it in sorted(errors, key=lambda it: it.code)]
+    errors = sorted((it for it in found if it.level == ERROR), key=by_place)
+    return [(_file(it), _line(it)) for it in grouped(errors, plan.fleet.words)]
+
+
+def _line(it: Finding) -> str:
+    who = f"{it.node}: " if it.node else ""
+    return f"{who}{it.code} {said(it)}"
 
 
 def _file(it: Finding) -> str:

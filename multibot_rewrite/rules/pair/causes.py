@@ -106,7 +106,8 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     way, taker = _way(plan, node)
     what = what or rule
     if way == PLUGIN:
-        return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
+        tag = f"<remapping>{rule}</remapping> in <ros> of the plugin of {taker}"
+        return f"{what} in the description: {tag}"
     if way == HOST:
         # In the process of another node a rule says whose it is.
         led = f"{node.rpartition('/')[2]}:{rule}"

@@ -14,6 +14,8 @@ import yaml
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal import trying
 from multibot_rewrite.fleet.proposal.looking import NeededValues
 from multibot_rewrite.fleet.proposal.propose import names_of, unlike
@@ -497,3 +499,69 @@ def test_a_robot_that_its_description_has_in_the_map_gets_no_pose(tmp_path: Path
     assert main(["init", str(tmp_path / "dog.urdf"), "-n", "2", "--yes", "-o", str(file)]) == 0
     assert yaml.safe_load(file.read_text())["robots"] == [{"name": "robot1"}, {"name": "robot2"}]
     assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0
+
+
+STEERED = """\
+<robot name="car">
+  <link name="base_link">MASS</link><link name="rear">MASS</link><link name="front">MASS</link>
+  <joint name="drive" type="continuous"><parent link="base_link"/><child link="rear"/></joint>
+  <joint name="steer" type="continuous"><parent link="base_link"/><child link="front"/></joint>
+  <ros2_control name="car" type="system">
+    <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+    <joint name="drive"><command_interface name="velocity"/><state_interface name="velocity"/></joint>
+    <joint name="steer"><command_interface name="position"/><state_interface name="position"/></joint>
+  </ros2_control>
+  <gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+    <parameters>control.yaml</parameters>
+  </plugin></gazebo>
+</robot>
+"""
+MASS = """\
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
+STEERING = """\
+controller_manager:
+  ros__parameters:
+    bicycle_steering_controller: {type: bicycle_steering_controller/BicycleSteeringController}
+bicycle_steering_controller:
+  ros__parameters: {rear_wheels_names: [drive], front_wheels_names: [steer], front_steering: true}
+"""
+
+
+def steered(folder: Path, rule: str = "") -> dict[str, Any]:
+    """A fleet of two cars on Humble; ``rule`` is in the tag of the plugin."""
+    tag = f"<ros><remapping>{rule}</remapping></ros></plugin>" if rule else "</plugin>"
+    text = STEERED.replace("</parameters>\n  </plugin>", f"</parameters>\n  {tag}").replace(
+        "MASS", MASS
+    )
+    (folder / "car.urdf").write_text(text)
+    (folder / "control.yaml").write_text(STEERING)
+    return {
+        "layout": "tf-per-robot",
+        "distro": "humble",
+        "simulator": "gazebo",
+        "stack": "gz_ros2_control",
+        "description": str(folder / "car.urdf"),
+        "companions": {"params": [str(folder / "control.yaml")]},
+        "robots": [{"name": "robot1"}, {"name": "robot2"}],
+    }
+
+
+# ros2_controllers 2.54.0 steering_controllers_library.cpp: tf goes to ~/tf_odometry. On Humble a
+# controller in Gazebo has the rules of the process alone, which the plugin's tag sets.
+def test_the_reason_names_the_node_and_what_to_do_once_for_all_robots(tmp_path: Path) -> None:
+    said = (
+        "/robot1/bicycle_steering_controller: MG102 should publish topic /robot1/tf, but does not; the "
+        "same for robot2 (it publishes /robot1/bicycle_steering_controller/tf_odometry instead: the "
+        "remap rule ~/tf_odometry:=tf is not applied; pass it in the description: "
+        "<remapping>~/tf_odometry:=tf</remapping> in <ros> of the plugin of "
+        "/robot1/controller_manager)"
+    )
+    assert [it for _, it in trying.errors_of(steered(tmp_path))] == [said]
+
+
+def test_the_rule_that_the_reason_names_is_all_that_is_needed(tmp_path: Path) -> None:
+    fleet = steered(tmp_path, "~/tf_odometry:=tf")
+    assert trying.errors_of(fleet) == []
+    # Gazebo's plugin has the description already: nothing is told about the manager's own topic.
+    table = plan_fleet(read_fleet(fleet, "", {})).fleet.table
+    assert [it for it in table.problems if it.code == "MR105"] == []
