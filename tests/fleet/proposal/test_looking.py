@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.fleet.proposal import looking
 from multibot_rewrite.fleet.proposal.looking import Looked, NeededValues
 
@@ -104,3 +105,36 @@ def test_a_needed_argument_has_the_value_of_launch_files(
     # The one that every launch has to choose.
     mandatory = {"size": "small"} if name == "size" else {}
     assert values.of_mandatory(str(tmp_path / "r.xacro")) == mandatory
+
+
+CONTROLLED = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="bad" default=""/><xacro:arg name="idle" default=""/>
+  <xacro:arg name="file" default=""/><xacro:arg default="" name="more"/>
+  <xacro:if value="${'$(arg bad)' != ''}"><xacro:include filename="nowhere.xacro"/></xacro:if>
+  <link name="base"/><ros2_control name="c" type="system"/>
+  <gazebo><plugin filename="gz_ros2_control-system" name="p">
+    <parameters>$(arg file)$(arg more)</parameters>
+  </plugin></gazebo>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(("given", "named"), [("", "file"), ("a.yaml", "")])
+def test_the_first_argument_that_gives_the_manager_its_file_is_taken(
+    given: str, named: str, tmp_path: Path
+) -> None:
+    """Not one that ends the expansion, nor one that changes nothing."""
+    path, control = tmp_path / "urdf" / "r.urdf.xacro", tmp_path / "control.yaml"
+    path.parent.mkdir()
+    path.write_text(CONTROLLED.replace("$(arg file)", f"{given}$(arg file)"))
+    control.write_text("controller_manager:\n  ros__parameters: {}\n")
+    (tmp_path / "other.yaml").write_text("a: 1\n")
+    reach, nothing = Reach(trust=False), NeededValues([])
+    seen = looking.look(str(path), {}, reach, nothing)
+    files = [str(tmp_path / "other.yaml"), str(control)]
+    found = looking.with_controllers(seen, files, reach)
+    assert found.arguments == (((named, "../control.yaml"),) if named else ())
+    assert found.root is not None
+    assert [it.text for it in found.root.iter("parameters")] == [given or "../control.yaml"]
+    assert looking.with_controllers(seen, files[:1], reach) == seen
