@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from multibot_rewrite.fleet.proposal import fitting, owners
 from multibot_rewrite.fleet.proposal.fitting import Fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.knowledge.records import Param
 
 
 @pytest.mark.parametrize(
@@ -60,3 +63,27 @@ def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
 @pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
 def test_of_many_strange_names_two_are_shown(names: str, shown: str) -> None:
     assert fitting._shown(names) == shown
+
+
+KNOWN = (
+    Param("scan_topic", "topic"), Param("layer.scan.topic", "topic"), Param("map_topic", "topic"),
+    Param("base", "frame"), Param("tool", "link"), Param("joints", "joint"), Param("rate", ""),
+    Param("own", "frame", own=True), Param("space", "namespace"),
+)  # fmt: skip
+VALUES = {
+    "scan_topic": "/a/scan", "layer.scan.topic": "/b/scan", "map_topic": "/c/map", "base": "base_link",
+    "tool": "$(var tool)", "joints": ["j1", "j2", 3], "rate": "5", "own": "x", "space": "y",
+    "nobody": "z",
+}  # fmt: skip
+
+
+def test_the_names_of_a_robot_in_known_parameters() -> None:
+    """Frames, links and joints, and the topics of sensors; what a launch file fills in is none."""
+    given = {name: SimpleNamespace(value=it) for name, it in VALUES.items()}
+    known = SimpleNamespace(nodes={"amcl": SimpleNamespace(params={it.path: it for it in KNOWN})})
+    nodes = [SimpleNamespace(known=it, values=given) for it in ("amcl", "nobody")]
+    found = list(fitting._named(nodes, known))  # type: ignore[arg-type]
+    assert found == [
+        ("topic", "/a/scan"), ("topic", "/b/scan"), ("frame", "base_link"), ("joint", "j1"),
+        ("joint", "j2"),
+    ]  # fmt: skip
