@@ -51,7 +51,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
-    refused = {os.path.relpath(path, folder) for path in it.refused}
+    refused = {_shown(path, folder) for path in it.refused}
     if left:
         yield ""
         yield "# Found beside them and not taken:"
@@ -82,12 +82,16 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     for path, why in it.refused.items():
-        yield path if path == VALUES else os.path.relpath(path, folder), why
+        yield _shown(path, folder), why
     for path in it.others:
         yield os.path.relpath(path, folder), "another description"
     for member in it.members:
         for path, why in member.companions.left.items():
             yield os.path.relpath(path, folder), why
+
+
+def _shown(path: str, folder: str) -> str:
+    return path if path == VALUES else os.path.relpath(path, folder)
 
 
 def _sentence(text: str) -> str:
