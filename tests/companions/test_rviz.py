@@ -506,6 +506,16 @@ def test_what_is_said_of_a_window_for_all(
     assert [(lines[it.line - 1].strip(), it.code, it.message, it.hint) for it in found] == [*said]
 
 
+@pytest.mark.parametrize(("own", "told"), [((), 3), ((0,), 3), ((0, 1), 0)])
+def test_what_works_for_one_process_is_told_unless_each_robot_has_one(
+    own: tuple[int, ...], told: int
+) -> None:
+    robots = robots_of(declared(), "L4", ROBOTS)
+    given = [it._replace(rules=(("a", "b"),)) if at in own else it for at, it in enumerate(robots)]
+    _, found = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), given, relayed=True)
+    assert len([it for it in found if it.code == "MF202" and it.hint == NO_RVIZ]) == told
+
+
 def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
     hidden = config("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false")
     (reset,) = (it for it in make(hidden)[1] if it.code == "MF212")
