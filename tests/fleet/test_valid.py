@@ -62,7 +62,7 @@ def whole() -> Any:
 
 WORDS: list[dict[str, Any]] = [
     *({"type": it} for it in ("array", "object", "string", "boolean", "number", "integer")),
-    {"type": ["string", "integer"]}, {"enum": ["a", 1]}, {"required": ["a"]}, {"pattern": "^1"},
+    {"type": ["string", "integer"]}, {"enum": ["a", "none"]}, {"required": ["a"]}, {"pattern": "^1"},
     {"minLength": 1}, {"minLength": 2}, {"minItems": 1}, {"maxItems": 2}, {"maxItems": 3},
     {"minimum": 0}, {"minimum": 1}, {"maximum": 1}, {"maximum": 256}, {"items": {"type": "string"}},
     {"properties": {"a": {"type": "string"}}}, {"additionalProperties": {"type": "string"}},

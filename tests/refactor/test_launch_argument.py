@@ -52,7 +52,8 @@ LEFT = {
 
 
 def changed(source: str, path: str = "a.launch.py") -> str | None:
-    data = with_argument(path, source.encode(), "prefix", ["r.urdf.xacro"]).data
+    names = ["other.urdf.xacro", "r.urdf.xacro"]
+    data = with_argument(path, source.encode(), "prefix", names).data
     return None if data is None else data.decode()
 
 
