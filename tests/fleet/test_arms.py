@@ -245,6 +245,9 @@ def test_one_device_of_two_robots(
     assert {it.message.partition(":")[0] for it in found} <= {
         "/right/controller_manager has the same as /left/controller_manager"
     }
+    # At the second robot, whose line in the fleet file is the last.
+    last = (tmp_path / "fleet.yaml").read_text().count("\n")
+    assert {(it.line, it.column) for it in found} <= {(last, 1)}
     # Robots may have computers of their own.
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
 
