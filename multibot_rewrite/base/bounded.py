@@ -30,6 +30,8 @@ MAX_DEPTH = 100
 # What aliases may stand for, together: MoveIt's files repeat some hundred values.
 MAX_REPEATED = 100_000
 MAX_DIGITS = 100
+# What YAML 1.1 takes for something else where no quotes are around it, however it is capitalized.
+QUOTED = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 # Where `<(xacro ...)` and standard input are.
 _OF_A_SHELL = ("/dev/", "/proc/")
 _TAG = "tag:yaml.org,2002:"

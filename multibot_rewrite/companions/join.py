@@ -163,15 +163,13 @@ def _semantics(
         if it.srdf is None:
             parts.append(PartSemantics(mounted.part, b"", ""))
             continue
-        read_in = _srdf(it, trust)
+        read_in = _srdf(it, it.srdf, trust)
         parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
     return joined_srdf(parts, made.data, samples)
 
 
-def _srdf(part: Part, trust: bool) -> SourceText:
-    if part.srdf is None:
-        return SourceText(b"", "")
-    return read_whole(part.srdf, args_for(part.srdf, part.description, part.xacro_args), trust)
+def _srdf(part: Part, srdf: Source, trust: bool) -> SourceText:
+    return read_whole(srdf, args_for(srdf, part.description, part.xacro_args), trust)
 
 
 def _moveit(
@@ -181,7 +179,7 @@ def _moveit(
         part, said = mounted.part, NOTHING
         before = collect(read_document(part.data, part.file), tree) if it.moveit else part.inventory
         if it.moveit and it.srdf is not None:
-            text = _srdf(it, trust)
+            text = _srdf(it, it.srdf, trust)
             document = read_document(text.data, text.file)
             said = collect(document, tree, before.declared).declared
         for at in it.moveit:

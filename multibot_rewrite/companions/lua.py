@@ -132,10 +132,10 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
 
 def _included(tokens: Sequence[Token]) -> Iterator[Token]:
     """The names of included files, in their quotes; those of Cartographer are known."""
-    for at, token in enumerate(tokens):
-        behind = [it for it in tokens[at + 1 : at + 3] if it.text != "("][:1]
-        if token.text == "include" and behind and behind[0].kind in ("string", "long"):
-            yield from (it for it in behind if it.text.strip("\"'[]=") not in OWN_FILES)
+    for at in (at for at, it in enumerate(tokens) if it.text == "include"):
+        behind = next((it for it in tokens[at + 1 : at + 3] if it.text != "("), None)
+        if behind and behind.kind in ("string", "long") and _plain(behind) not in OWN_FILES:
+            yield behind
 
 
 def _named(text: str, file: str, context: Context) -> NamedFile:
@@ -154,10 +154,14 @@ def _named(text: str, file: str, context: Context) -> NamedFile:
 
 def _site(text: str, kind: str, token: Token, key: str = "") -> Site:
     end = token.at + len(token.text)
-    value = token.text[1:-1] if kind else token.text.strip("\"'[]=")
+    value = token.text[1:-1] if kind else _plain(token)
     return Site(
         kind, value, key, Slot(*_place(text, token.at), token.at + 1, end - 1, value, AS_IS)
     )
+
+
+def _plain(token: Token) -> str:
+    return token.text.strip("\"'[]=")
 
 
 def _place(text: str, at: int) -> tuple[int, int]:

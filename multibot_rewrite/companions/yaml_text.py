@@ -6,12 +6,14 @@ Comments, quoting, order and line ends stay. Positions are character offsets.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator
+from math import inf
 
 import yaml
 
-from multibot_rewrite.base.bounded import MAX_BYTES, compose_yaml
+from multibot_rewrite.base.bounded import MAX_BYTES, QUOTED, compose_yaml
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import InputError
@@ -19,7 +21,6 @@ from multibot_rewrite.base.record import NamedTuple
 
 # Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")
-_WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 _ANCHOR = re.compile(r"(?:^|[\s\[{,:-])[&*][^\s,\[\]{}]")
 
 
@@ -144,11 +145,18 @@ def quoted(value: str, style: str = "") -> str:
     """A string as YAML text, in the style it had if that can hold it."""
     if style == "'" and value.isprintable():
         return "'" + value.replace("'", "''") + "'"
-    if not style and _PLAIN.fullmatch(value) and value.lower() not in _WORDS:
+    if not style and _PLAIN.fullmatch(value) and value.lower() not in QUOTED:
         return value
     if value.isprintable():
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
+    return str(yaml.dump(value, default_style='"', width=inf)).rstrip("\n")
+
+
+def joined_text(files: Iterable[str], root: yaml.Node) -> bytes:
+    """A file that is made of others; called by their names, it is the same from every working
+    directory."""
+    names = ", ".join(dict.fromkeys(map(os.path.basename, files)))
+    return f"# joined by multibot from {names}\n{yaml.serialize(root, width=inf)}".encode()
 
 
 def spliced(document: YamlText, splices: Iterable[Splice]) -> str:

@@ -207,13 +207,13 @@ def _shared(context: Context) -> list[Action]:
         return []
     made = [_shared_node(fleet, it, context) for it in found]
     values = {"autostart": _is_on(context, "autostart"), "node_names": found}
-    manager = programs.program(programs.MANAGER, fleet.robots[0].distro)
+    manager = programs.program(programs.MANAGER, fleet.plan.file.distro)
     return [*made, _plain(programs.SHARED_MANAGER, manager, context, [values])]
 
 
 def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
     """A shared node has its section in the files of every robot, and they are alike."""
-    robot, names = fleet.robots[0], fleet.table
+    (robot, *_), names = fleet.robots, fleet.table
     files = [
         written(context, None, f"nodes/{it}", robot.node_text(it)) for it in robot.params_files
     ]

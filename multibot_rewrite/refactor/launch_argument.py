@@ -191,18 +191,22 @@ def _nodes_of_robot(tree: ast.Module) -> Iterator[ast.keyword]:
 
 def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:
     """The items of ``parameters=[...]`` that name a file; none where it is named elsewhere, too."""
-    values = [it for it in ast.walk(tree) if isinstance(it, ast.Assign) and len(it.targets) == 1]
-    named = {
-        it.targets[0].id: it.value
-        for it in values
-        if isinstance(it.targets[0], ast.Name) and _says(it.value, file)
-    }
     lists = [
         it.value
         for it in ast.walk(tree)
         if isinstance(it, ast.keyword) and it.arg == "parameters" and isinstance(it.value, ast.List)
     ]
     items = [item for it in lists for item in it.elts if not isinstance(item, ast.Dict)]
+    inside = {one for it in items for one in ast.walk(it) if _is_said(one, file)}
+    values = [it for it in ast.walk(tree) if isinstance(it, ast.Assign) and len(it.targets) == 1]
+    # What has a node in it is no name of the file.
+    named = {
+        it.targets[0].id: it.value
+        for it in values
+        if isinstance(it.targets[0], ast.Name)
+        and _says(it.value, file)
+        and inside.isdisjoint(ast.walk(it.value))
+    }
     found = [it for it in items if _says(it, file)]
     found += [it for it in items if isinstance(it, ast.Name) and it.id in named]
     direct = sum(_says(it, file) for it in (*items, *named.values()))

@@ -12,8 +12,9 @@ import re
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from math import inf
 
-from multibot_rewrite.base.bounded import load_json, load_yaml
+from multibot_rewrite.base.bounded import QUOTED, load_json, load_yaml
 from multibot_rewrite.base.file_kinds import PLAN, refuse_others
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
@@ -38,7 +39,6 @@ HEAD = """\
 Quote = Callable[[str], str]
 # Text that YAML reads back unchanged without quotes, in brackets too.
 _PLAIN = re.compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
-_WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 
 
 def to_yaml(plan: System) -> str:
@@ -89,11 +89,11 @@ def _flow(values: Iterable[object], quote: Quote) -> str:
 
 
 def _quoted(value: str) -> str:
-    if _PLAIN.fullmatch(value) and value.lower() not in _WORDS:
+    if _PLAIN.fullmatch(value) and value.lower() not in QUOTED:
         return value
     import yaml
 
-    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
+    return str(yaml.dump(value, default_style='"', width=inf)).rstrip("\n")
 
 
 def read_plan(data: bytes, file: str) -> System:

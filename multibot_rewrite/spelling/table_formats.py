@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Iterator
+from math import inf
 
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.spelling.records import Table
@@ -128,7 +129,7 @@ def as_yaml(table: Table) -> str:
     """YAML of ``as_data``."""
     import yaml
 
-    return str(yaml.safe_dump(as_data(table), sort_keys=False, width=100))
+    return str(yaml.safe_dump(as_data(table), sort_keys=False, width=inf))
 
 
 def gazebo(table: Table) -> str:

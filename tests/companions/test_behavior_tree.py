@@ -174,9 +174,24 @@ def test_literals_are_followed_into_subtrees() -> None:
     assert [(it.code, it.line, it.column) for it in found] == [("MB901", 4, column)]
 
 
-def test_subtrees_that_share_the_blackboard() -> None:
-    text = SUBTREES.replace('where="{spot}"', '_autoremap="true"').replace("{where}", "{spot}")
-    assert 'spot="sp/base_link"' in run(text, context())[0]
+@pytest.mark.parametrize(
+    ("shares", "followed"),
+    [
+        ('_autoremap="true"', True), ('_autoremap="1"', True), ('__autoremap="true"', True),
+        ('__shared_blackboard="true"', True), ('_autoremap="false"', False), ("", False),
+    ],
+)  # fmt: skip
+def test_subtrees_that_share_the_blackboard(shares: str, followed: bool) -> None:
+    text = SUBTREES.replace('where="{spot}"', shares).replace("{where}", "{spot}")
+    assert ('spot="sp/base_link"' in run(text, context())[0]) is followed
+
+
+@pytest.mark.parametrize(("port", "renamed"), [("where", True), ("name", False)])
+def test_what_a_subtree_is_called_is_no_port(port: str, renamed: bool) -> None:
+    body = '<SetBlackboard value="/clear" output_key="x"/><SubTree ID="In" '
+    inner = f'<BehaviorTree ID="In"><Spin server_name="{{{port}}}"/></BehaviorTree>'
+    text = tree(f'{body}{port}="{{x}}"/>').replace("</root>", f"{inner}</root>")
+    assert ('value="/amr/clear"' in run(text, context())[0]) is renamed
 
 
 def test_a_subtree_of_itself_ends() -> None:
@@ -240,6 +255,8 @@ def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:
         ('<A target="a/base_link"/>', ["MB901"]),
         ('<A target="/tmp/a.yaml" planner_id="base_link" behavior_tree="/a/b"/>', []),
         ("<Script code=\" frame:='base_link' \"/>", ["MB901"]),
+        ("<Script code=\"a := 'x'; b := 'y'; frame := 'base_link'\"/>", ["MB901"]),
+        ("<Script code='a := \"base_link\"; b := 2'/>", ["MB901"]),
         ("<A _skipIf=\"frame == 'odom'\"/>", []),
         ('<A service_name="1/b"/>', ["MB312"]),
     ],

@@ -120,6 +120,41 @@ def test_comments_and_placeholders_stay() -> None:
     assert findings == ()
 
 
+WANTED = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"
+MAP_NAME = "# /map by default, and nothing would move /map_metadata\n"
+
+
+@pytest.mark.parametrize("indent", ["", "  "])
+@pytest.mark.parametrize("named", [True, False])
+def test_the_key_for_slam_toolbox_is_there_and_its_map_is_in_the_namespace(
+    named: bool, indent: str
+) -> None:
+    """slam_toolbox_common.cpp: map_metadata is beside map_name, which is /map where nobody says it."""
+    mine = f"{indent}    map_name: mine\n" * named
+    text = f"{indent}/robot1/slam_toolbox:\n{indent}  ros__parameters:\n{mine}{indent}    odom: o\n"
+    made, findings = for_bringup(read_yaml(text.encode(), "p.yaml"), "robot1")
+    there = mine or f"{indent}    {MAP_NAME}{indent}    map_name: map\n"
+    keys = f'{WANTED}{indent}slam_toolbox: {{}}\n{indent}"**/slam_toolbox":\n'
+    assert made == f"{indent}{keys}{indent}  ros__parameters:\n{there}{indent}    odom: o\n"
+    assert findings == ()
+
+
+def test_a_node_outside_of_the_namespace_is_told_and_more_values_follow() -> None:
+    text = "/robot1/amcl:\n  ros__parameters: {a: 1}\n/rviz2:\n  ros__parameters: {b: 1}\n"
+    more = {"amcl": {"set_initial_pose": True}, "slam_toolbox": {"x": 1}}
+    made, (found,) = for_bringup(read_yaml(text.encode(), "p.yaml"), "robot1", more)
+    assert made.startswith(text.replace("/robot1/amcl", "amcl"))
+    added = yaml.safe_load(made.removeprefix(text.replace("/robot1/amcl", "amcl")))
+    assert added == {"**/amcl": {"ros__parameters": {"set_initial_pose": True}}}
+    assert (found.code, found.level, found.file, found.line, found.column) == (
+        "MF132", "error", "p.yaml", 3, 1,
+    )  # fmt: skip
+    assert found.message == "section /rviz2 is for a node that is not in the namespace /robot1"
+    assert found.hint == (
+        "nav2_bringup puts all sections there; put this one into a file of its own"
+    )
+
+
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])

@@ -48,3 +48,8 @@ def test_a_topic_of_the_simulator(
     policy: tuple[str, str], name: str, gz_type: str, new: str
 ) -> None:
     assert gz_topic(setting(policy), name, gz_type) == new
+
+
+@pytest.mark.parametrize("topic", ["/clock", "/stats", "clock"])
+def test_topics_of_the_simulator_are_so_whatever_robots_share(topic: str) -> None:
+    assert gz_topic(setting(L2, shared_topics=()), topic) == topic

@@ -325,6 +325,16 @@ def test_saved_views_are_there_for_each_robot() -> None:
     ]
 
 
+def test_the_current_view_is_saved_for_each_robot_behind_those_that_are() -> None:
+    listed = "Saved:\n" + "".join(
+        f"      - Class: c\n        Name: {it}\n        Target Frame: map\n"
+        for it in ("near", "far")
+    )
+    made = manager(text=CONFIG.replace("Saved: ~", listed.rstrip()))["Views"]["Saved"]
+    names = [view["Name"] for view in made]
+    assert names == ["near", "far", "robot1 Current View", "robot2 Current View"]
+
+
 def test_windows_and_paths_follow_the_names() -> None:
     result = shown()
     assert list(result["Window Geometry"]) == ["robot1 Eye", "robot2 Eye", "Width"]
@@ -494,6 +504,16 @@ def test_what_is_said_of_a_window_for_all(
     found = [it for it in make(layout=layout, relayed=relayed)[1] if it.code.startswith("MF2")]
     lines = CONFIG.splitlines()
     assert [(lines[it.line - 1].strip(), it.code, it.message, it.hint) for it in found] == [*said]
+
+
+@pytest.mark.parametrize(("own", "told"), [((), 3), ((0,), 3), ((0, 1), 0)])
+def test_what_works_for_one_process_is_told_unless_each_robot_has_one(
+    own: tuple[int, ...], told: int
+) -> None:
+    robots = robots_of(declared(), "L4", ROBOTS)
+    given = [it._replace(rules=(("a", "b"),)) if at in own else it for at, it in enumerate(robots)]
+    _, found = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), given, relayed=True)
+    assert len([it for it in found if it.code == "MF202" and it.hint == NO_RVIZ]) == told
 
 
 def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from made_params import DECLARED, L1, L2, L3, L4, setting
 
@@ -13,10 +15,11 @@ from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.names.node_topics import TopicText, spell_topic
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
 from multibot_rewrite.companions.names.robot_topics import is_topic, robot_topic
+from multibot_rewrite.companions.params.shared_defaults import missing_defaults
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.companions.template import NAMESPACE_SLOT as SPACE
 from multibot_rewrite.companions.template import TAG_SLOT as TAG
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, Param
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 L5, AFTER = ("L5", "prefix"), ("L2", "postfix")
@@ -258,3 +261,30 @@ def test_what_is_the_name_of_a_topic(value: str, is_one: bool) -> None:
 def test_the_topic_of_a_robot_in_full(policy: tuple[str, str], value: str, new: str) -> None:
     known = {"/known": "/else", "/same": "/same"}
     assert robot_topic(setting(policy).topics, value, known) == new
+
+
+# What a default of a kind becomes with a prefix and with a postfix; None where no line is written.
+DEFAULTS: dict[tuple[str, str], tuple[str | None, str | None]] = {
+    ("frame", "odom"): (f"{TAG}/odom", f"odom/{TAG}"), ("frame", "map"): (None, None),
+    ("link", "base_link"): (f"{TAG}/base_link", f"base_link/{TAG}"),
+    ("link", "nowhere"): (None, None),
+    ("stem", "tag"): (f"{TAG}/tag", None),
+    ("interface", "elbow/position"): (f"{TAG}_elbow/position", f"elbow_{TAG}/position"),
+    ("joint_prefix", ""): (f"{TAG}_", None), ("gpio_prefix", ""): (f"{TAG}_", None),
+    ("joint_stem", ""): (TAG, None),
+    ("off", "true"): ("false", "false"), ("no_prefix", ""): ("/", "/"),
+    **{(it, "scan"): (None, None) for it in ("topic", "output", "service", "namespace", "group")},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "default"), DEFAULTS)
+def test_a_default_that_robots_would_share_is_written_out(kind: str, default: str) -> None:
+    """A stem and a prefix stand in front: a postfix has no place for them."""
+    node = SimpleNamespace(defaults=(Param("p", kind, default),))
+    shared = "# multibot: the default is every robot's"
+    off = "# multibot: the default puts the namespace before frames"
+    comment = off if kind in ("off", "no_prefix") else shared
+    for policy, value in zip((L2, L4), DEFAULTS[kind, default], strict=True):
+        found = [*missing_defaults(setting(policy), node, set())]  # type: ignore[arg-type]
+        assert found == ([] if value is None else [(comment, "p", value)])
+        assert [*missing_defaults(setting(policy), node, {"p"})] == []  # type: ignore[arg-type]

@@ -42,7 +42,7 @@ URDF = f"""\
     <hardware>
       <plugin>PLUGIN</plugin>
       <param name="robot_ip">$(arg ip)</param>
-      <param name="kinematics/hash">calib_1</param>
+      <param name="kinematics/hash"> calib_1 </param>
       <param name="reverse_port">50001</param>
     </hardware>
     <joint name="${{p}}elbow">
@@ -245,6 +245,15 @@ def test_one_device_of_two_robots(
     assert {it.message.partition(":")[0] for it in found} <= {
         "/right/controller_manager has the same as /left/controller_manager"
     }
+    # At the second robot, whose line in the fleet file is the last.
+    last = (tmp_path / "fleet.yaml").read_text().count("\n")
+    assert {(it.line, it.column) for it in found} <= {(last, 1)}
+    # What is written for all of them, with its lines.
+    lines = (tmp_path / "arm.urdf.xacro").read_text().splitlines()
+    where = [
+        at for at, it in enumerate(lines, 1) if "kinematics/hash" in it or "reverse_port" in it
+    ]
+    assert all(f"arm.urdf.xacro:{at}" in it.hint for it in found for at in where)
     # Robots may have computers of their own.
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
 

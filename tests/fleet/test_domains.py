@@ -192,23 +192,32 @@ def test_the_bridge_of_a_robot_has_what_crosses(made: Outputs) -> None:
 
 @pytest.mark.more
 def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -> None:
+    """DEFAULT_CONFIG.json5 of zenoh-bridge-ros2dds at 0b277b7 has the keys; the adapter asks for
+    robot2/tf, robot2/battery_state and robot2/navigate_to_pose, and wants these five of a robot."""
     first, _, config = text(made, "free_fleet/robot2.json5").partition("\n")
-    assert first.startswith("//")
-    bridge = yaml.safe_load(config)
-    own = bridge["plugins"]["ros2dds"]
-    assert own["domain"] == 12
-    # The keys that the adapter asks for: robot2/tf, robot2/battery_state, robot2/navigate_to_pose.
-    assert own["allow"]["publishers"] == ["/robot2/tf", "/robot2/battery_state"]
-    assert own["allow"]["action_servers"] == ["/robot2/navigate_to_pose"]
-    assert bridge["connect"]["endpoints"] == ["tcp/10.0.0.1:7447"]
-    robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
-    assert robots["robot1"] == {
-        "charger": "robot1_charger",
-        "navigation_stack": 2,
-        "initial_map": "L1",
-        "map_frame": "map",
-        "robot_frame": "robot1/base_footprint",
+    assert first == "// On robot2: zenoh-bridge-ros2dds -c robot2.json5"
+    none = ("subscribers", "service_servers", "service_clients", "action_clients")
+    allow = {
+        **{it: [] for it in none},
+        "publishers": ["/robot2/tf", "/robot2/battery_state"],
+        "action_servers": ["/robot2/navigate_to_pose"],
     }
+    rate = ["/robot2/battery_state=1"]
+    assert json.loads(config) == {
+        "plugins": {"ros2dds": {"domain": 12, "allow": allow, "pub_max_frequencies": rate}},
+        "mode": "client",
+        "connect": {"endpoints": ["tcp/10.0.0.1:7447"]},
+        "listen": {"endpoints": []},
+    }
+    assert text(made, "free_fleet/robots.yaml") == (
+        "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.\n"
+        "rmf_fleet:\n  robots:\n"
+    ) + "".join(
+        f'    {it}:\n      charger: "{it}_charger"\n      navigation_stack: 2\n'
+        f'      initial_map: "L1"\n      map_frame: "map"\n'
+        f'      robot_frame: "{it}/base_footprint"\n'
+        for it in ("robot1", "robot2")
+    )
 
 
 @pytest.mark.more

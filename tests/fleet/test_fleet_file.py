@@ -20,7 +20,7 @@ from paths import ROOT
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
-from multibot_rewrite.fleet.file.fleet_data import SCHEMA, schema
+from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
 from multibot_rewrite.fleet.file.fleet_file import (
     KINDS,
     FleetFile,
@@ -118,6 +118,58 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
     )
     with pytest.raises(InputError, match=r"more\.yaml:4: robot 'a' is repeated, first in line 3"):
         read(tmp_path, "include: more.yaml\n")
+
+
+# Keys of a fleet and of a robot that hold one path or several.
+OF_FILES = (
+    "include", "description", "simulated", "srdf", "rviz", "nodes", "vocabulary", "simulator_world",
+    "controllers", "moveit",
+)  # fmt: skip
+
+
+def test_paths_are_below_the_folder_of_their_file() -> None:
+    def data(to: str, up: str) -> dict[str, Any]:
+        own: dict[str, Any] = {**dict.fromkeys(OF_FILES, f"{to}a"), "srdf": up, "model": "a"}
+        return {
+            **own,
+            "vocabulary": [f"{to}a", f"{to}b"],
+            "nodl": [f"{to}n"],
+            "launch_roots": f"{to}r",
+            "launch": [f"{to}a.launch.py x:=1 y:=2", "pkg b.launch.py", f"{to}c.launch.py"],
+            "companions": {"params": [f"{to}p", {"amcl": {"file": "a"}}], "rviz": f"{to}v"},
+            "robots": [{"name": "a", **own}],
+            "join": [own],
+        }
+
+    assert with_paths("f/g", data("", "../a")) == data("f/g/", "f/a")
+    small = {"nodl": "none", "launch": "a.launch.py"}
+    assert with_paths("f", small) == {"nodl": "none", "launch": ["f/a.launch.py"]}
+
+
+@pytest.mark.parametrize(
+    ("data", "place"),
+    [
+        *(({key: "no.x"}, (key,)) for key in OF_FILES),
+        ({"vocabulary": [__file__, "no.x"]}, ("vocabulary",)),
+        ({"launch": "no.x a:=1"}, ("launch",)),
+        ({"launch": ["pkg a.launch.py", "no.x"]}, ("launch",)),
+        ({"companions": {"rviz": __file__, "params": [{"a": {}}, "no.x"]}}, ("companions", "params")),
+        ({"robots": [{"name": "a"}, {"srdf": "no.x"}]}, ("robots", 1, "srdf")),
+        ({"join": [{"description": "no.x"}]}, ("join", 0, "description")),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_not_there_is_told_with_its_line(
+    data: dict[str, Any],
+    place: tuple[str | int, ...],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for what in ("does not exist", "is a folder, not a file"):
+        with pytest.raises(InputError) as found:
+            check_files(data, (), {place: ("f.yaml", 7)})
+        assert str(found.value) == f"f.yaml:7: no.x {what}; correct the path"
+        (tmp_path / "no.x").mkdir(exist_ok=True)
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,12 @@ import pytest
 import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
+from paths import ROBOTS
 from plans import own
 
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet import expected, planned
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
@@ -303,3 +304,22 @@ def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
         (it for it in plan.fleet.table.names if it.robot), key=str
     )
     assert {key for it in parts for key in it.fleet.edges} == set(plan.fleet.edges)
+
+
+def test_the_parameters_that_are_planned_of_nodes(tmp_path: Path) -> None:
+    """The clock that the fleet file says, but for a node in a plugin of the simulator, and what
+    robot_state_publisher puts before frames."""
+    text = (
+        "layout: frame-prefix\nuse_sim_time: true\ndistro: jazzy\ndescription: rover.urdf\n"
+        "stack: [robot_state, gz_ros2_control]\nrobots: [{name: r1}, {name: r2, prefix: p2}]\n"
+    )
+    files = {"rover__urdf": (ROBOTS / "rover_gz.urdf").read_text()}
+    folder = fleet_folder(tmp_path, text, **files)
+    plan = planned(plan_fleet(read_fleet(str(folder), "", {})).fleet)
+    found = {(it.node, it.name): it.value for it in plan.parameters}
+    fronts = {node: it for (node, name), it in found.items() if name == "frame_prefix"}
+    assert fronts == {"/r1/robot_state_publisher": '"r1/"', "/r2/robot_state_publisher": '"p2/"'}
+    clocks = {node: it for (node, name), it in found.items() if name == "use_sim_time"}
+    assert {*clocks.values()} == {"true"} and {*fronts} <= {*clocks}
+    assert not [it for it in clocks if it.endswith("/controller_manager")]
+    assert len(found) == len(fronts) + len(clocks)

@@ -66,10 +66,22 @@ def test_a_file_is_told_by_its_text(name: str) -> None:
     assert made.findings == () and made.not_proved == ()
 
 
-def test_what_is_no_such_file_is_refused() -> None:
-    for text in (b"a: b\n", b"robots: [a]\n", b"", b"\x00"):
-        with pytest.raises(InputError):
-            rewrite_file(text, "robot1", urdf=ROVER)
+HINT = "name a description, parameters, a tree, or a file of RViz, MoveIt, ros_gz_bridge or Lua"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"a: b\n", f"f.yaml:1:1: it is none of the files that are rewritten; {HINT}"),
+        (b" \n", "f.yaml: the file is empty; a robot description starts with <robot>"),
+        (b"robots: [a]\n", ""),
+        (b"\x00", ""),
+    ],
+)
+def test_what_is_no_such_file_is_refused(text: bytes, said: str) -> None:
+    with pytest.raises(InputError) as found:
+        rewrite_file(text, "robot1", urdf=ROVER, file="f.yaml")
+    assert said in ("", str(found.value)) and str(found.value).startswith("f.yaml")
 
 
 def test_a_description_is_asked_for_only_where_names_rest_on_it() -> None:
@@ -102,7 +114,7 @@ def test_a_name_that_stays_is_not_called_proved() -> None:
     """rcl reads a block with its line break: the frame is not that of the robot."""
     block = NAV.replace("base_frame_id: base_footprint", "base_frame_id: |\n      base_footprint")
     made = rewrite_file(block.encode(), "robot1", urdf=ROVER, layout="both")
-    assert made.not_proved != ()
+    assert made.not_proved == ("1 frame in no description", "1 name in a block of text")
 
 
 def test_the_clock_is_bridged_by_the_first_alone() -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from fleet_folder import SMALL, fleet_folder, mixed
@@ -13,7 +14,12 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.fleet.outputs.output_file import (
+    OutputFile,
+    expanded_name,
+    line_in_source,
+    path_for,
+)
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -222,8 +228,47 @@ def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> 
     source = tmp_path / "a.yaml"
     source.write_text("a: 1\nb: 2\nc: 3\n")
     file = OutputFile("r/a.yaml", b"new: 0\na: 1\nb: r2\nmore: 1\nc: 3\n", (str(source),))
-    lines = [line_in_source(file, at)[1] for at in (2, 3, 5)]
-    assert lines == [1, 2, 3]
+    found = [line_in_source(file, at) for at in (1, 2, 3, 4, 5, 6)]
+    assert found == [(str(source), at) for at in (1, 1, 2, 2, 3, 1)]
+    gone = OutputFile("r/b.yaml", b"a: 1\nb: 2\n", (str(tmp_path / "b.yaml"), str(source)))
+    assert line_in_source(gone, 2) == (str(tmp_path / "b.yaml"), 1)
+    # Of lines that took the place of fewer, the last one.
+    fewer = OutputFile("r/a.yaml", b"a: 1\nx\ny\nz\nc: 3\n", (str(source),))
+    assert [line_in_source(fewer, at)[1] for at in (2, 3, 4, 5)] == [2, 2, 2, 3]
+
+
+ALIKE = {
+    "params": ("w/a/nav/p.yaml", "w/b/nav/p.yaml", "w/c/p.yaml", "w/q.yaml"),
+    "rviz": ("w/r.rviz",),
+}
+
+
+@pytest.mark.parametrize(
+    ("source", "path"),
+    [
+        ("w/q.yaml", "r/q.yaml"), ("w/a/nav/p.yaml", "r/a/nav/p.yaml"),
+        ("w/b/nav/p.yaml", "r/b/nav/p.yaml"), ("w/c/p.yaml", "r/c/p.yaml"),
+        # It is none of the robot's files, and one that its vendor wants elsewhere.
+        ("w/z/p.yaml", "r/p.yaml"), ("w/r.rviz", "r/config/r.rviz"),
+    ],
+)  # fmt: skip
+def test_files_of_one_name_are_in_as_many_folders_as_tell_them_apart(
+    source: str, path: str
+) -> None:
+    places = (("r.rviz", "config/r.rviz"),)
+    robot = SimpleNamespace(spec=SimpleNamespace(name="r", companions=ALIKE, places=places))
+    assert path_for(robot, source) == path  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        ("a/r.urdf.xacro", "r.urdf"), ("a/r.xacro", "r.urdf"), ("r.urdf", "r.urdf"),
+        ("a/r.sdf", "r.sdf"), ("r.urdf.join", "r.urdf"), ("r.join", "r.urdf"), ("r.srdf", "r.srdf"),
+    ],
+)  # fmt: skip
+def test_what_is_expanded_is_called_as_what_it_is(path: str, name: str) -> None:
+    assert expanded_name(path) == name
 
 
 @pytest.mark.more

@@ -60,6 +60,25 @@ def whole() -> Any:
     return {"robots": [robot], "layout": "both", "zenoh": zenoh, "companions": {"params": ["a"]}}
 
 
+WORDS: list[dict[str, Any]] = [
+    *({"type": it} for it in ("array", "object", "string", "boolean", "number", "integer")),
+    {"type": ["string", "integer"]}, {"enum": ["a", "none"]}, {"required": ["a"]}, {"pattern": "^1"},
+    {"minLength": 1}, {"minLength": 2}, {"minItems": 1}, {"maxItems": 2}, {"maxItems": 3},
+    {"minimum": 0}, {"minimum": 1}, {"maximum": 1}, {"maximum": 256}, {"items": {"type": "string"}},
+    {"properties": {"a": {"type": "string"}}}, {"additionalProperties": {"type": "string"}},
+    {"properties": {"a": {}}, "additionalProperties": False}, {"$ref": "#/$defs/word"},
+    {"oneOf": [{"type": "string"}, {"minLength": 2}]}, {"items": {"$ref": "#/$defs/word"}},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", WORDS, ids=str)
+def test_each_word_of_a_schema_says_what_jsonschema_says(words: dict[str, Any]) -> None:
+    defs = {"word": {"type": "string", "minLength": 1}}
+    judge = jsonschema.Draft202012Validator({**words, "$defs": defs})
+    for it in (*ODD, [1, 2, 3], {"a": "b"}, {"a": "b", "c": "d"}):
+        assert is_valid(it, words, defs) is judge.is_valid(it), it
+
+
 @pytest.mark.parametrize("path", FLEETS, ids=lambda it: f"{it.parent.name}/{it.stem}")
 def test_fleets_of_the_pages_are_judged_as_by_jsonschema(path: Path) -> None:
     data = yaml.safe_load(path.read_text())

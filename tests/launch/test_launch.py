@@ -476,6 +476,7 @@ def test_a_node(fleet: str, context: Any) -> None:
     assert (made.options["name"], made.options["package"]) == ("amcl", "nav2_amcl")
     assert made.options["remappings"] == [mine, *robot.table.for_node("amcl")]
     params, start, last = made.options["parameters"]
+    assert [Path(it).name for it in (params, start)] == ["params.yaml", "amcl.multibot.yaml"]
     assert last == later
     assert Path(params).read_text() == robot.text("params.yaml")
     own = yaml.safe_load(Path(start).read_text())["/robot1/amcl"]["ros__parameters"]

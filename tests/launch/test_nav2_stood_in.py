@@ -277,15 +277,17 @@ def test_arguments_and_their_defaults() -> None:
 
 def test_a_node_that_nobody_manages_is_brought_up_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """launch_ros OnStateTransition: activate it once it is inactive, and configure it now."""
-    given: dict[str, Any] = {
-        "RegisterEventHandler": lambda it: ("handler", it),
-        "EmitEvent": lambda event: ("emit", event),
-        "matches_action": lambda it: ("of", it),
-        "ChangeState": lambda **it: it,
-        "OnStateTransition": lambda **it: it,
+    handler, emit = (lambda it: ("handler", it)), (lambda event: ("emit", event))
+    of_launch = {
+        "actions": SimpleNamespace(RegisterEventHandler=handler, EmitEvent=emit),
+        "events": SimpleNamespace(matches_action=lambda it: ("of", it)),
     }
-    for door in ("of_launch", "of_launch_ros"):
-        monkeypatch.setattr(nav2, door, lambda _: SimpleNamespace(**given))
+    of_launch_ros = {
+        "events.lifecycle": SimpleNamespace(ChangeState=lambda **it: it),
+        "event_handlers": SimpleNamespace(OnStateTransition=lambda **it: it),
+    }
+    monkeypatch.setattr(nav2, "of_launch", of_launch.__getitem__)
+    monkeypatch.setattr(nav2, "of_launch_ros", of_launch_ros.__getitem__)
 
     def change(number: int) -> tuple[str, object]:
         return "emit", {"lifecycle_node_matcher": ("of", "slam"), "transition_id": number}

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -161,6 +162,25 @@ def test_plugins_take_a_namespace(case: str, tmp_path: Path) -> None:
         line.strip() for line in expand(str(path), {"namespace": "robot1"}).decode().split("\n")
     )
     assert f">{shown}</plugin>" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("<![CDATA[/demo]]>", "it gets no namespace: .*'/demo' cannot be edited in place"),
+        ("/d&#101;mo", "'/demo' is put together"),
+    ],
+)
+def test_a_namespace_that_cannot_be_edited_is_told(value: str, said: str, tmp_path: Path) -> None:
+    plugin = '<plugin name="p" filename="libgazebo_ros_control.so"><robotNamespace>{}'
+    inside = f"<gazebo>{plugin.format(value)}</robotNamespace></plugin></gazebo>"
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(f'<link name="base"/>{inside}'))
+    made = adopt(str(tmp_path))
+    (left,) = made.left
+    assert left.place.startswith(str(path)) and re.match(said, left.why)
+    wanted = robot(f'<link name="${{prefix}}base"/>{inside}', ARGUMENT)
+    assert (made.namespace, made.after[str(path)].decode()) == ("", wanted)
 
 
 def test_one_with_a_namespace_of_its_own_keeps_it(tmp_path: Path) -> None:

@@ -452,13 +452,29 @@ def test_an_argument_that_no_xacro_has_is_told(tmp_path: Path) -> None:
     assert notes == (f"{made} (expanded): no file of the xacro has the argument typo",)
 
 
-def test_paths_that_lead_elsewhere_now_are_told() -> None:
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        (("meshes/a.stl", "package://x/b.stl", "/abs/c.stl", ""), "'meshes/a.stl'"),
+        (("b.stl", "a.stl", "c.stl"), "'b.stl'"),
+        (("file:///a.stl", "/abs/c.stl"), ""),
+    ],
+)
+def test_paths_that_lead_elsewhere_now_are_told(files: tuple[str, ...], told: str) -> None:
     shape = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
-    inside = link("a", shape.format("meshes/a.stl") + shape.format("package://x/b.stl"))
+    inside = link("a", "".join(map(shape.format, files)))
     made = join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")])
-    assert made.notes == (
-        "<text>: 'meshes/a.stl' is looked up from the folder of the file; write package://NAME/...",
+    more = ", and 2 more" if files[0] == "b.stl" else ""
+    what = (
+        f"<text>: {told} is looked up from the folder of the file{more}; write package://NAME/..."
     )
+    assert made.notes == ((what,) if told else ())
+
+
+def test_a_picture_is_looked_up_from_there_too() -> None:
+    colour = '<visual><material name="m"><texture filename="t.png"/></material></visual>'
+    made = join([Part(robot(link("base"))), Part(robot(link("a", colour)), "base", name="n")])
+    assert "'t.png' is looked up" in made.notes[0]
 
 
 def test_a_plugin_that_is_not_known_takes_the_word_proved(

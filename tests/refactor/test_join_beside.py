@@ -145,6 +145,19 @@ def test_one_controller_manager_has_the_controllers_of_both(tmp_path: Path) -> N
     }
     # PyYAML takes it for a text, rcl for a number: in quotes it would be a text for both.
     assert b"goal_time: 1e-3" in made.controllers
+    assert made.controllers.startswith(b"# joined by multibot from a.yaml, b.yaml\n")
+
+
+def test_of_two_lists_each_item_is_there_once_and_a_long_one_stays_a_line(tmp_path: Path) -> None:
+    arm, gripper = parts()
+    one, other = files(tmp_path)
+    long = [f"state_{at}" for at in range(200)]
+    for path, items in ((one, long), (other, ["more", "state_7"])):
+        rate = f"update_rate: 100\n    hardware_unconfigured: [{', '.join(items)}]"
+        Path(path).write_text(Path(path).read_text().replace("update_rate: 100", rate))
+    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
+    text = ", ".join([*long, "more"])
+    assert f"    hardware_unconfigured: [{text}]\n" in made.controllers.decode()
 
 
 def test_a_broadcaster_of_all_joints_gets_no_frame_of_one_part(tmp_path: Path) -> None:
@@ -177,14 +190,24 @@ def test_controllers_that_meet_are_refused_and_other_values_told(tmp_path: Path)
     )
 
 
-def test_a_broadcaster_of_some_joints_is_of_its_part(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("said", "becomes"),
+    [
+        ("joints: [grip]", {"joints": ["g_grip"]}),
+        ("interfaces: [effort]", {"interfaces": ["effort"]}),
+    ],
+)
+def test_a_broadcaster_of_some_joints_is_of_its_part(
+    said: str, becomes: dict[str, list[str]], tmp_path: Path
+) -> None:
+    """joint_state_broadcaster.cpp: without both it takes all joints."""
     arm, gripper = parts()
     one, other = files(tmp_path)
-    own = "\njoint_state_broadcaster: {ros__parameters: {joints: [grip]}}\n"
+    own = f"\njoint_state_broadcaster: {{ros__parameters: {{{said}}}}}\n"
     Path(other).write_text(Path(other).read_text() + own)
     made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
     found = yaml.safe_load(made.controllers)
-    assert found["/g_joint_state_broadcaster"]["ros__parameters"]["joints"] == ["g_grip"]
+    assert becomes.items() <= found["/g_joint_state_broadcaster"]["ros__parameters"].items()
     assert {"joint_state_broadcaster", "g_joint_state_broadcaster"} <= set(
         found["controller_manager"]["ros__parameters"]
     )
@@ -265,18 +288,58 @@ GROUP = f"""\
 """
 
 
-def test_one_window_shows_all_parts(tmp_path: Path) -> None:
+EMPTY = "Visualization Manager:\n  Displays: []\n  Global Options:\n    Fixed Frame: base\n"
+SAME = GRIPPER_RVIZ[: GRIPPER_RVIZ.index("    - Class: rviz_default_plugins/Axes")]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "becomes"),
+    [
+        (ARM_RVIZ, GRIPPER_RVIZ, ARM_RVIZ.replace("  Global", f"{GROUP}  Global")),
+        (ARM_RVIZ, f"{SAME}  Global Options:\n    Fixed Frame: root\n", ARM_RVIZ),
+        (EMPTY, GRIPPER_RVIZ, EMPTY),
+    ],
+    ids=["a group", "the same", "no place for them"],
+)
+def test_one_window_shows_all_parts(first: str, second: str, becomes: str, tmp_path: Path) -> None:
     """One robot has one description: its display is there once."""
-    for name, text in (("arm.rviz", ARM_RVIZ), ("gripper.rviz", GRIPPER_RVIZ)):
-        (tmp_path / name).write_text(text)
+    one, other = tmp_path / "arm.rviz", tmp_path / "gripper.rviz"
+    one.write_text(first)
+    other.write_text(second)
     arm, gripper = parts()
+    gripper = gripper._replace(rviz=str(other))
+    made = join([arm._replace(rviz=str(one)), gripper])
+    assert made.rviz.decode() == becomes
+    what = "it shows no more" if becomes == first else "its displays are in the group g"
+    told = f"{other}: {what}; tools, panels and views are those of {one}"
+    assert [it for it in made.notes if "rviz" in it] == [told]
+    if second == GRIPPER_RVIZ:
+        alone = GRIPPER_RVIZ.replace("palm", "g_palm").replace(": root", ": g_root")
+        assert join([arm, gripper]).rviz.decode() == alone
+
+
+@pytest.mark.parametrize(
+    ("display", "again"),
+    [
+        ("Image\n  Topic:\n    Value: camera", False),
+        ("Image\n  Topic:\n    Value: /other", True),
+        ("Axes\n  Reference Frame: palm", True),
+        ("Axes\n  Reference Frame: hand", False),
+        ("Grid\n  Reference Frame: hand", True),
+    ],
+)
+def test_a_display_is_told_by_class_topic_and_frame(
+    display: str, again: bool, tmp_path: Path
+) -> None:
+    shown = ["Image\n  Topic:\n    Value: /camera", "Axes\n  Reference Frame: hand"]
+    for name, displays in (("one", shown), ("other", [display])):
+        text = "".join(f"- Class: rviz_default_plugins/{it}\n" for it in displays)
+        inside = "".join(f"    {it}" for it in text.splitlines(True))
+        head, rest = "Visualization Manager:\n  Displays:\n", "  Global Options: {Fixed Frame: a}\n"
+        (tmp_path / f"{name}.rviz").write_text(f"{head}{inside}{rest}")
     arm, gripper = (
-        arm._replace(rviz=str(tmp_path / "arm.rviz")),
-        gripper._replace(rviz=str(tmp_path / "gripper.rviz")),
+        it._replace(rviz=str(tmp_path / f"{name}.rviz"), prefix="", srdf=None)
+        for it, name in zip(parts(), ("one", "other"), strict=True)
     )
-    made = join([arm, gripper])
-    assert made.rviz.decode() == ARM_RVIZ.replace("  Global", f"{GROUP}  Global")
-    assert any("its displays are in the group g" in it for it in made.notes)
-    assert join([parts()[0], gripper]).rviz.decode() == GRIPPER_RVIZ.replace(
-        "palm", "g_palm"
-    ).replace(": root", ": g_root")
+    made = join([arm, gripper._replace(name="g")])
+    assert (b"rviz_common/Group" in made.rviz) == again

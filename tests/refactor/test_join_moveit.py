@@ -31,7 +31,7 @@ FILES = {
     "joint_limits:\n  turn: {has_velocity_limits: true, max_velocity: 2.0}\n",
     "moveit_controllers.yaml": "moveit_simple_controller_manager:\n  controller_names: [follow]\n"
     "  follow: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [turn]}\n",
-    "ompl_planning.yaml": "planner_configs: {Fast: {type: geometric::RRT}}\n"
+    "ompl_planning.yaml": "adapters: [x, {y: 1}]\nplanner_configs: {Fast: {type: geometric::RRT}}\n"
     "arm: {planner_configs: [Fast]}\n",
 }
 SOLVER = {
@@ -89,6 +89,7 @@ def test_there_is_one_file_of_each_kind_with_the_names_of_all_parts(
             }
         },
         "ompl_planning.yaml": {
+            "adapters": ["x", {"y": 1}],
             "planner_configs": {"Fast": {"type": "geometric::RRT"}},
             "left_arm": {"planner_configs": ["Fast"]},
             "right_arm": {"planner_configs": ["Fast"]},
@@ -115,6 +116,12 @@ def test_a_file_of_servo_is_left_out_and_told(tmp_path: Path) -> None:
 def test_groups_without_an_srdf_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"kinematics.yaml: .*; name its SRDF, too"):
         two(tmp_path, srdf=None)
+    # Without a prefix they stay.
+    files = arm_files(tmp_path / "bare", names=("kinematics.yaml",))
+    made = join([Part(TABLE), Part(ARM, "table", moveit=files)]).moveit["kinematics.yaml"]
+    head, _, rest = made.decode().partition("\n")
+    assert head == "# joined by multibot from kinematics.yaml"
+    assert yaml.safe_load(rest) == {"arm": SOLVER}
 
 
 def test_a_file_that_is_not_moveits_is_refused(tmp_path: Path) -> None:

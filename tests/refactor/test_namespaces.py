@@ -39,20 +39,22 @@ def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...
     return tuple(Path(it).name for it in paths), [it.why for it in wrong]
 
 
-@pytest.mark.parametrize("names", [NAMES, SPACES])
-def test_the_first_name_that_is_free_is_taken(names: tuple[str, ...], tmp_path: Path) -> None:
-    """By an argument, a property or a parameter of a macro, with a default or without."""
-    forms = (
+@pytest.mark.parametrize(
+    "form",
+    [
         '<xacro:arg name="{}" default=""/>',
         '<xacro:property name="{}" value=""/>',
         '<xacro:macro name="m" params="a {}:=1 b"/>',
-        '<xacro:macro name="n" params="{} c"/>',
-    )
+        '<xacro:macro name="m" params="a {}=1 b"/>',
+        '<xacro:macro name="m" params="{} c"/>',
+    ],
+)
+def test_the_first_name_that_is_free_is_taken(form: str, tmp_path: Path) -> None:
+    """By an argument, a property or a parameter of a macro, with a default or without."""
     tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
-    for at, name in enumerate(names):
-        taken = "".join(form.format(it) for form, it in zip(forms, names[:at], strict=False))
-        (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(taken))
-        assert free_name(read_package(str(tmp_path), tree, how).descriptions, names) == name
+    (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(form.format("one")))
+    found = read_package(str(tmp_path), tree, how).descriptions
+    assert free_name(found, ("one", "two", "three")) == "two"
 
 
 def test_names_of_arguments_are_those_that_people_use() -> None:

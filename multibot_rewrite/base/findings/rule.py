@@ -43,7 +43,10 @@ class Rule(NamedTuple):
     options: Mapping[str, object] = NOTHING
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
-        """A finding of this rule; ``place`` are the other fields of ``Finding``."""
+        """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
+        is at its first column."""
+        if "line" in place:
+            place.setdefault("column", 1)
         level = place.pop("level", self.level)
         return Finding(self.code, level, message, hint or self.advice, **place)
 

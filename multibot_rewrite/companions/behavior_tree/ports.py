@@ -131,7 +131,8 @@ def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, 
     for element in tree.iter("*"):
         for attribute, value in element.items():
             entry = _blackboard_entry(element, str(value), trees)
-            if not entry or attribute in ("ID", "name", *_SHARED):
+            # What an element is called is no port.
+            if not entry or attribute == "name":
                 continue
             if kind := _port_kind(element, str(attribute), trees, (*above, name)):
                 found.setdefault(entry, kind)

@@ -29,7 +29,7 @@ from multibot_rewrite.companions.moveit.file_kind import (
 from multibot_rewrite.companions.moveit.name_sites import entries
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
 from multibot_rewrite.companions.params.joined import added
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.companions.yaml_text import YamlText, joined_text, read_yaml
 from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
@@ -84,9 +84,7 @@ def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
         _spell_alike([root for _, root in roots])
         (_, first), *others = roots
         notes += ((file, what) for file, root in others for what in added(first, root, ""))
-        sources = ", ".join(dict.fromkeys(os.path.basename(file) for file, _ in roots))
-        text = f"# joined by multibot from {sources}\n{yaml.serialize(first, width=200)}"
-        made[name] = text.encode()
+        made[name] = joined_text((file for file, _ in roots), first)
     return JoinedMoveit(made, tuple(notes))
 
 

@@ -195,8 +195,7 @@ def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
 def _tells(value: yaml.Node, telling: Iterable[str]) -> bool:
     if "map" in telling:
         return isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
-    words = {str(key.value).partition(".")[0] for key, _ in entries(value)}
-    return not words.isdisjoint(telling)
+    return not {str(key.value) for key, _ in entries(value)}.isdisjoint(telling)
 
 
 def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:

@@ -10,7 +10,6 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import yaml
@@ -29,7 +28,7 @@ from multibot_rewrite.companions.params.sections import (
     controller_types,
     raw_sections,
 )
-from multibot_rewrite.companions.yaml_text import pairs, read_yaml
+from multibot_rewrite.companions.yaml_text import joined_text, pairs, read_yaml
 from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.steps.collect import Inventory
@@ -116,10 +115,7 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFiles:
             for what in added(first.body, one.body, f"{first.path}."):
                 notes.append(f"{it.file}: {what}")
     root = yaml.MappingNode("tag:yaml.org,2002:map", [_written(it) for it in sections.values()])
-    # The same from every working directory.
-    names = ", ".join(dict.fromkeys(os.path.basename(it.file) for it in files))
-    text = f"# joined by multibot from {names}\n{yaml.serialize(root, width=200)}"
-    return JoinedFiles(text.encode(), tuple(notes))
+    return JoinedFiles(joined_text((it.file for it in files), root), tuple(notes))
 
 
 def _check_meeting(files: Sequence[PartFile]) -> None:

@@ -199,4 +199,4 @@ def without_section(
             words = ", ".join(it.path for it in lines)
             message = f"{name} has no section, so all robots would share its defaults for {words}"
             hint = "add a section for it (use_sim_time is enough); the lines are inserted there"
-            yield NO_SECTION.finding(message, hint, file=document.file, line=1, column=1)
+            yield NO_SECTION.finding(message, hint, file=document.file, line=1)

@@ -93,4 +93,4 @@ def _is_reached(robot: RobotStarts) -> bool:
 
 def _told(apart: Apart, message: str, hint: str, level: str) -> Finding:
     file, line = apart.place
-    return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line, column=1)
+    return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line)

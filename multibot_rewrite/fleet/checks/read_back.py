@@ -119,9 +119,8 @@ def _named(it: LaunchedNode, home: str) -> Iterator[str]:
 
 
 def _fault(message: str, place: Place, home: str) -> Finding:
-    own = {"file": place.file.replace(f"{home}/", ""), "line": place.line, "column": 1}
-    text = message.replace(f"{home}/", "")
-    return NOT_WHOLE.finding(text, _HINT, **own)._replace(level=ERROR)
+    file, text = (it.replace(f"{home}/", "") for it in (place.file, message))
+    return NOT_WHOLE.finding(text, _HINT, level=ERROR, file=file, line=place.line)
 
 
 def _in_folder(it: Finding, home: str) -> Finding:

@@ -154,4 +154,4 @@ def _note(robot: RobotSpec, it: _Choice) -> Finding:
     if it.reason:
         message = f"robot {robot.name!r}: {argument} is not filled: {it.reason}"
         hint = "give its value under arguments, or set separators"
-    return OWN_ARGUMENT.finding(message, hint, file=robot.file, line=robot.line, column=1)
+    return OWN_ARGUMENT.finding(message, hint, file=robot.file, line=robot.line)

@@ -25,7 +25,7 @@ from multibot_rewrite.rules.facts.simulators import SIMULATORS
 _NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign)(?:_|$)")
 _OTHER = {"true": "false", "True": "False", "1": "0"}
 _OTHERS = {**_OTHER, **{off: on for on, off in _OTHER.items()}}
-# A hardware class that is no simulator's known one, and called as if it were a vendor's own.
+# What classes of simulators and those of vendors for them are called like.
 _SIMULATED = lazy_compile(r"gazebo|gz|ign|sim|mujoco|isaac")
 # A hardware class, such as an argument has for its value, and those of simulators.
 _CLASS = lazy_compile(r"\w+(?:/|::)\w*(?:System|Hardware|Interface)\w*")
@@ -49,7 +49,7 @@ def of_simulator(hardware: str) -> bool:
 
 def may_be_simulated(hardware: str) -> bool:
     """Is it one of a simulator, or called as a vendor's own one is?"""
-    return of_simulator(hardware) or _SIMULATED.search(hardware.lower()) is not None
+    return _SIMULATED.search(hardware.lower()) is not None
 
 
 def loads_hardware(root: _Element) -> bool:

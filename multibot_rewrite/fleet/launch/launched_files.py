@@ -145,9 +145,9 @@ def set_by_launch(
         if lost:
             message = f"the launch file itself gives {node.name} {shorten(lost)}"
             hint = "write them into a parameter file of that node, and list it under params"
-            own = {"file": launched.place.file, "line": launched.place.line, "column": 1}
             said = f"{message}: what build writes has them not"
-            yield NOT_REWRITTEN.finding(said, hint, level=WARNING, **own)
+            file, line, *_ = launched.place
+            yield NOT_REWRITTEN.finding(said, hint, level=WARNING, file=file, line=line)
 
 
 def _lost(node: GivenNode, params: Collection[Param], launch: str) -> Iterator[str]:
@@ -173,15 +173,15 @@ def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
 def _unfilled(it: _Named) -> Finding:
     message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
     hint = "write it out for one robot without a prefix, and list that file under params"
-    own = {"file": it.place.file, "line": it.place.line, "column": 1}
-    return NOT_REWRITTEN.finding(message, hint, level=WARNING, **own)
+    file, line, *_ = it.place
+    return NOT_REWRITTEN.finding(message, hint, level=WARNING, file=file, line=line)
 
 
 def _has_other(it: _Named, there: str) -> Finding:
     message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
     hint = "give the launch what is written for the robot, or give one of them another name"
-    own = {"file": it.place.file, "line": it.place.line, "column": 1}
-    return NOT_REWRITTEN.finding(message, hint, **own)
+    file, line, *_ = it.place
+    return NOT_REWRITTEN.finding(message, hint, file=file, line=line)
 
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")

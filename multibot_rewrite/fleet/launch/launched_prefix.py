@@ -82,4 +82,4 @@ def _finding(robot: RewrittenRobot, given: Given, prefix: str) -> Finding:
         message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
         hint = f"give it frame_prefix: {robot.frame_prefix}"
     file, line, _ = given.place
-    return OTHER_PREFIX.finding(message, hint, file=file, line=line, column=1)
+    return OTHER_PREFIX.finding(message, hint, file=file, line=line)

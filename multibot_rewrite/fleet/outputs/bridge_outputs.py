@@ -176,8 +176,8 @@ def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
         f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
     )
     hint = "give it a topic in the description, so that a bridge can name it"
-    place = {"file": robot.spec.description, "line": _line(robot, topic), "column": 1}
-    return NO_TOPIC.finding(message, hint, **place)
+    line = _line(robot, topic)
+    return NO_TOPIC.finding(message, hint, file=robot.spec.description, line=line)
 
 
 # Topics that several gz topics may come out on.

@@ -168,7 +168,7 @@ def _disagree(robot: RewrittenRobot, what: str) -> Finding:
     spec = robot.spec
     hint = "give all arms of the cell one value"
     message = f"{spec.name!r}: {what}"
-    return DISAGREE.finding(message, hint, file=spec.file, line=spec.line, column=1)
+    return DISAGREE.finding(message, hint, file=spec.file, line=spec.line)
 
 
 _GROUP = "group"

@@ -252,4 +252,4 @@ def _own_paths(it: _Text) -> Iterator[Edit]:
 def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:
     place = f"{it.document.file}:{one.sourceline}"
     hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
-    return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line, column=1)
+    return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line)

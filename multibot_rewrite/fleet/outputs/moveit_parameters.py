@@ -118,7 +118,7 @@ def parameter_file(values: Mapping[str, Any]) -> bytes:
     """A file that any node takes."""
     data = {"/**": {"ros__parameters": values}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-    return str(yaml.dump(data, None, dumper, sort_keys=False, width=100)).encode()
+    return str(yaml.dump(data, None, dumper, sort_keys=False)).encode()
 
 
 def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:

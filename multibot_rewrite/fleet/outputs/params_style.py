@@ -138,7 +138,7 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
         hint = (
             "all robots share them; if you use one, start Nav2 with nav2.launch.py of this package"
         )
-        yield NO_RULE.finding(message, hint, file=plan.file.file, line=1, column=1)
+        yield NO_RULE.finding(message, hint, file=plan.file.file, line=1)
 
 
 def _is_left(it: EndpointName) -> bool:

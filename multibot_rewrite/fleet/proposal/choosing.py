@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
@@ -40,10 +41,9 @@ class Undecided(UsageError):
         named = [*before, *found.meant, next(iter(files))]
         home = os.path.abspath(home_of(named[0]))
         folders = [it for it in found.folders if os.path.abspath(it) != home]
-        more = f" and {len(files) - MOST_SHOWN} more" if len(files) > MOST_SHOWN else ""
-        shown = ", ".join([*map(self.said, files)][:MOST_SHOWN])
+        shown = shorten(map(self.said, files), MOST_SHOWN)
         command = f"multibot init {shlex.join([*folders, *named])}"
-        super().__init__(f"{what}: {shown}{more}; name one: {command}")
+        super().__init__(f"{what}: {shown}; name one: {command}")
 
     def said(self, path: str) -> str:
         """A file as it is shown."""

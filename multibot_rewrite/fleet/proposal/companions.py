@@ -86,20 +86,20 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
     sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
-    srdf = _best_known(robot, found.srdf)[:1]
-    left |= {it: "another SRDF was taken" for it in found.srdf if it not in srdf}
-    others = moveit_of_others(srdf[0], every) if srdf else {}
+    srdf = next(iter(_best_known(robot, found.srdf)), "")
+    left |= {it: "another SRDF was taken" for it in found.srdf if it != srdf}
+    others = moveit_of_others(srdf, every) if srdf else {}
     left |= others
-    files["moveit"] = tuple(_moveit(robot, found, "".join(srdf), left)) if srdf else ()
+    files["moveit"] = tuple(_moveit(robot, found, srdf, left)) if srdf else ()
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
-    return Companions(chosen, "".join(srdf), dict(_stacks(robot, nodes, "".join(srdf))), left)
+    return Companions(chosen, srdf, dict(_stacks(robot, nodes, srdf)), left)
 
 
 def srdf_of(robot: Looked, found: Found) -> str:
     """The SRDF with most of the robot's names; empty for none."""
     named = without(found, {**of_others(robot, found), **_with_others_names(robot, found)})
-    return "".join(_best_known(robot, named.srdf)[:1])
+    return next(iter(_best_known(robot, named.srdf)), "")
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from math import inf
 from typing import Any
 
 from multibot_rewrite.base.editors import FLEET, schema_line
@@ -50,7 +51,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
-    refused = {os.path.relpath(path, folder) for path in it.refused}
+    refused = {_shown(path, folder) for path in it.refused}
     if left:
         yield ""
         yield "# Found beside them and not taken:"
@@ -81,12 +82,16 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     for path, why in it.refused.items():
-        yield path if path == VALUES else os.path.relpath(path, folder), why
+        yield _shown(path, folder), why
     for path in it.others:
         yield os.path.relpath(path, folder), "another description"
     for member in it.members:
         for path, why in member.companions.left.items():
             yield os.path.relpath(path, folder), why
+
+
+def _shown(path: str, folder: str) -> str:
+    return path if path == VALUES else os.path.relpath(path, folder)
 
 
 def _sentence(text: str) -> str:
@@ -104,7 +109,7 @@ def _block(key: str, value: Any) -> Iterator[str]:
 def _flow(value: Any) -> str:
     import yaml
 
-    text = yaml.safe_dump(value, default_flow_style=True, width=10_000, sort_keys=False)
+    text = yaml.safe_dump(value, default_flow_style=True, width=inf, sort_keys=False)
     return text.removesuffix("\n").removesuffix("\n...")
 
 

@@ -111,10 +111,9 @@ def _called(calls: Sequence[ast.Call], *names: str) -> Iterator[ast.Call]:
 def _assigned(every: Sequence[ast.AST]) -> dict[str, ast.expr]:
     """Names that have one value in the whole file."""
     found: dict[str, ast.expr | None] = {}
-    for it in every:
-        for target in it.targets if isinstance(it, ast.Assign) else ():
-            if isinstance(target, ast.Name) and isinstance(it, ast.Assign):
-                found[target.id] = None if target.id in found else it.value
+    for it in (one for one in every if isinstance(one, ast.Assign)):
+        for target in (one for one in it.targets if isinstance(one, ast.Name)):
+            found[target.id] = None if target.id in found else it.value
     return {name: it for name, it in found.items() if it is not None}
 
 
@@ -180,9 +179,8 @@ def _call(reading: Reading, it: Any, depth: int) -> Any:
 
 def _configured(reading: Reading, name: str, depth: int) -> Any:
     """An argument as it was given, or its default; launch makes numbers and truth of the text."""
-    found = reading.given.get(name, UNKNOWN)
-    if found is UNKNOWN and name not in reading.given:
-        found = reading.value(reading.text.declared.get(name), depth)
+    default = reading.text.declared.get(name)
+    found = reading.given[name] if name in reading.given else reading.value(default, depth)
     try:
         return load_yaml(found) if isinstance(found, str) and found else found
     except yaml.YAMLError:
@@ -250,13 +248,14 @@ def _made_value(it: Any) -> str:
 
 
 def _made_text(it: Any) -> str:
-    pieces = _SUBSTITUTION.split(it) if isinstance(it, str) else [_UNREAD]
-    return " + ".join(_made_piece(one) for one in pieces if one) or "''"
+    if not isinstance(it, str):
+        return _UNREAD
+    return " + ".join(_made_piece(one) for one in _SUBSTITUTION.split(it) if one) or "''"
 
 
 def _made_piece(it: str) -> str:
-    if not it.startswith("$(") or it == _UNREAD:
-        return it if it == _UNREAD else repr(it)
+    if not it.startswith("$("):
+        return repr(it)
     name, _, rest = it[2:-1].partition(" ")
     made = {"var": "LaunchConfiguration", "find-pkg-share": "FindPackageShare"}.get(name)
     if name == "dirname":
@@ -276,7 +275,7 @@ def _made_include(it: Entity) -> str:
 def _made_argument(it: Entity) -> str:
     """An ``arg``, or a ``let``, of which one with a condition may not count."""
     value = it.values.get("default", it.values.get("value"))
-    if value is None or {"if", "unless"} & it.values.keys():
+    if {"if", "unless"} & it.values.keys():
         value = None
     return f"{_DECLARE}({it.values.get('name', '')!r}, default_value={_made_text(value)})"
 

@@ -230,7 +230,7 @@ def _plugin_files(root: etree._Element) -> list[str]:
 def _simulator(root: etree._Element) -> str:
     """By the plugins below ``<gazebo>``, or of an SDF; sensors alone are for gz-sim."""
     parts, files = _parts(root), _plugin_files(root)
-    if any(it.startswith(tuple(_CLASSIC)) for it in files):
+    if any(it.startswith(_CLASSIC) for it in files):
         return CLASSIC
     sensors = any(part.find(".//sensor") is not None for part in parts)
     return GZ if files or sensors or root.tag == "sdf" else NO_SIMULATOR

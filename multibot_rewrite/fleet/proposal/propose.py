@@ -163,7 +163,7 @@ def unlike(words: Iterable[str]) -> list[str]:
     for word in words:
         plain = "".join(it if it.isalnum() else "_" for it in word.lower()).strip("_") or "robot"
         plain = plain if plain[0].isalpha() else f"robot_{plain}"
-        plain = plain.rstrip("0123456789") or plain
+        plain = plain.rstrip("0123456789")
         found.append(plain if plain not in found else f"{plain}_{len(found)}_")
     return found
 

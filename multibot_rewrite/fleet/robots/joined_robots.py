@@ -105,4 +105,4 @@ def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
 def _note(robot: RobotSpec, text: str) -> Finding:
     message = f"robot {robot.name!r} is joined of parts: {text}"
     hint = "see what it means for the robot; multibot join shows the files"
-    return ABOUT_PARTS.finding(message, hint, file=robot.file, line=robot.line, column=1)
+    return ABOUT_PARTS.finding(message, hint, file=robot.file, line=robot.line)

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from types import MappingProxyType
-from typing import Any
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
@@ -110,9 +109,8 @@ def at_robot(
     rule: Rule, robot: RewrittenRobot, message: str, hint: str, level: str = ""
 ) -> Finding:
     """A finding of ``rule`` in the robot's line of the fleet file; ``level`` is the rule's if empty."""
-    spec = robot.spec
-    place: dict[str, Any] = {"file": spec.file, "line": spec.line, "column": 1}
-    return rule.finding(message, hint, level=level or rule.level, **place)
+    level, spec = level or rule.level, robot.spec
+    return rule.finding(message, hint, level=level, file=spec.file, line=spec.line)
 
 
 def read_jobs(

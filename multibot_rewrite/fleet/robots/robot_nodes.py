@@ -246,7 +246,7 @@ def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
         for name in (name for name in file.shared_nodes if name in heads):
             message = f"{it.name} of each robot manages {name}, which all robots share"
             hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
-            yield NOT_MANAGED.finding(message, hint, file=file.file, line=1, column=1)
+            yield NOT_MANAGED.finding(message, hint, file=file.file, line=1)
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:

@@ -114,14 +114,17 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield _finding(NO_SHARED_FRAME, robot, what, hint)
         return
     sent = _sent(plan, robot)
-    locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
+    placing = {
+        node: [it for it in edges if _is_placing(it, naming)] for node, edges in sent.items()
+    }
+    locators = [node for node, edges in placing.items() if any(not it.static for it in edges)]
     if AMCL in locators:
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
         yield _localised(robot, locators)
         return
-    if held := [it for it in sent[""] if _holds(it, naming)]:
+    if held := placing[""]:
         if pose != ORIGIN:
             yield _on_world(robot, held[0])
         return
@@ -217,16 +220,9 @@ def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
             return
 
 
-def _locates(edge: Edge, naming: Naming) -> bool:
+def _is_placing(edge: Edge, naming: Naming) -> bool:
     """Does it place a robot's frame in a shared frame?"""
-    shared = naming.shared_frames
-    return not edge.static and edge.parent in shared and edge.child not in shared
-
-
-def _holds(edge: Edge, naming: Naming) -> bool:
-    """Does a joint of the description fix a robot's frame to a shared one?"""
-    shared = naming.shared_frames
-    return edge.static and edge.parent in shared and edge.child not in shared
+    return edge.parent in naming.shared_frames and edge.child not in naming.shared_frames
 
 
 def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:

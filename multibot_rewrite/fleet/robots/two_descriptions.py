@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
-SHOWN = 3
 _URDF = """\
 <robot name="rover">
   <link name="base_link"/>
@@ -84,7 +84,7 @@ def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
     runs = {it.robot for it in plan.fleet.table.nodes if it.node in published}
     for robot in plan.robots:
         if robot.member.described.document.root.tag == "sdf" and robot.spec.namespace in runs:
-            links = _shown([*robot.member.described.declared.get("link", ())])
+            links = shorten(robot.member.described.declared.get("link", ()))
             message = (
                 f"robot_state_publisher of {robot.spec.name} gets an SDF, which it reads with the "
                 f"package sdformat_urdf alone; else no node sends {links}"
@@ -101,7 +101,7 @@ def differences(plan: FleetPlan) -> Iterator[Finding]:
             lacking = [it for it in described if it not in model]
             if lacking:
                 what = "has no moving joint" if len(lacking) == 1 else "has no moving joints"
-                message = f"what the simulator gets of {robot.spec.name} {what} {_shown(lacking)}"
+                message = f"what the simulator gets of {robot.spec.name} {what} {shorten(lacking)}"
                 hint = "nothing in the simulator sends their states; give both files the same names"
                 yield at_robot(DIFFERENT, robot, message, hint)
             yield from _of_frames(robot)
@@ -129,11 +129,6 @@ def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
     unknown = sorted(it for it in named - known if it and "<" not in it and "$" not in it)
     if unknown:
         model = f"what the simulator gets of {robot.spec.name}"
-        message = f"{model} names frames that its description has not: {_shown(unknown)}"
+        message = f"{model} names frames that its description has not: {shorten(unknown)}"
         hint = "name links of the description, or send a transform to them"
         yield at_robot(DIFFERENT, robot, message, hint)
-
-
-def _shown(names: list[str]) -> str:
-    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-    return f"{', '.join(names[:SHOWN])}{more}"

@@ -80,6 +80,14 @@ def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
     assert left == []
 
 
+def test_a_finding_of_a_line_alone_is_at_its_first_column() -> None:
+    rule = RULES["MB002"]
+    places = ({}, {"file": "a", "line": 3}, {"file": "a", "line": 3, "column": 7})
+    assert [rule.finding("m", "h", **it)[4:7] for it in places] == [  # type: ignore[arg-type]
+        ("", 0, 0), ("a", 3, 1), ("a", 3, 7),
+    ]  # fmt: skip
+
+
 def test_the_codes_with_a_fix() -> None:
     fixed = {code for code, it in RULES.items() if it.fixed}
     assert fixed == {

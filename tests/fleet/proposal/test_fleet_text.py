@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The text of a proposed fleet, whole and by hand; what it holds is read back as data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import yaml
+
+from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.fleet.proposal.companions import Companions
+from multibot_rewrite.fleet.proposal.fleet_text import data_of, text_of
+from multibot_rewrite.fleet.proposal.given_by_launch import VALUES, Launched
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
+
+BESIDE = Companions(
+    {"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("w/v.rviz",)},
+    "w/r.srdf",
+    {"nav2": "p.yaml has parameters of amcl", "moveit": "there is r.srdf"},
+    {"w/a/b/o.yaml": "why\n  two", "w/c.yaml": "why"},
+)
+ROVER = Looked(
+    "w/r.urdf.xacro", "r", "robot", 2, arguments=(("prefix", "{robot}_"), ("x", "1"), ("sim", "on")),
+    switch="sim", needed=("x", "none"), model="w/r.sdf",
+)  # fmt: skip
+ARM = Looked("w/arm.urdf", "arm", "robot", 3)
+KEYS = {
+    "layout": Choice("tf-per-robot", "plugins send tf"),
+    "distro": Choice("jazzy", "the newest"),
+}
+REST = (("w/a.launch.py", 7, "amcl: y"),)
+ONE = Proposal(
+    KEYS,
+    [Member(ROVER, BESIDE, ("robot1", "robot2"), 0.5)],
+    {"robot1": {"x": 0.0, "y": 0.0}},
+    ("A note",),
+    ("first.urdf", "w/more.urdf"),
+    {"w/z/bad.yaml": "it is bad", VALUES: "values are bad"},
+    Launched({"amcl": {"a": 1}}, REST),
+)
+COMMON: dict[str, Any] = {
+    "description": "r.urdf.xacro",
+    "simulated": "r.sdf",
+    "arguments": {"prefix": "{robot}_", "x": "1", "sim": "on"},
+    "srdf": "r.srdf",
+    "stack": ["nav2", "moveit"],
+    "companions": {"params": ["p.yaml", "q.yaml", {"amcl": {"a": 1}}], "rviz": "v.rviz"},
+}
+OTHERS = "".join(f"#   {it.name}: {it.about}\n" for it in LAYOUTS if it.name != "tf-per-robot")
+TEXT = f"""\
+# A fleet of robots, for multibot_rewrite. Change what you like, then:
+#   multibot build fleet.yaml -o out/     writes everything that the robots need
+#   multibot rehearse fleet.yaml          tries the plan on a real ROS graph, no simulator
+# A note
+
+# Plugins send tf
+# The other layouts:
+{OTHERS}layout: tf-per-robot
+
+# The newest
+distro: jazzy
+
+# It has 2 links
+description: r.urdf.xacro
+
+# The same robot as the simulator gets it
+simulated: r.sdf
+
+# Arguments of the xacro: {{robot}} stands for the robot's name
+# sim is the switch between the simulated and the real robot
+# It needs x; init chose a value: is it right?
+arguments:
+  prefix: '{{robot}}_'
+  x: '1'
+  sim: 'on'
+
+# The planning groups of MoveIt
+srdf: r.srdf
+
+# nav2: p.yaml has parameters of amcl
+# moveit: there is r.srdf
+stack: [nav2, moveit]
+
+# Files written for one robot; each robot gets its own of them
+# {{NODE: {{PARAMETER: value}}}} is what launch files give a node
+companions:
+  params: [p.yaml, q.yaml, {{amcl: {{a: 1}}}}]
+  rviz: v.rviz
+
+# Found beside them and not taken:
+#   {VALUES}: values are bad
+#   z/bad.yaml: it is bad
+#   a/b/o.yaml: why two
+#   c.yaml: why
+#   more.urdf: another description
+#   ../first.urdf: another description
+
+# Launch files give nodes more than this fleet has: write the values into params;
+# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:
+#   a.launch.py:7: amcl: y
+
+# Start poses in metres and radians: x, y, z, roll, pitch, yaw
+robots:
+  - {{name: robot1, pose: {{x: 0.0, y: 0.0}}}}
+  - {{name: robot2}}
+"""
+
+
+def test_the_whole_text_of_one_description() -> None:
+    head, _, text = text_of(ONE, "w", "fleet.yaml").partition("\n")
+    assert head.startswith("# yaml-language-server: $schema=")
+    assert text == TEXT
+    data = {"layout": "tf-per-robot", "distro": "jazzy", **COMMON, "robots": [
+        {"name": "robot1", "pose": {"x": 0, "y": 0}}, {"name": "robot2"},
+    ]}  # fmt: skip
+    assert data_of(ONE, "w") == data == yaml.safe_load(text)
+
+
+def test_robots_of_several_descriptions_have_their_own_keys() -> None:
+    bare = Member(ARM, Companions({}, "", {}, {}), ("arm1",), 0.5)
+    two = ONE._replace(members=[*ONE.members, bare], launched=Launched())
+    own = {**COMMON, "companions": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"}}
+    assert data_of(two, "w") == {
+        "layout": "tf-per-robot",
+        "distro": "jazzy",
+        "robots": [
+            {"name": "robot1", **own, "pose": {"x": 0, "y": 0}},
+            {"name": "robot2", **own},
+            {"name": "arm1", "description": "arm.urdf"},
+        ],
+    }
+    small = ONE._replace(members=[bare], refused={}, others=(), launched=Launched(), notes=())
+    assert "not taken" not in (text := text_of(small, "w", "f")) and "Launch files" not in text
+
+
+@pytest.mark.parametrize(("count", "more"), [(10, ""), (12, "#   and 2 more\n")])
+def test_of_many_that_are_left_ten_are_named(count: int, more: str) -> None:
+    many = ONE._replace(others=tuple(f"w/o{at:02}.urdf" for at in range(count)), refused={})
+    none = [it._replace(companions=BESIDE._replace(left={})) for it in ONE.members]
+    text = text_of(many._replace(members=none), "w", "f")
+    rows = "".join(f"#   o{at:02}.urdf: another description\n" for at in range(10))
+    assert f"not taken:\n{rows}{more}\n" in text
