@@ -145,9 +145,6 @@ SAID = {
     "https://example.org/Base.stl": [
         "MB711 note 'https://example.org/Base.stl' needs the network; put it into a package",
     ],
-    "file://$(arg)/Base.stl": [
-        f"MB712 warning 'file://$(arg)/Base.stl' holds a xacro substitution; {PLACED}",
-    ],
     "": [
         "MB706 error <mesh> has an empty file name; add the file name, or remove the visual or"
         " collision",
