@@ -221,3 +221,21 @@ def test_a_default_in_every_name_stands_where_the_robots_name_goes(
     body = '<xacro:arg name="robot_name" default="lbr"/><xacro:property name="p" '
     made = found(written(write, f'{body}value="$(arg robot_name)"/>{names}'))
     assert made.for_robots == ({"robot_name": value} if value else {})
+
+
+@pytest.mark.parametrize(
+    ("parent", "value", "missed"), [("$(arg prefix)a", "{robot}_", ""), ("a", "", "a")]
+)
+def test_an_argument_that_misses_a_link_is_not_for_robots(
+    write: Path, parent: str, value: str, missed: str
+) -> None:
+    """A joint that names its parent without the argument has no parent with it: no tree."""
+    arguments = by_name(
+        written(
+            write,
+            '<xacro:arg name="prefix" default=""/><link name="$(arg prefix)a"/>'
+            '<link name="$(arg prefix)b"/><joint name="$(arg prefix)j" type="fixed">'
+            f'<parent link="{parent}"/><child link="$(arg prefix)b"/></joint>',
+        )
+    )
+    assert (arguments["prefix"].value, arguments["prefix"].missed) == (value, missed)
