@@ -16,7 +16,6 @@ from paths import ROOT
 CLOCKS = {
     "support/waiting.py",
     "fleet/test_build.py",
-    "live/test_frame_ids.py",
     "live/test_snapshot.py",
     "producers/test_observing.py",
     "producers/test_rclpy_calls.py",
