@@ -92,6 +92,15 @@ def test_a_depth_that_is_not_announced_is_not_written() -> None:
     assert (given["history"], given.get("depth")) == ("SYSTEM_DEFAULT", None)
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_the_qos_is_that_of_the_node_and_of_no_other(first: bool) -> None:
+    own = end("topic", "publishes", "/robot1/x", "a/msg/B", WHOLE._replace(depth=3))
+    other = own._replace(node="/robot1/aaa", qos=WHOLE._replace(depth=9))
+    (found,) = section("publishers", *((own, other) if first else (other, own)))
+    given = found["qos"]
+    assert isinstance(given, dict) and given["depth"] == 3
+
+
 def test_a_depth_of_one_is_a_depth() -> None:
     qos = WHOLE._replace(depth=1)
     (found,) = section("publishers", end("topic", "publishes", "/robot1/x", "a/msg/B", qos))

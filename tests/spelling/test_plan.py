@@ -248,6 +248,17 @@ def test_who_sends_which_transform() -> None:
     assert edge.parent == "my_odom"
 
 
+def test_frames_have_the_word_that_stands_for_the_robot() -> None:
+    """``frame_prefix`` of robot_state_publisher is that word, not the namespace."""
+    naming, inventory = make_naming("frame-prefix"), inventory_of(XML.replace("a/", ""))
+    tree = [("base", "wheel", False), ("base", "lidar", True)]
+    for word, lead in (("", "a"), ("b", "b")):
+        found = edges_of("a", inventory, (ODOMETRY, STATE), (), naming, word)
+        assert found["a", "drive"] == [edge_of(f"{lead}/odom", f"{lead}/base")]
+        sent = [edge_of(f"{lead}/{one}", f"{lead}/{two}", it) for one, two, it in tree]
+        assert found["a", "robot_state_publisher"] == sent
+
+
 def test_a_static_transform_may_have_the_robots_name_already() -> None:
     static = ODOMETRY._replace(
         endpoints=(Endpoint(TOPIC, PUBLISHES, "/tf_static"),),
