@@ -63,15 +63,20 @@ class Argument(NamedTuple):
 
     @property
     def value(self) -> str:
-        """What gives every robot its own names by this argument; empty where it is not for that.
+        """What gives every robot its own names by this argument; empty where it is not for that, or
+        misses a link: the description would have no tree. Raises nothing."""
+        return "" if self.missed else self.word
+
+    @property
+    def word(self) -> str:
+        """The same, whatever it misses.
 
         It is for that if it goes before or behind names or is a namespace, and is empty by default or
-        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. With one that
-        misses a link the description has no tree.
+        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. Raises nothing.
         """
         ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
         spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
-        if self.missed or not (self.is_empty or self.is_everywhere) or not (ends or spaces):
+        if not (self.is_empty or self.is_everywhere) or not (ends or spaces):
             return ""
         before = "_" if ends.get(POSTFIX) == "" else ""
         after = "_" if ends.get(PREFIX) == "" else ""
