@@ -38,7 +38,7 @@ def program_of(node: NodeFacts, release: str) -> Program | None:
     known = node.kind
     if known == CONTAINER:
         return container_of(release)
-    if not node.package or known[:1].isupper():
+    if not node.package or (known[:1].isupper() and not node.programs):
         return None
     return Program(node.package, next(iter(node.programs), known), node.component)
 

@@ -37,6 +37,9 @@ LAYOUTS = ["postfix", "tf-per-robot", "both"]
 REFUSED = {
     # The rover has no such plugin, and Jazzy no Gazebo Classic.
     ("", "", "gazebo_ros2_control"),
+    # Nothing starts their controller manager, and that of Humble has no description without the plugin.
+    ("", "", "controllers"),
+    ("humble", "", "gz_ros2_control"),
     # The spawner waits for a description that somebody else sends.
     ("", "", "no_robot_state_publisher"),
     # The base is base_link by default, and that of the rover is base_footprint.
