@@ -11,18 +11,18 @@ from __future__ import annotations
 
 import ctypes
 import os
-import re
 import shutil
 import stat
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.files import explained, make_folders, see_on_disk, write_all, write_new
 
 STAGE = ".multibot-build"
 # What a killed process may have left between files (see ``files``).
-_LEFT = re.compile(r"\.urdf-postfix\.\d+\.\d+\.tmp(\.old)?")
+_LEFT = lazy_compile(r"\.urdf-postfix\.\d+\.\d+\.tmp(\.old)?")
 # <linux/fcntl.h>, <linux/fs.h>
 _HERE, _EXCHANGE = -100, 2
 

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 
 from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import rewrite_bridge
@@ -28,7 +28,7 @@ from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 
 # A file of parameters that is written in braces.
-_IN_BRACES = re.compile(rb"\bros__parameters\b")
+_IN_BRACES = lazy_compile(rb"\bros__parameters\b")
 
 
 def kind_alone(data: bytes, file: str) -> str:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.companion import Companion
@@ -38,7 +39,7 @@ OWN_FILES = frozenset(
     )
 )
 # An opening bracket or quote that the patterns before it did not close is an error.
-_TOKEN = re.compile(
+_TOKEN = lazy_compile(
     r"""(?P<space>\s+)
     |(?P<comment>--\[(?P<c>=*)\[.*?\](?P=c)\]|--(?!\[=*\[)[^\n]*)
     |(?P<long>\[(?P<l>=*)\[.*?\](?P=l)\])

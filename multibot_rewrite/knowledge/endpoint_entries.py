@@ -53,7 +53,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
     also = words_of(keys, "also")
     endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
-        **{key: word_of(keys, key) for key in ENDPOINT_WORDS},
+        **{key: word_of(keys, key) for key in keys.keys() & set(ENDPOINT_WORDS)},
         also=also,
         types=tuple(_types(keys, (word_of(keys, "type"), *also))),
         transport=flag_of(keys, "transport"),
@@ -86,7 +86,7 @@ def _kind(role: str, type_: str) -> str:
 def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
     """The endpoint, if its name and types are valid; no rule reaches a name made at run time."""
     for name in filter(None, (endpoint.name, endpoint.remapped)):
-        text = _MADE.sub("x", name)
+        text = _MADE.sub("x", name) if "<" in name else name
         fault = check_topic_name(text) or check_full_name(expand(text, "/", "node"))
         if fault:
             wrong(item, f"name {name!r}: {fault.reason}")

@@ -17,6 +17,7 @@ from math import inf
 from multibot_rewrite.base.bounded import QUOTED, load_json, load_yaml
 from multibot_rewrite.base.file_kinds import PLAN, refuse_others
 from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.spelling.plan_value import REMEDY, from_value, value_of
 from multibot_rewrite.system.records import System
@@ -38,7 +39,7 @@ HEAD = """\
 """
 Quote = Callable[[str], str]
 # Text that YAML reads back unchanged without quotes, in brackets too.
-_PLAIN = re.compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
+_PLAIN = lazy_compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
 
 
 def to_yaml(plan: System) -> str:
@@ -141,8 +142,8 @@ def from_yaml(data: bytes, file: str) -> System:
 
 
 # What follows ``robots:``, empty lines and comments aside.
-_ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
-_INCLUDE = re.compile(rb"^include:", re.MULTILINE)
+_ROBOTS = lazy_compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
+_INCLUDE = lazy_compile(rb"^include:", re.MULTILINE)
 
 
 def is_fleet(data: bytes) -> bool:

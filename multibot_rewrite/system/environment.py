@@ -7,11 +7,11 @@ on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from math import inf
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
@@ -34,9 +34,9 @@ LOCAL_LIMIT, PEER_LIMIT = 32, 4
 UNFINISHED = ("nodes-without-endpoints", "node-name-unknown")
 # How the process of a Fast DDS participant starts: the vendor, then four digits for its machine.
 _FAST_DDS = "010f"
-_NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_NUMBER = lazy_compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 # Never in a host name; rmw gives up on a host that it cannot look up.
-_NOT_IN_PEER = re.compile(r"[,\s]")
+_NOT_IN_PEER = lazy_compile(r"[,\s]")
 
 
 class DiscoverySettings(NamedTuple):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
@@ -23,8 +23,8 @@ Shape = Any
 Shapes = Mapping[str, Shape]
 _MERGE = "<<"
 # What OMPL projects on: joints(a, b).
-_EVALUATOR = re.compile(r"\s*(?P<kind>joint|link)s?\s*\((?P<names>[^()]*)\)\s*")
-_NAME = re.compile(r"[^\s,](?:[^,]*[^\s,])?")
+_EVALUATOR = lazy_compile(r"\s*(?P<kind>joint|link)s?\s*\((?P<names>[^()]*)\)\s*")
+_NAME = lazy_compile(r"[^\s,](?:[^,]*[^\s,])?")
 
 
 class FileKind(NamedTuple):

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
@@ -14,7 +14,7 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, numbe
 from multibot_rewrite.knowledge.stacks import is_apart
 
 Speller = Callable[[Context, str], str]
-_WORD = re.compile(r"[\w./-]+")
+_WORD = lazy_compile(r"[\w./-]+")
 # What the code of a node puts between a joint_stem and a name.
 STEM_END = "_"
 # The kind of the names that a prefix of some kind is put before.

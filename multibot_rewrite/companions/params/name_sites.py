@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import re
-
 import yaml
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
@@ -29,8 +28,8 @@ STRING = "tag:yaml.org,2002:str"
 NULL = "tag:yaml.org,2002:null"
 # Booleans for rcl, but not for PyYAML.
 _BOOLEANS = frozenset("yYnN")
-_NUMBER = re.compile(r"[-+.\d]")
-_STEM = re.compile(r"(.*?)\d+")
+_NUMBER = lazy_compile(r"[-+.\d]")
+_STEM = lazy_compile(r"(.*?)\d+")
 # Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
 # An empty prefix is replaced as well.

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 
 from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import XACRO, has_xacro
@@ -16,10 +17,10 @@ from multibot_rewrite.description.sources.read import XACRO, has_xacro
 # Files that are looked at; of a larger one nothing is read.
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
-_INCLUDED = re.compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
-_FILLED = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
-_MACRO = re.compile(rb"<\w+:macro\b")
-_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
+_INCLUDED = lazy_compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
+_FILLED = lazy_compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+_MACRO = lazy_compile(rb"<\w+:macro\b")
+_FIND = lazy_compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 
 
 def whole_robots(file: str) -> list[str]:

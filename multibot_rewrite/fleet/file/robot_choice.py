@@ -7,13 +7,13 @@ robot1, robot2 and robot3, each 2 m beside the one before.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_robot_name
@@ -24,7 +24,7 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # What each robot has for itself.
 OWN = ("namespace", "prefix", "postfix", "model")
 MOST = 10_000
-_NUMBERED = re.compile(r"(\w*[A-Za-z_])(\d+)")
+_NUMBERED = lazy_compile(r"(\w*[A-Za-z_])(\d+)")
 _TWO = 2
 _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
 

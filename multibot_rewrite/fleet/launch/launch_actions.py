@@ -124,10 +124,12 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
     """A node under a condition: what nobody else sends is needed."""
     topic = it.when.removeprefix(f"{UNSENT}: ")
+    if topic == it.when:
+        return False
     sent = [one for one in given.plan.fleet.table.names if _sends(one, topic)]
     mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
     others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
-    return topic != it.when and mine.isdisjoint({*others, *given.bridged})
+    return mine.isdisjoint({*others, *given.bridged})
 
 
 def _sends(it: EndpointName, topic: str) -> bool:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
@@ -11,6 +10,7 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
@@ -183,7 +183,7 @@ def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
 # Topics that several gz topics may come out on.
 TF = frozenset({"/tf", "/tf_static"})
 # What gz-transport takes in a topic (gz-transport TopicUtils).
-_GZ_WORD = re.compile(r"[A-Za-z0-9_.-]+(?:/[A-Za-z0-9_.-]+)*")
+_GZ_WORD = lazy_compile(r"[A-Za-z0-9_.-]+(?:/[A-Za-z0-9_.-]+)*")
 
 
 def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) -> str:

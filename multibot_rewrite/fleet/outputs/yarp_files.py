@@ -17,6 +17,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -31,10 +32,10 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 
 CONFIGURATION, INTERFACE = YARP_FILES
 MOST_INCLUDED = 50
-_URI = re.compile(r"(?:model|package)://([^/]+)/(.+)")
-_INCLUDE = re.compile(r'^[ \t]*\[include\b[^"\n]*"([^"\n]+)"', re.MULTILINE)
-_LINE = re.compile(r"^([ \t]*)(\w+)([ \t]+)([^#\n]*)", re.MULTILINE)
-_WORD = re.compile(r"[^\s()\"]+")
+_URI = lazy_compile(r"(?:model|package)://([^/]+)/(.+)")
+_INCLUDE = lazy_compile(r'^[ \t]*\[include\b[^"\n]*"([^"\n]+)"', re.MULTILINE)
+_LINE = lazy_compile(r"^([ \t]*)(\w+)([ \t]+)([^#\n]*)", re.MULTILINE)
+_WORD = lazy_compile(r"[^\s()\"]+")
 _KINDS = (("joint", "joint"), ("link", "link"), ("sensor", "sensor"))
 _ROBOT_NAME = "gazeboYarpPluginsRobotName"
 _ROVER = """\

@@ -6,11 +6,11 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
@@ -44,7 +44,7 @@ ORIGIN = Pose()
 # Elements of gz-sim's drive and odometry systems that hold the odometry frame.
 ODOMETRY = ("frame_id", "odom_frame")
 # What drivers call the parameter of their odometry frame.
-ODOMETRY_FRAME = re.compile(r"(^|[._])odom(etry)?_frame(_id|_name)?$")
+ODOMETRY_FRAME = lazy_compile(r"(^|[._])odom(etry)?_frame(_id|_name)?$")
 
 
 class StaticTransform(NamedTuple):

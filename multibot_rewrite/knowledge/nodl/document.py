@@ -7,10 +7,10 @@ ros-tooling/nodl (main, 915a4da) say.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
 from multibot_rewrite.knowledge.records import Endpoint
@@ -64,14 +64,14 @@ POLICIES = {
     "liveliness": ("AUTOMATIC", "MANUAL_BY_TOPIC", *_ANY),
 }
 NUMBERS = ("depth", "deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
-_NAME = re.compile(r"[A-Za-z]|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]")
-_TYPE = re.compile(r"([A-Za-z][A-Za-z0-9_]*)/(?:(msg|srv|action)/)?([A-Z][A-Za-z0-9]*)")
-_PARAMETER_TYPE = re.compile(
+_NAME = lazy_compile(r"[A-Za-z]|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]")
+_TYPE = lazy_compile(r"([A-Za-z][A-Za-z0-9_]*)/(?:(msg|srv|action)/)?([A-Z][A-Za-z0-9]*)")
+_PARAMETER_TYPE = lazy_compile(
     r"bool|int|double|string|none|(?:bool|byte|int|double|string)_array"
     r"|(?:string|(?:int|double|string)_array)_fixed_[1-9][0-9]*"
 )
-_REFERENCE = re.compile(r"[a-z][a-z0-9+.-]*://[^\s/]\S*")
-_WHOLE = re.compile(r"\d+")
+_REFERENCE = lazy_compile(r"[a-z][a-z0-9+.-]*://[^\s/]\S*")
+_WHOLE = lazy_compile(r"\d+")
 
 
 class Parameter(NamedTuple):

@@ -7,9 +7,9 @@ launch file's own rules. These stay from the library where it knows the same end
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
@@ -34,7 +34,7 @@ TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
 _TF = ("/tf", "/tf_static")
 _TF_TYPE = "tf2_msgs/msg/TFMessage"
 _IMAGE = "sensor_msgs/msg/Image"
-_FRAME = re.compile(r"(?:.*[._])?frame(?:_id)?")
+_FRAME = lazy_compile(r"(?:.*[._])?frame(?:_id)?")
 
 
 class _Slot(NamedTuple):

@@ -8,10 +8,10 @@ A document does not say which node it is for; its place does. In the ament index
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.nodl.document import Document, Include, parse
@@ -22,7 +22,7 @@ SUFFIXES = (".nodl.yaml", ".nodl.yml", ".nodl.json")
 NO_DOCUMENTS = "none"
 MAX_FILES = 20_000
 _BETWEEN = "__"
-_PACKAGE_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+_PACKAGE_NAME = lazy_compile(r"<name>\s*([^<\s]+)\s*</name>")
 _LOCAL, _INDEXED = "local://", "nodl://"
 
 

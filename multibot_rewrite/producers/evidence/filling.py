@@ -21,6 +21,8 @@ _ID = re.compile(r"<([a-z_ ]+)>")
 _NUMBER = "N"
 # A type that a list has behind the name is called list/msg/Type and so on.
 OF_LIST = "list/"
+# What a name has that is not the same on every robot.
+_OPEN_MARKS = set("<*")
 _TYPE = re.compile(r"/(?:msg|srv|action)/")
 Ids = Mapping[str, str]
 
@@ -75,6 +77,9 @@ def _endpoint(
 ) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set; ``own`` is what the
     stack makes of it."""
+    if not (raw.parameter or raw.condition or raw.when or _OPEN_MARKS & {*raw.name}):
+        yield from (_typed(it, lookup(node, values)) if it.types else it for it in own)
+        return
     ids = dict(node.ids)
     wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
     asked = _wanted(ids, raw.when)

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
@@ -24,7 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
-_ROW = re.compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
+_ROW = lazy_compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
 _IMAGE = "sensor_msgs/msg/Image"

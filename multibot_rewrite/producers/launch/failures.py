@@ -8,28 +8,29 @@ import re
 from traceback import extract_tb
 from types import FrameType
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 # What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
 _OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
-_OF_MACHINE = re.compile(r"(?:^|[\s\"'=:])/\w")
+_OF_MACHINE = lazy_compile(r"(?:^|[\s\"'=:])/\w")
 # ament_index_python and Python say it so; the share folder of a package that is stood in for
 # (source_packages.py).
-_NOT_FOUND = re.compile(
+_NOT_FOUND = lazy_compile(
     rf"package '([\w-]+)' not found|{NOT_INSTALLED}/share/([\w-]+)|No module named '(\w+)"
 )
 _NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argument"
 # launch says so of a launch configuration that is not set, and of an argument that is not given
 # (jazzy launch_configuration.py, declare_launch_argument.py).
-_NO_VALUE = re.compile(
+_NO_VALUE = lazy_compile(
     r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
 )
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
-_ASKED = re.compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
-_TRIED = re.compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
+_ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
+_TRIED = lazy_compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
 _OF_ROS_1 = re.compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
     r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"

@@ -9,12 +9,12 @@ AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``).
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.sources.packages import (
     MANIFEST,
     package_of,
@@ -24,7 +24,7 @@ from multibot_rewrite.description.sources.packages import (
 from multibot_rewrite.producers.launch.install_rules import link_share
 
 _INDEX = os.path.join("share", "ament_index", "resource_index", "packages")
-_PYTHON = re.compile(r"ament_python_install_package\(\s*(\w+)")
+_PYTHON = lazy_compile(r"ament_python_install_package\(\s*(\w+)")
 _PATH = "AMENT_PREFIX_PATH"
 # The prefix of packages that have an empty folder here.
 NOT_INSTALLED = "not_installed"

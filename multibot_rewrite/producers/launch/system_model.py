@@ -16,6 +16,7 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.description.sources.read import read_file
@@ -29,7 +30,7 @@ from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
 _ENDS = (".yaml", ".yml")
-_HEAD = re.compile(rb"^structure:", re.MULTILINE)
+_HEAD = lazy_compile(rb"^structure:", re.MULTILINE)
 _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
 
 

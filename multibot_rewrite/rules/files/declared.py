@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
@@ -31,14 +31,14 @@ from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
-_EVERYWHERE = re.compile(
+_EVERYWHERE = lazy_compile(
     r"use_sim_time|start_type_description_service|qos_overrides\..*|diagnostic_updater\..*|bond_\w+|type"
     r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|.*\.plugin|enable_parameter_\w+"
     r"|.*plugin_?\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
 )
-_ARRAY = re.compile(r"(\w+?)_array(?:_fixed_\d+)?")
-_WORD = re.compile(r"\w+")
-_CAPITALS = re.compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
+_ARRAY = lazy_compile(r"(\w+?)_array(?:_fixed_\d+)?")
+_WORD = lazy_compile(r"\w+")
+_CAPITALS = lazy_compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
 _SURE = frozenset((YAML, DEMANDED))

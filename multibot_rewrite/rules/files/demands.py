@@ -6,12 +6,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Set
 from typing import TypeGuard
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
@@ -28,7 +28,7 @@ from multibot_rewrite.rules.files.section_facts import Given, Section, filled, s
 
 # What keeps a node from coming up in each release.
 _STOPS = ("instead", "period")
-_OWN = re.compile(r"nav2_\w+_bt_node")
+_OWN = lazy_compile(r"nav2_\w+_bt_node")
 
 
 class Demand(NamedTuple):

@@ -8,11 +8,11 @@ kinematics_plugin_loader.cpp and ompl_interface.cpp (both ask by the groups of t
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
@@ -26,7 +26,7 @@ from multibot_rewrite.rules.files.records import Remark, remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 from multibot_rewrite.rules.subject import Robots, Subject
 
-_LIMIT = re.compile(
+_LIMIT = lazy_compile(
     r"robot_description_planning\.joint_limits\.(?P<joint>.+)\.(?P<what>max_velocity|m(?:ax|in)_position)"
 )
 # What a file says -> the attribute of the URDF's <limit>, and on which side of it is too far.
@@ -36,10 +36,10 @@ _OF_URDF = {
     "min_position": ("lower", -1),
 }
 _ROUNDED = 1e-3
-_JOINT = re.compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]+)\.")
+_JOINT = lazy_compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]+)\.")
 _SRDF = ".srdf"
-_ROBOT = re.compile(rb"<robot\s[^>]*?name\s*=\s*[\"']([^\"'$]*)[\"']")
-_GROUP = re.compile(rb"<group\s[^>]*?name\s*=\s*[\"']([^\"']*)[\"']")
+_ROBOT = lazy_compile(rb"<robot\s[^>]*?name\s*=\s*[\"']([^\"'$]*)[\"']")
+_GROUP = lazy_compile(rb"<group\s[^>]*?name\s*=\s*[\"']([^\"']*)[\"']")
 _ARM = """\
 <robot name="arm">
   <link name="base"/><link name="upper"/>

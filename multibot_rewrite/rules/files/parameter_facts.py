@@ -5,9 +5,9 @@ installed NoDL documents and by what is known."""
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.releases import has_release
@@ -27,7 +27,7 @@ from multibot_rewrite.rules.files.parameter_files import file_parameters
 NODL = "nodl"
 # Folders of a package that have files of generate_parameter_library, and what those are called.
 _FOLDERS = ("src", "param", "params", "parameters", "config", "include", "")
-_CALLED = re.compile(r".*param\w*\.ya?ml")
+_CALLED = lazy_compile(r".*param\w*\.ya?ml")
 
 
 def facts_of_node(

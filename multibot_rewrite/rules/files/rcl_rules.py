@@ -16,6 +16,7 @@ import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.wording import shorten
@@ -26,11 +27,11 @@ from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, ParamSe
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.rules.files.records import Remark, remark_at
 
-_PLACE = re.compile(r"^.*?:\d+(?::\d+)?: ")
-_NEARLY = re.compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
+_PLACE = lazy_compile(r"^.*?:\d+(?::\d+)?: ")
+_NEARLY = lazy_compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
 _DEEP = 4
 # What a launch file or a template puts something in place of; a brace alone begins a map.
-_FILLED_IN = re.compile(r"[<$%]|\{\{")
+_FILLED_IN = lazy_compile(r"[<$%]|\{\{")
 _TIME = "use_sim_time"
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from lxml.etree import _Element
@@ -11,6 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import EVERY, RVIZ
 from multibot_rewrite.companions.named_file import NamedFile
@@ -22,10 +22,10 @@ from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
 # Only where such letters begin, or a line of dashes would be looked at from each of them.
-_TOKEN = re.compile(r"(?<![A-Za-z0-9_~/.-])[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
+_TOKEN = lazy_compile(r"(?<![A-Za-z0-9_~/.-])[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
 _BETWEEN = "".join(BETWEEN)
 # Values that are not names, such as URLs, substitutions and files.
-_NOT_A_NAME = re.compile(
+_NOT_A_NAME = lazy_compile(
     r"://|\$\(|\$\{|\.(?:yaml|rviz|urdf|xml|stl|dae|obj|world|sdf|pgm|png|so)\b"
 )
 

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import re
-
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
@@ -19,7 +18,7 @@ DOES = {
     CALLS: "has a client for",
 }
 # FILE:LINE, as plans have the place of a plugin.
-_PLACE = re.compile(r"(.+):(\d{1,9})")
+_PLACE = lazy_compile(r"(.+):(\d{1,9})")
 
 
 class Cause(NamedTuple):

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
@@ -16,7 +16,7 @@ from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge, End
 
 # What is each robot's own: who and where it is, what it is connected to, which files it reads.
-_OWN = re.compile(
+_OWN = lazy_compile(
     r"(^|[._])((?<!frame_)id|ip|ports?|address(es)?|host(name)?|ur[li]|serial|device|dev|names?|namespace"
     r"|prefix|tag|color|seed|domain|poses?|position|datum|path|file(name)?|folder|home|start)([._]|$)"
     r"|^(x|y|z|yaw|roll|pitch|theta|qos_overrides\..*)$|description|semantic|plugin_lib"

@@ -9,13 +9,14 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, once
 from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
-_DIGITS = re.compile(r"_?\d+")
+_DIGITS = lazy_compile(r"_?\d+")
 # So alike that it is a slip: cmd_vel_smoth, not cmd_vel_ui beside cmd_vel_nav.
 _SLIP = 0.85
 _MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")

@@ -12,11 +12,12 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.producers.launch.stand_in import packages, values
 
 Parts = list[Any]
-_NAME = re.compile(r"[A-Za-z][\w-]*")
-_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
+_NAME = lazy_compile(r"[A-Za-z][\w-]*")
+_ESCAPED = lazy_compile(r"\\(.)", re.DOTALL)
 # Text at the top or between these quotes, and a word of a substitution there.
 _TEXTS, _WORDS = (
     {it: re.compile(rf"(?:[^\\${it}{ends}]|\\.|\$(?!\())+", re.DOTALL) for it in ("", "'", '"')}
