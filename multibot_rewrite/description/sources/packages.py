@@ -106,8 +106,8 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
     manifest has it."""
     named: dict[str, tuple[str, ...]] = {}
     called: dict[str, tuple[str, ...]] = {}
-    for folder in _folders(roots):
-        if MANIFEST in entries(folder):
+    for folder, is_package in _folders(roots):
+        if is_package:
             name = _package_name(folder)
             named[name] = (*named.get(name, ()), folder)
         else:
@@ -116,22 +116,27 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
     return called | named
 
 
-def _folders(roots: tuple[str, ...]) -> Iterator[str]:
-    """Folders breadth first, links not followed, down to packages and no further than the bounds."""
+def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
+    """Folders breadth first, each with whether it is a package: links not followed, down to packages
+    and no further than the bounds."""
     waiting = deque((os.path.abspath(root), 0) for root in roots)
     for _ in range(MOST_FOLDERS):
         if not waiting:
             return
         folder, depth = waiting.popleft()
-        yield folder
-        if depth < DEEPEST and MANIFEST not in entries(folder):
-            waiting += ((it, depth + 1) for it in _subfolders(folder))
+        inside = _inside(folder)
+        is_package = any(it.name == MANIFEST for it in inside)
+        yield folder, is_package
+        if depth < DEEPEST and not is_package:
+            waiting += (
+                (it, depth + 1) for it in sorted(it.path for it in inside if _worth_a_look(it))
+            )
 
 
-def _subfolders(folder: str) -> list[str]:
+def _inside(folder: str) -> list[os.DirEntry[str]]:
     try:
         with os.scandir(folder) as found:
-            return sorted(it.path for it in found if _worth_a_look(it))
+            return list(found)
     except OSError:
         return []
 

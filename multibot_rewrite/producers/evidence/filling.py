@@ -33,7 +33,7 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
     the stack says stays. Raises InputError for a word of a list that makes no valid name.
     """
-    values = given.values
+    values, value_of = given.values, lookup(node, given.values)
     whole = known or node
     of_stack: dict[tuple[str, str], list[Endpoint]]
     of_stack = {(it.role, it.name): [] for it in whole.endpoints}
@@ -41,7 +41,7 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     for it in node.endpoints:
         of_stack.get((it.role, it.named_from or it.name), alone).append(it)
     each = ((it, of_stack[it.role, it.name]) for it in whole.endpoints)
-    made = [it for raw, own in each for it in _endpoint(node, raw, own, values)] + alone
+    made = [it for raw, own in each for it in _endpoint(node, raw, own, values, value_of)] + alone
     with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
     return with_frames._replace(
         name=given.name,
@@ -73,12 +73,16 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
 
 
 def _endpoint(
-    node: NodeFacts, raw: Endpoint, own: Iterable[Endpoint], values: Mapping[str, Given]
+    node: NodeFacts,
+    raw: Endpoint,
+    own: Iterable[Endpoint],
+    values: Mapping[str, Given],
+    value_of: Values,
 ) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set; ``own`` is what the
     stack makes of it."""
     if not (raw.parameter or raw.condition or raw.when or _OPEN_MARKS & {*raw.name}):
-        yield from (_typed(it, lookup(node, values)) if it.types else it for it in own)
+        yield from (_typed(it, value_of) if it.types else it for it in own)
         return
     ids = dict(node.ids)
     wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
@@ -86,20 +90,20 @@ def _endpoint(
     # What its name has decides how it is called; what only its condition asks may be unknown.
     if _are_listed([ids[it] for it in asked], values):
         wanted = [*dict.fromkeys((*wanted, *asked))]
-    is_there = verdict(raw.when, lookup(node, values)) if raw.when and not wanted else None
+    is_there = verdict(raw.when, value_of) if raw.when and not wanted else None
     if is_there is False:
         return
     of_stack = [_sure(it, is_there) for it in own]
     remapped = next((it.remapped for it in of_stack), "")
     if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
-        yield from (_typed(it, lookup(node, values)) for it in of_stack)
+        yield from (_typed(it, value_of) for it in of_stack)
         return
     for binding in _bindings(ids, wanted, values):
         bound = _bound(raw._replace(remapped=remapped), binding)
-        is_bound = verdict(bound.when, lookup(node, values)) if bound.when and binding else is_there
-        if is_bound is not False and holds(bound.condition, lookup(node, values)):
+        is_bound = verdict(bound.when, value_of) if bound.when and binding else is_there
+        if is_bound is not False and holds(bound.condition, value_of):
             decided = is_bound if bound.when else bool(binding or bound.condition)
-            typed = _typed(_sure(bound, decided), lookup(node, values))
+            typed = _typed(_sure(bound, decided), value_of)
             words = [it for it in _ID.findall(raw.name) if it in ids]
             listed = values.get(_put(ids[words[-1]], binding)) if words else None
             typed = _listed_type(typed, listed, binding[words[-1]] if words else "")

@@ -64,11 +64,10 @@ def _name(path: str) -> str:
 def given_nodes(
     documents: Iterable[YamlText],
     known: KnownNodes,
-    only: Collection[str] = (),
     managers: Collection[str] = (),
 ) -> list[GivenNode]:
-    """The nodes that these files have sections for, and the controllers that they declare; ``only``
-    some of them, by name. ``managers`` are controller managers that are not called as usual.
+    """The nodes that these files have sections for, and the controllers that they declare.
+    ``managers`` are controller managers that are not called as usual.
 
     Raises InputError for a file that is not a parameter file, and for a controller whose name no node
     can have.
@@ -78,10 +77,9 @@ def given_nodes(
     for name, it in controllers.items():
         _check_name(name.rpartition("/")[2], it.type.place)
     # A node of Nav2 makes helpers that have its parameters, and none of its topics and actions.
-    own = (it.name for it in sections if it.name in only or not it.name.endswith(INNER))
+    own = (it.name for it in sections if not it.name.endswith(INNER))
     names = dict.fromkeys(filter(None, (*own, *controllers)))
-    wanted = (it for it in names if it in only) if only else names
-    return [_node(name, sections, controllers.get(name), known) for name in wanted]
+    return [_node(name, sections, controllers.get(name), known) for name in names]
 
 
 def _check_name(name: str, place: Place) -> None:
@@ -104,7 +102,14 @@ def named_values(
     for node in nodes:
         own = [it for it in sections if re.fullmatch(it.pattern, node)]
         if any(it.name for it in own):
-            yield node, {name: value for it in own for name, value in it.values.items()}
+            yield node, _values(own)
+
+
+def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
+    """All values that a node (full name) gets from these files; raises as ``named_values``."""
+    return _values(
+        _own([it for document in documents for it in _sections(document)], node.strip("/"))
+    )
 
 
 @lru_cache(maxsize=64)
@@ -175,12 +180,20 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
             yield section.name, _Controller(given, f"{above}/{MANAGER}" if above else MANAGER)
 
 
+def _own(sections: Sequence[_Section], name: str) -> list[_Section]:
+    # A section such as /*/NODE is for the node in whatever namespace it is.
+    return [it for it in sections if it.name == name or re.fullmatch(it.pattern, f"/{name}")]
+
+
+def _values(sections: Sequence[_Section]) -> dict[str, Given]:
+    return {key: given for it in sections for key, given in it.values.items()}
+
+
 def _node(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> GivenNode:
-    # A section such as /*/NODE is for the node in whatever namespace it is.
-    own = [it for it in sections if it.name == name or re.fullmatch(it.pattern, f"/{name}")]
-    values = {key: given for it in own for key, given in it.values.items()}
+    own = _own(sections, name)
+    values = _values(own)
     named = [it for it in own if it.name]
     last = name.rpartition("/")[2]
     type_ = str(controller.type.value) if controller else ""

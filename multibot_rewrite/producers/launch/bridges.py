@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
 
 import yaml
 
@@ -126,7 +127,12 @@ def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
         yield Row(Endpoint(TOPIC, role, name, full), inside)
 
 
-def _of_text(text: str) -> Iterator[Row]:
+@lru_cache(maxsize=64)
+def _of_text(text: str) -> tuple[Row, ...]:
+    return tuple(_written(text))
+
+
+def _written(text: str) -> Iterator[Row]:
     try:
         entries = load_yaml(text)
     except (yaml.YAMLError, ValueError):

@@ -27,7 +27,7 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes, values_for
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
@@ -210,10 +210,10 @@ def _started(
     home = container.remappings if container else () if it.container else it.remappings
     inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.name]
     hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
-    values = _values_by_name(it, (name, *hosted), known)
-    names = {name: facts, **hosted}
-    for full, own in names.items():
+    documents = [document_of(text.file, text.text) for text in it.parameters if has_sections(text)]
+    for full, own in {name: facts, **hosted}.items():
         above, _, last = full.rpartition("/")
+        given = GivenNode(full.strip("/"), "", "", values_for(full, documents), it.place)
         rules = it.remappings if full == name else home
         arguments = it.arguments if full == name else ()
         yield RunningNode(
@@ -222,8 +222,8 @@ def _started(
             rules,
             home,
             (container or it).namespace,
-            _with_values(own, values[full], arguments),
-            values[full].values,
+            _with_values(own, given, arguments),
+            given.values,
             it.container or process,
             arguments,
             f"{it.package}/{it.executable}",
@@ -240,19 +240,6 @@ def _with_values(
         return None
     made = as_named(filled(facts, given)._replace(known=facts.kind), words, given.values)
     return with_static_transform(made, words)
-
-
-def _values_by_name(
-    it: LaunchedNode, names: Sequence[str], known: Knowledge
-) -> dict[str, GivenNode]:
-    """What the parameters of a launched node set for each node in its process."""
-    sections = "".join(f"{name}:\n  ros__parameters: {{}}\n" for name in names)
-    texts = [text for text in it.parameters if has_sections(text)]
-    documents = [document_of("", sections), *(document_of(text.file, text.text) for text in texts)]
-    wanted = {name.strip("/") for name in names}
-    given = given_nodes(documents, known.parameters, wanted)
-    found = {f"/{one.name}": one for one in given}
-    return {name: found[name] for name in names}
 
 
 def _controllers(

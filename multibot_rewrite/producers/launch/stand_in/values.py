@@ -10,6 +10,7 @@ import importlib
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -342,6 +343,7 @@ def truth_of(context: LaunchContext, value: Text) -> bool:
     return _TRUTHS[word]
 
 
+@lru_cache(maxsize=64)
 def typed_truth(text: str) -> bool:
     """The truth of a text as YAML has it, or 1 and 0; raises ValueError for one that is none."""
     found = load_yaml({"1": "true", "0": "false"}.get(text, text)) if text else text
