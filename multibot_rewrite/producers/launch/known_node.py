@@ -37,7 +37,7 @@ def known_node(
     program = f"{it.package}/{it.executable}"
     of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
     wanted = {it.name, it.executable, executable, executable.removesuffix("_node")}
-    of_package = [node for node in known.values() if node.package == it.package and not node.host]
+    of_package = (node for node in known.values() if node.package == it.package and not node.host)
     # A component that has a program of its own is called as its class: RectifyNode, rectify_node.
     by_word = (node for node in of_package if {node.name, _snake(node.name)} & wanted)
     chosen = (node for node in known.values() if runs(node, program))

@@ -251,7 +251,8 @@ def _controllers(
     """The controllers that spawners load into launched managers, where they are activated."""
     if not spawned:
         return
-    own = {full_name(it, known_node(it, (), known.nodes)): it.parameters for it in started}
+    facts = ((it, None if it.name else known_node(it, (), known.nodes)) for it in started)
+    own = {full_name(it, fact): it.parameters for it, fact in facts}
     forwarded = controller_way(known.release)
     for name, texts in texts_of(spawned, own):
         if name not in managers:
