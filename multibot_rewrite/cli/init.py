@@ -25,18 +25,9 @@ from multibot_rewrite.cli.usage import plain_words, xacro_args
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import (
-    MEANT,
-    Choice,
-    Proposal,
-    Seen,
-    Wanted,
-    names_of,
-    release_of,
-    see,
-    with_arguments,
-)
+from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
 from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
 from multibot_rewrite.fleet.proposal.trying import (
     as_named,
     first_that_builds,

@@ -21,16 +21,9 @@ from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import data_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked, without_names
-from multibot_rewrite.fleet.proposal.propose import (
-    Choice,
-    Proposal,
-    Seen,
-    Wanted,
-    affix_of,
-    propose,
-    with_arguments,
-)
+from multibot_rewrite.fleet.proposal.propose import Choice, Proposal, affix_of, propose
 from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
 MOST_ROUNDS, MOST_TRIED = 10, 5

@@ -11,7 +11,8 @@ import pytest
 
 from multibot_rewrite.cli import init
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice, Wanted
+from multibot_rewrite.fleet.proposal.propose import Choice
+from multibot_rewrite.fleet.proposal.seeing import Wanted
 
 
 @pytest.fixture

@@ -12,7 +12,8 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.proposal import propose
 from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Member, Wanted
+from multibot_rewrite.fleet.proposal.propose import Member
+from multibot_rewrite.fleet.proposal.seeing import Wanted
 from multibot_rewrite.fleet.proposal.searching import search
 
 OF_NAV2 = ("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox")

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is asked for -> the descriptions that may be meant, the likeliest first."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.included_by import robot_instead
+from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.fleet.proposal.choosing import (
+    Chosen,
+    Undecided,
+    acts,
+    chosen,
+    launches_of,
+    may_be_partners,
+    partner,
+)
+from multibot_rewrite.fleet.proposal.companions import srdf_of
+from multibot_rewrite.fleet.proposal.looking import (
+    NO_SIMULATOR,
+    Looked,
+    NeededValues,
+    in_its_world,
+    look,
+    with_model,
+    with_own_arguments,
+    with_semantic_arguments,
+)
+from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
+
+# Descriptions of a folder that are looked at.
+MOST = 60
+# Files that may be of the same robot that are looked at.
+MOST_PARTNERS = 5
+# Packages that start a simulator.
+_SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
+
+
+def _silent(_: str) -> None:
+    """Nobody is told."""
+
+
+class Wanted(NamedTuple):
+    """What is asked for: files and folders, robots of each description or their names, values of xacro
+    arguments, the release and whether somebody named it, a layout if not the one that the files are
+    made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
+    simulator or "none" if not what the files are for. ``tell`` is told what is looked at."""
+
+    paths: tuple[str, ...]
+    each: int
+    arguments: Mapping[str, str]
+    release: str
+    named: bool
+    layout: str = ""
+    trust: bool = False
+    names: tuple[str, ...] = ()
+    apart: float = 0.0
+    simulator: str = ""
+    tell: Callable[[str], None] = _silent
+
+
+class Seen(NamedTuple):
+    """What there is: the files, and descriptions that may be meant, the likeliest first; ``named`` is
+    true for those that were asked for, all of which count. ``rivals`` are as likely as the first,
+    ``alike`` are other files of it."""
+
+    found: Found
+    robots: Sequence[Looked]
+    named: bool
+    rivals: Sequence[Looked] = ()
+    alike: Sequence[Looked] = ()
+
+
+def see(wanted: Wanted) -> Seen:
+    """Look at all descriptions; the likeliest robot of a folder is the first.
+
+    Raises UsageError where there is none, for one that was named and cannot be read, and for the one
+    that launch files load where it cannot be read.
+    """
+    wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
+    found = search(wanted.paths)
+    reach = Reach(trust=wanted.trust)
+    values = NeededValues(found.launch)
+    every = found.descriptions
+    if len(every) > MOST:
+        every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
+    look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
+    looked = []
+    for at, it in enumerate(every, 1):
+        wanted.tell(f"{at} of {len(every)} descriptions: {it}")
+        looked.append(look_at(it))
+    named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
+    return _named(wanted, found, named, look_at) if named else _likeliest(wanted, found, looked)
+
+
+def _named(
+    wanted: Wanted, found: Found, named: list[Looked], look_at: Callable[[str], Looked]
+) -> Seen:
+    """The descriptions that were named; beside one alone stand those that share its folder."""
+    _refuse([it for it in named if not it.links], "")
+    if len(named) > 1:
+        return Seen(found, named, True)
+    beside = [look_at(it) for it in _partners(named[0], found)]
+    return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
+
+
+def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
+    """The robots of a folder, the likeliest first."""
+    usable = [it for it in looked if it.links and acts(it)]
+    if not usable:
+        others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
+        _refuse(_by_launches(looked, found), others)
+        where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
+        raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
+    best = chosen(usable, found)
+    _refuse(
+        _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
+    )
+    likeliest = best.order[0]
+    # The name of a model tells what it carries: x500_lidar.
+    if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
+        said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
+        raise Undecided("no description of a whole robot is there", said, found)
+    order, rivals, alike = ([it.robot for it in its] for its in best)
+    known = {*_partners(order[0], found)}
+    beside = [it for it in usable if it in alike or it.path in known]
+    first = _with_partner(order[0], beside, wanted)
+    left = [] if first == order[0] else [order[0]]
+    rivals = [it for it in rivals if it.path not in (first.path, first.model)]
+    return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike])
+
+
+def _partners(it: Looked, found: Found) -> list[str]:
+    """Files that may be of the same robot: none of a URDF that has its simulator's part itself."""
+    if it.tag == "robot" and it.simulator != NO_SIMULATOR:
+        return []
+    return [*may_be_partners(it.path, found)][:MOST_PARTNERS]
+
+
+def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looked:
+    """The URDF of a robot for robot_state_publisher, which takes no SDF, and its SDF for the simulator,
+    where both are there."""
+    other = partner(it, others) if wanted.simulator != REAL else None
+    if other is None or (it.tag == "robot" and it.simulator != NO_SIMULATOR):
+        return it
+    return with_model(other, it) if it.tag == "sdf" else with_model(it, other)
+
+
+def _rather(best: Chosen, looked: Sequence[Looked], found: Found) -> list[Looked]:
+    """Descriptions that cannot be read, and that more launch files load than the likeliest; any where
+    that one cannot move."""
+    least = best.order[0].launched if best.order[0].moving else -1
+    broken = _by_launches([it for it in looked if it.fault], found)
+    return [it for it in broken if launches_of(it.path, found) > least]
+
+
+def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
+    """Those that cannot be read, and that launch files load, first."""
+    return sorted(looked, key=lambda it: (not it.fault, -launches_of(it.path, found)))
+
+
+def _refuse(which: Sequence[Looked], more: str) -> None:
+    for it in which[:1]:
+        why = f"it has no link; {robot_instead(it.path)}"
+        if it.links:
+            why = "nothing in it moves or senses; give the file that has the robot"
+        fault = it.fault or f"{it.path}: {why}"
+        raise UsageError(f"{fault}{more}")
+
+
+def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> list[Looked]:
+    """The robots with the arguments of their xacros that give each its own names, and with the one that
+    makes them simulated or real: as it was asked for, or as the files are."""
+    tree = builtin_tree((), wanted.release)
+    reach = Reach(trust=wanted.trust)
+    own = [with_own_arguments(it, tree, reach) for it in robots]
+    launched = any(it in text_of(path) for path in found.launch for it in _SIMULATORS)
+    made = [
+        in_its_world(it, _is_simulated(it, wanted) or (launched and not wanted.simulator), reach)
+        for it in own
+    ]
+    values = NeededValues(found.launch)
+    return [
+        with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
+        for it in made
+    ]
+
+
+def _is_simulated(it: Looked, wanted: Wanted) -> bool:
+    has = it.simulator != NO_SIMULATOR
+    return wanted.simulator != REAL if wanted.simulator else has
