@@ -9,7 +9,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.fleet.proposal import propose
+from multibot_rewrite.fleet.proposal import propose, seeing
 from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member
@@ -110,9 +110,9 @@ def test_robots_are_numbered_and_several_descriptions_have_their_own_words() -> 
 )
 def test_why_a_description_is_not_taken(looked: Looked, said: str) -> None:
     with pytest.raises(UsageError) as found:
-        propose._refuse([looked, Looked("b.urdf", fault="other")], "; more")
+        seeing._refuse([looked, Looked("b.urdf", fault="other")], "; more")
     assert str(found.value).startswith(said) and str(found.value).endswith("; more")
-    propose._refuse([], "; more")
+    seeing._refuse([], "; more")
 
 
 def wanted(**more: Any) -> Wanted:
@@ -127,7 +127,7 @@ def test_what_is_asked_for_counts_more_than_what_is_there(
     simulator: str, has: str, simulated: bool
 ) -> None:
     looked = Looked("a.urdf", **({"simulator": has} if has else {}))
-    assert propose._is_simulated(looked, wanted(simulator=simulator)) is simulated
+    assert seeing._is_simulated(looked, wanted(simulator=simulator)) is simulated
 
 
 def test_the_release_is_asked_for_or_that_of_the_simulator() -> None:
