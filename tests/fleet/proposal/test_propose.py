@@ -13,8 +13,8 @@ from multibot_rewrite.fleet.proposal import propose, seeing
 from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member
-from multibot_rewrite.fleet.proposal.seeing import Wanted
 from multibot_rewrite.fleet.proposal.searching import search
+from multibot_rewrite.fleet.proposal.seeing import Wanted
 
 OF_NAV2 = ("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox")
 
