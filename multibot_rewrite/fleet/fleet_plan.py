@@ -12,6 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.declared_twice import declared_twice
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.other_manager import other_manager
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import (
@@ -147,7 +148,7 @@ def _fleet(
     chosen = [it.member for it in robots if is_chosen(it)]
     real = [it.member for it in robots if it.spec.simulator == REAL]
     wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)
-    told = (*declared_twice(robots, naming, table), *wrong)
+    told = (*declared_twice(robots, naming, table), *other_manager(robots, table), *wrong)
     every = (
         it for it in table.problems if it.code != UNREACHABLE_NAME.code or not _never_meet(file)
     )

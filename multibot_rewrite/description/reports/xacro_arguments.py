@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -25,6 +26,8 @@ PREFIX, POSTFIX, WHOLE, INSIDE = "prefix", "postfix", "whole", "inside"
 _NOTHING = ("", "None")
 # What arguments for a robot's own names are called.
 _NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
+# What an argument is called whose value is the namespace of the robot, whatever it is by default.
+_SPACE = lazy_compile(r"(robot_?)?(namespace|ns)", re.IGNORECASE)
 _MARK = MARKS[0]
 PARTS = ("link", "joint")
 _SEPARATORS = "/_-."
@@ -72,11 +75,12 @@ class Argument(NamedTuple):
         """The same, whatever it misses.
 
         It is for that if it goes before or behind names or is a namespace, and is empty by default or
-        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. Raises nothing.
+        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. So is that of a
+        namespace of all plugins. Raises nothing.
         """
         ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
         spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
-        if not (self.is_empty or self.is_everywhere) or not (ends or spaces):
+        if not (self.is_empty or self.is_everywhere or self.is_space) or not (ends or spaces):
             return ""
         before = "_" if ends.get(POSTFIX) == "" else ""
         after = "_" if ends.get(PREFIX) == "" else ""
@@ -92,6 +96,14 @@ class Argument(NamedTuple):
         """Is it in every link and joint? Raises nothing."""
         parts = [use for use in self.uses if use.kind in PARTS]
         return bool(parts) and all(use.names == use.total for use in parts)
+
+    @property
+    def is_space(self) -> bool:
+        """Is it the namespace of every plugin, and in no other name? Raises nothing."""
+        called = bool(self.uses) and _SPACE.fullmatch(self.name) is not None
+        return called and all(
+            (use.kind, use.how, use.names) == ("namespace", WHOLE, use.total) for use in self.uses
+        )
 
 
 class XacroArguments(NamedTuple):

@@ -111,7 +111,7 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
 
 def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
     uses = [use for use in it.uses if use.kind in ROS_KINDS or use.how != WHOLE]
-    if not (it.word and it.is_empty and uses) or any(
+    if not (it.word and (it.is_empty or it.is_space) and uses) or any(
         _makes_other_names(use, naming) for use in uses
     ):
         return _Choice(it.name)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Controller managers that a plugin makes under another name than the one is started and asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.spelling.records import Table
+
+_ROVER = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="wheel"/>
+  <joint name="wheel_joint" type="continuous">
+    <parent link="base_link"/>
+    <child link="wheel"/>
+    <axis xyz="0 1 0"/>
+  </joint>
+  <gazebo>
+    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+      <ros>{}</ros>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+_FLEET = """\
+layout: both
+affix: prefix
+simulator: gazebo
+stack: [gz_ros2_control]
+description: {}.urdf
+robots:
+  - {{name: robot1}}
+"""
+OTHER_MANAGER = declare(
+    "MF850",
+    "other-manager",
+    ERROR,
+    what="The plugin in the description makes a controller manager under another name than that of the "
+    "robot's stack: it has a namespace or a name of its own.",
+    why="The launch file starts a second manager, which cannot load the hardware of a simulator, and "
+    "the spawners ask that one: no controller of the plugin's manager is loaded.",
+    fix="Remove `<namespace>` and `<controller_manager_name>` of the plugin: the rewrite gives it the "
+    "robot's namespace. Where an argument of the xacro sets it, give that `'{robot}'`.",
+    bad=_FLEET.format("rover"),
+    good=_FLEET.format("plain"),
+    line=7,
+    formats=("fleet",),
+    beside={
+        "rover.urdf": _ROVER.format("<namespace>rover</namespace>"),
+        "plain.urdf": _ROVER.format(""),
+    },
+)
+
+
+def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Finding]:
+    """The robots whose stack has a manager that no plugin makes, though one makes another."""
+    first: dict[str, RewrittenRobot] = {}
+    for robot in robots:
+        own = [it for it in table.nodes if it.robot == robot.member.robot]
+        made = [it.full_name for it in own if it.home.written and it.home.process_wide]
+        asked = {it.full_name for it in own if it.node == MANAGER and not it.home.written}
+        if made and asked and asked.isdisjoint(made):
+            message = f"a plugin makes {made[0]}, but what the robot runs asks {min(asked)}"
+            hint = "remove <namespace> and <controller_manager_name> of the plugin"
+            # What is the same for all robots of a description is said in one line.
+            at = first.setdefault(robot.spec.description, robot)
+            yield at_robot(OTHER_MANAGER, at, message, hint)
