@@ -29,7 +29,6 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final, in_words
-from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.domains import check_domains
@@ -110,6 +109,8 @@ def _parameters(plan: System) -> dict[str, list[str]]:
 
 
 def _recorded(options: argparse.Namespace, plan: System) -> int:
+    from multibot_rewrite.producers.bags.read import read_bag
+
     recording = read_bag(options.bag)
     return conclude(options, plan, as_snapshot(recording, plan), messages=counted(recording))
 

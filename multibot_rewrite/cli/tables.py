@@ -5,11 +5,11 @@ and where even that does not fit, each row becomes lines of its own."""
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import zip_longest
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.printable import in_json, one_line
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
@@ -19,7 +19,7 @@ JSON = "json"
 NUMBERS = ("count", "files", "rows")
 GAP = "  "
 # Where a cell may be folded: behind a blank, or behind a slash inside a name.
-_PIECE = re.compile(r"[^ /]*(?:/+|\s+|$)")
+_PIECE = lazy_compile(r"[^ /]*(?:/+|\s+|$)")
 
 
 class Grid(NamedTuple):

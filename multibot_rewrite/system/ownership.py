@@ -76,6 +76,9 @@ class NameOwnership(NamedTuple):
         tag = self.tag(robot)
         if not tag or tag not in name:
             return name
+        # Most are called so.
+        if name.startswith(f"/{tag}/") and not self.robot_is_last:
+            return name[len(tag) + 1 :]
         slash = "/" if name.startswith("/") else ""
         if "/" in tag:
             return slash + f"{name.strip('/')}/".removeprefix(f"{tag}/").rstrip("/")

@@ -9,13 +9,11 @@ from __future__ import annotations
 import errno
 import os
 import re
-import tempfile
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import partial
 from itertools import islice
 from math import inf
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
@@ -62,6 +60,8 @@ _NO_LIMIT_SECONDS = 9_223_372_036
 
 def read_bag(path: str) -> Recording:
     """What a folder, or a file .mcap or .db3, holds; raises InputError, Unusable."""
+    from tempfile import TemporaryDirectory  # slow to import; few look at bags
+
     try:
         import rosbags.rosbag2  # noqa: F401
     except ImportError as error:
@@ -88,6 +88,8 @@ def read_bag(path: str) -> Recording:
 
 def _read(folder: str, most: int, path: str) -> Recording | InputError:
     """What a bag holds, or why not, in a process that has bounds: little may unpack to much."""
+    import tempfile
+
     from rosbags.rosbag2 import Reader
 
     tempfile.tempdir = folder

@@ -6,8 +6,6 @@ By stamps, since a busy machine receives late; by their median, since it loses s
 
 from __future__ import annotations
 
-from statistics import median
-
 from multibot_rewrite.base.record import NamedTuple
 
 # So many times between two messages say how often they come, and more do not say more.
@@ -32,4 +30,6 @@ class Pace(NamedTuple):
 
     def rate(self) -> float:
         """Messages a second; 0 if not known."""
+        from statistics import median  # slow to import, and few messages are counted
+
         return round(1 / median(self.between), 1) if len(self.between) >= ENOUGH else 0.0

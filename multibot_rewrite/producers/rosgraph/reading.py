@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any, cast
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.rosgraph.messages import (
     DURABILITY,
@@ -46,7 +47,7 @@ from multibot_rewrite.system.records import (
 
 # nodl_observe writes no limit as the largest int32, rosgraph_monitor as 0.
 _NO_LIMIT = 2**31 - 1
-_CUT_SHORT = re.compile(r"^\s*- '?\.\.\.'?$", re.MULTILINE)
+_CUT_SHORT = lazy_compile(r"^\s*- '?\.\.\.'?$", re.MULTILINE)
 _REQUEST = "_Request"
 NO_FRAMES = Caveat(
     "frames-not-read", False, "a rosgraph_msgs/Graph has no transforms: they are not compared"

@@ -38,8 +38,8 @@ running: enclave /robot2 of /robot2/driver
 def enclave_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
-        robot = plan.robot_of.get(name, "")
-        if not (robot and enclave) or _is_of(enclave, robot):
+        robot = plan.robot_of.get(name, "") if enclave else ""
+        if not robot or _is_of(enclave, robot):
             continue
         other = next((it for it in sorted(plan.declared) if _is_of(enclave, it)), "")
         if other:
@@ -70,13 +70,14 @@ running: enclave /robot2 of /robot2/driver
 )
 def without_enclave(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a robot."""
-    planned = [it for it in seen.system.nodes if it.name in plan.robot_of]
+    of = plan.robot_of
+    planned = [it for it in seen.system.nodes if it.name in of]
     if not any(it.enclave for it in planned):
         return
     bare: dict[str, list[Node]] = {robot: [] for robot in plan.declared}
     for it in planned:
         if not it.enclave:
-            bare[plan.robot_of[it.name]].append(it)
+            bare[of[it.name]].append(it)
     yield from (_bare(robot, nodes) for robot, nodes in bare.items() if nodes)
 
 

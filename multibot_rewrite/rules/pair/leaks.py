@@ -45,9 +45,9 @@ def name_of_no_robot(plan: Index, seen: Index) -> Iterator[Finding]:
 
 def _unplanned_leaks(plan: Index, seen: Index) -> Iterator[Finding]:
     shared = {*plan.system.shared_topics, *EVERYBODYS}
-    not_remapped = _missing_by_name_without_rules(plan, seen)
+    not_remapped, unplanned = _missing_by_name_without_rules(plan, seen), unplanned_ends(plan, seen)
     for node, robot in plan.robot_of.items():
-        for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
+        for end in {it.name: it for it in unplanned.get(node, ())}.values():
             name = end.name
             # Whose tf is where is a rule of its own.
             if name in shared or plan.robot(name) or end.type == TF:
@@ -154,8 +154,9 @@ def _shared_tf(plan: Index) -> set[str]:
 @found_by_plan(command_from_another_robot, data_of_another_robot)
 def name_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of planned nodes; names that are in the plan are meant."""
+    unplanned = unplanned_ends(plan, seen)
     for node, robot in plan.robot_of.items():
-        for end in unplanned_ends(plan, seen).get(node, ()):
+        for end in unplanned.get(node, ()):
             other = plan.robot(end.name)
             # Whose tf is where is a rule of its own.
             if other and other != robot and end.type != TF:

@@ -40,9 +40,8 @@ def unplanned_nodes(plan: Index, seen: Index) -> Sequence[str]:
 
 @once
 def _others(plan: Index, seen: Index) -> Set[str]:
-    return dict.fromkeys(
-        node for node in seen.nodes if node not in plan.robot_of and node not in plan.own[""]
-    ).keys()
+    known = plan.robot_of.keys() | set(plan.own[""])
+    return dict.fromkeys(node for node in seen.nodes if node not in known).keys()
 
 
 @once

@@ -17,9 +17,9 @@ from multibot_rewrite.system.records import SUBSCRIBES, End
 @found_by_plan(types_differ, nodes=False)
 def type_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Each end of a planned name whose type is none that the plan has; a tool reads what is there."""
-    said = set()
+    said, planned = set(), plan.by_key
     for end in seen.system.ends:
-        known = plan.by_key.get((end.node, end.kind, end.role, end.name))
+        known = planned.get((end.node, end.kind, end.role, end.name))
         if not end.type or (known and known.type == end.type):
             continue
         by_name = _types(plan).get((end.kind, end.name), frozenset())

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from fnmatch import translate
@@ -11,6 +10,7 @@ from math import inf
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, nodes_of
@@ -24,7 +24,7 @@ _TIMED = (
     "velocity_smoother*", "collision_monitor*", "local_costmap", "global_costmap", "navsat_transform*",
     "icp_odometry", "rgbd_odometry",
 )  # fmt: skip
-_IS_TIMED = re.compile("|".join(map(translate, _TIMED)))
+_IS_TIMED = lazy_compile("|".join(map(translate, _TIMED)))
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 

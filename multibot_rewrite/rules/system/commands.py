@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.matching import STAMPED
@@ -21,7 +21,7 @@ from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBS
 from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
 
 # A person drives with these.
-_BY_HAND = re.compile("teleop|joy|keyboard|gamepad")
+_BY_HAND = lazy_compile("teleop|joy|keyboard|gamepad")
 _VELOCITY = "geometry_msgs/msg/Twist"
 # The topics of RViz's own tools.
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
@@ -48,9 +48,10 @@ running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
 )
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
+    orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK and not seen.robot(name)
-        if kind != TOPIC or not (joystick or name in seen.orders):
+        if kind != TOPIC or not (joystick or name in orders):
             continue
         nodes = nodes_of(at_work(ends.subscribers))
         robots = robots_of(seen, nodes)

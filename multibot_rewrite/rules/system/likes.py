@@ -23,7 +23,7 @@ _ENOUGH = 3
 _EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
-_RANDOM = re.compile(r"[0-9a-f]*\d{4,}[0-9a-f]*")
+_RANDOM = re.compile(r"\d{4}")
 _CHANGE = "/change_state"
 # Node, kind, role and name, without the robot's.
 _Key = tuple[str, str, str, str]
@@ -94,12 +94,13 @@ def made_of(seen: Index) -> Mapping[str, Made]:
 
 def _made(seen: Index, own: Iterable[str]) -> Made:
     nodes, ends = {}, {}
+    by_node = seen.by_node
     for name in own:
         plain = seen.plain(name)
         if seen.is_tool(name) or _RANDOM.search(last_word(name)):
             continue
         nodes[plain] = name
-        for it in seen.by_node.get(name, ()):
+        for it in by_node.get(name, ()):
             plumbing = it.type.startswith(_EVERY_NODE) or it.name in EVERYBODYS
             if it.type != TF and not plumbing and "/_" not in it.name:
                 ends[plain, it.kind, it.role, seen.plain(it.name)] = it

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of
@@ -18,7 +18,7 @@ from multibot_rewrite.system.tool_nodes import last_word
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 _LIMITS = ("velocity_smoother", "collision_monitor")
 _CONTROLLER = "controller_server"
-_BRIDGE = re.compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
+_BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 
 @system_rule(

@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import islice, zip_longest
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.rules.system.instead import COMMON
 
-_DIGITS = re.compile(r"_?\d+")
+_DIGITS = lazy_compile(r"_?\d+")
 
 
 def alike(name: str, known: Iterable[str], type_: str) -> str:
