@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The namespace of a plugin with a controller manager: an argument for it is the robot's whatever it is
+by default; one that stays makes a manager that nobody asks.
+
+Expectations: gz_ros2_control_plugin.cpp (the manager and the plugin's own node are in the namespace of
+``<ros>``), controller_manager's spawner.py (it asks ``controller_manager`` in its own namespace).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.reports.xacro_arguments import find_arguments
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+
+ROVER = """\
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  {}
+  <link name="base_link"/><link name="wheel"/>
+  <joint name="wheel_joint" type="continuous">
+    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
+  </joint>
+  <gazebo>
+    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+      {}
+    </plugin>
+  </gazebo>
+</robot>
+"""
+ARGUMENT = '<xacro:arg name="{}" default="{}"/>'
+INSIDE = "<ros><namespace>{}</namespace></ros>"
+LIDAR = """<gazebo reference="base_link"><sensor name="lidar" type="ray">
+  <plugin name="lidar" filename="libgazebo_ros_ray_sensor.so">{}</plugin></sensor></gazebo>"""
+
+
+def xacro(folder: Path, argument: str, inside: str) -> str:
+    path = folder / "rover.urdf.xacro"
+    path.write_text(ROVER.format(argument, inside))
+    return str(path)
+
+
+def planned(description: str, **keys: Any) -> FleetPlan:
+    data = {"layout": "both", "affix": "prefix", "simulator": "gazebo", "stack": "gz_ros2_control"}
+    data |= {"description": description, "robots": [{"name": "robot1"}, {"name": "robot2"}]}
+    return plan_fleet(read_fleet({**data, **keys}, "jazzy", {}))
+
+
+def said(plan: FleetPlan) -> list[Finding]:
+    return [it for it in plan.fleet.table.problems if it.code == "MF850"]
+
+
+@pytest.mark.parametrize(
+    ("argument", "default", "inside", "value"),
+    [
+        ("namespace", "diffbot", INSIDE.format("/$(arg namespace)"), "{robot}"),
+        ("ns", "diffbot", INSIDE.format("$(arg ns)"), "{robot}"),
+        ("robotNamespace", "diffbot", INSIDE.format("$(arg robotNamespace)"), "{robot}"),
+        ("robot_namespace", "", INSIDE.format("$(arg robot_namespace)"), "{robot}"),
+        # That of a camera, of a place inside of the robot, of one plugin among others.
+        ("camera_namespace", "camera", INSIDE.format("$(arg camera_namespace)"), ""),
+        ("namespace", "arm", INSIDE.format("$(arg namespace)/inside"), ""),
+        ("namespace", "arm", "", ""),
+    ],
+)
+def test_which_namespace_is_the_robots(
+    argument: str, default: str, inside: str, value: str, tmp_path: Path
+) -> None:
+    path = xacro(tmp_path, ARGUMENT.format(argument, default), inside)
+    (found,) = find_arguments(path, {}, builtin_tree((), "jazzy")).arguments
+    assert found.value == value
+
+
+def test_that_of_one_plugin_of_two_stays(tmp_path: Path) -> None:
+    own = INSIDE.format("$(arg namespace)")
+    both = f"{ARGUMENT.format('namespace', 'diffbot')}{LIDAR.format(INSIDE.format('front'))}"
+    (found,) = find_arguments(xacro(tmp_path, both, own), {}, builtin_tree((), "jazzy")).arguments
+    assert [(it.names, it.total) for it in found.uses] == [(1, 2)]
+    assert found.value == ""
+
+
+def test_the_argument_is_filled_so_one_manager_is_there(tmp_path: Path) -> None:
+    own = INSIDE.format("/$(arg namespace)")
+    plan = planned(xacro(tmp_path, ARGUMENT.format("namespace", "diffbot"), own))
+    assert said(plan) == []
+    nodes = {it.full_name for it in plan.fleet.table.nodes if "controller_manager" in it.name}
+    assert nodes == {"/robot1/controller_manager", "/robot2/controller_manager"}
+    (launch,) = (it.text for it in make_outputs(plan).files if it.path == "fleet.launch.py")
+    assert "ros2_control_node" not in launch
+
+
+@pytest.mark.parametrize(
+    ("inside", "made"),
+    [
+        (INSIDE.format("diffbot"), "/robot1/diffbot/controller_manager"),
+        ("<controller_manager_name>cm</controller_manager_name>", "/robot1/cm"),
+    ],
+)
+def test_a_manager_that_nobody_asks_is_an_error_in_one_line(
+    inside: str, made: str, tmp_path: Path
+) -> None:
+    first, second = said(planned(xacro(tmp_path, "", inside)))
+    message = f"a plugin makes {made}, but what the robot runs asks /robot1/controller_manager"
+    assert (first.message, first.level) == (message, "error")
+    assert second.message == message.replace("robot1", "robot2")
+    # The line of the first robot is that of both: a report joins them.
+    assert (first.file, first.line) == (second.file, second.line)
+
+
+@pytest.mark.parametrize("keys", [{"simulator": "none"}, {"stack": "navigation"}])
+def test_without_the_plugins_manager_nothing_is_said(keys: dict[str, Any], tmp_path: Path) -> None:
+    assert said(planned(xacro(tmp_path, "", INSIDE.format("diffbot")), **keys)) == []
