@@ -27,22 +27,20 @@ ROVER = """\
   <joint name="wheel_joint" type="continuous">
     <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
   </joint>
-  <gazebo>
-    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
-      {}
-    </plugin>
-  </gazebo>
+  <gazebo>{}</gazebo>
 </robot>
 """
+OF_GZ = 'filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin"'
+OF_CLASSIC = 'filename="libgazebo_ros2_control.so" name="control"'
 ARGUMENT = '<xacro:arg name="{}" default="{}"/>'
 INSIDE = "<ros><namespace>{}</namespace></ros>"
 LIDAR = """<gazebo reference="base_link"><sensor name="lidar" type="ray">
   <plugin name="lidar" filename="libgazebo_ros_ray_sensor.so">{}</plugin></sensor></gazebo>"""
 
 
-def xacro(folder: Path, argument: str, inside: str) -> str:
+def xacro(folder: Path, argument: str, inside: str, plugin: str = OF_GZ) -> str:
     path = folder / "rover.urdf.xacro"
-    path.write_text(ROVER.format(argument, inside))
+    path.write_text(ROVER.format(argument, f"<plugin {plugin}>{inside}</plugin>"))
     return str(path)
 
 
@@ -111,6 +109,19 @@ def test_a_manager_that_nobody_asks_is_an_error_in_one_line(
     assert second.message == message.replace("robot1", "robot2")
     # The line of the first robot is that of both: a report joins them.
     assert (first.file, first.line) == (second.file, second.line)
+
+
+@pytest.mark.parametrize(
+    ("namespace", "wrong"), [("", False), ("<ros><namespace>stick</namespace></ros>", True)]
+)
+def test_the_plugin_of_classic_is_a_node_besides_its_manager(
+    namespace: str, wrong: bool, tmp_path: Path
+) -> None:
+    """gazebo_ros2_control_plugin.cpp: the node has the plugin's name, the manager its namespace."""
+    path = xacro(tmp_path, "", namespace, OF_CLASSIC)
+    found = said(planned(path, stack="gazebo_ros2_control", distro="humble"))
+    wanted = {f"/robot{at}/stick/controller_manager" for at in (1, 2)} if wrong else set()
+    assert {it.message.split()[3].rstrip(",") for it in found} == wanted
 
 
 @pytest.mark.parametrize("keys", [{"simulator": "none"}, {"stack": "navigation"}])

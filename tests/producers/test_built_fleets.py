@@ -72,6 +72,11 @@ CONTROLLED = """\
   </plugin></gazebo>
 </robot>
 """
+CLASSICS = {
+    "gz_ros2_control/GazeboSimSystem": "gazebo_ros2_control/GazeboSystem",
+    "gz_ros2_control-system": "libgazebo_ros2_control.so",
+    "gz_ros2_control::GazeboSimROS2ControlPlugin": "control",
+}
 CONTROL = """\
 controller_manager:
   ros__parameters: {joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}}
@@ -80,15 +85,27 @@ controller_manager:
 
 # gz_ros2_control_plugin.cpp (jazzy) makes gz_ros_control beside the controller manager.
 @pytest.mark.sample(1)
-@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+# gazebo_ros2_control_plugin.cpp has a node of the plugin's name beside it.
+@pytest.mark.parametrize(
+    ("release", "stack"),
+    [
+        ("humble", "gz_ros2_control"),
+        ("jazzy", "gz_ros2_control"),
+        ("lyrical", "gz_ros2_control"),
+        ("humble", "gazebo_ros2_control"),
+    ],
+)
 def test_controllers_in_gazebo_start_as_planned(
-    release: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    release: str, stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "arm.urdf").write_text(CONTROLLED)
+    of_classic = CONTROLLED
+    for theirs, own in CLASSICS.items():
+        of_classic = of_classic.replace(theirs, own)
+    (tmp_path / "arm.urdf").write_text(CONTROLLED if stack.startswith("gz") else of_classic)
     (tmp_path / "control.yaml").write_text(CONTROL)
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(
-        f"distro: {release}\nlayout: tf-per-robot\nsimulator: gazebo\nstack: gz_ros2_control\n"
+        f"distro: {release}\nlayout: tf-per-robot\nsimulator: gazebo\nstack: {stack}\n"
         f"description: arm.urdf\ncompanions: {{params: control.yaml}}\n{ROBOTS}\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0

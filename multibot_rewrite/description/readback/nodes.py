@@ -36,6 +36,8 @@ BELOW = "topics below"
 TRANSFORMS = "transforms on"
 TF_TOPICS = ("/tf", "/tf_static")
 REMAP_FLAGS = ("-r", "--remap")
+# The parameter that names the manager of a plugin of ros2_control.
+_MANAGER_NAME = "controller_manager_name"
 PUBLISHES, SERVES = "publishes", "serves"
 
 
@@ -71,7 +73,7 @@ class ReadNode(NamedTuple):
     ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
     further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
     parameters of parent and child of a transform it publishes. ``helper`` is a node that it starts
-    beside its own.
+    beside its own, ``manager`` the full name of the controller manager that it makes, if any.
     """
 
     section: VocabularySection
@@ -84,6 +86,7 @@ class ReadNode(NamedTuple):
     frames: tuple[tuple[str, str], ...]
     sends: tuple[tuple[str, str], ...]
     helper: str = ""
+    manager: str = ""
 
     @property
     def full_name(self) -> str:
@@ -126,7 +129,17 @@ def node_of(
         frames,
         tuple(_sends(plugin, section, frames, links)),
         helper,
+        _manager(plugin, section, name, namespace),
     )
+
+
+def _manager(plugin: _Element, section: VocabularySection, name: str, namespace: str) -> str:
+    """Its node is the manager; Classic's plugin is a node of its own besides."""
+    site = next((it for it in section.sites if it.path == _MANAGER_NAME), None)
+    if site is None:
+        return ""
+    called = next(iter(values_of(plugin, site)), "") if _has_own_name(section) else name
+    return f"{namespace.rstrip('/')}/{called}"
 
 
 def wheels_in(plugin: _Element) -> bool:
@@ -155,11 +168,15 @@ def itself(node: ReadNode) -> BoundNode:
 
 def _node_name(plugin: _Element, section: VocabularySection) -> str:
     """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
-    if any(site.path == "@name" for site in section.sites if site.role == "declares"):
+    if _has_own_name(section):
         return plugin.get("name", "").strip()
     sites = (site for site in section.sites if site.kinds[:1] == ("node",) and site.default)
     named = (value for site in sites for value in values_of(plugin, site))
     return next(named, "") or section.names[0].replace("-", "_")
+
+
+def _has_own_name(section: VocabularySection) -> bool:
+    return any(site.path == "@name" for site in section.sites if site.role == "declares")
 
 
 def rules_of(plugin: _Element) -> Iterator[RemapRule]:

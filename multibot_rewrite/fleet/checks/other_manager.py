@@ -62,7 +62,7 @@ def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Fi
     first: dict[str, RewrittenRobot] = {}
     for robot in robots:
         own = [it for it in table.nodes if it.robot == robot.member.robot]
-        made = [it.full_name for it in own if it.home.written and it.home.process_wide]
+        made = [it.manager for it in robot.member.reading.nodes if it.manager]
         asked = {it.full_name for it in own if it.node == MANAGER and not it.home.written}
         if made and asked and asked.isdisjoint(made):
             message = f"a plugin makes {made[0]}, but what the robot runs asks {min(asked)}"

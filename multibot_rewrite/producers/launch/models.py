@@ -28,9 +28,7 @@ from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.system.records import TOPIC, Edge, Place, edge_of
 
-_NAMED = "controller_manager_name"
 _PROGRAM = ("controller_manager", "ros2_control_node")
-_PROGRAM_NAME = "controller_manager"
 # The plugin gives the manager the clock and, in Humble by its constructor, the description.
 _GIVEN = ParameterText(
     "", "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n"
@@ -139,20 +137,13 @@ def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[Launc
     """The controller managers that plugins make, as nodes that a launch starts; ``files`` are
     those that descriptions name."""
     plugins = [*read_xml(model.text.encode(), model.place.file).iter("plugin")]
-    for node in filter(is_manager, model.reading.nodes):
+    for node in (it for it in model.reading.nodes if it.manager):
         named = values_at(plugins[node.number], "parameters")
         texts = (files[path.strip()] for path in named if path.strip() in files)
-        home = node.namespace or "/"
+        home, _, name = node.manager.rpartition("/")
         given = (*texts, _GIVEN)
         rules = tuple(rules_of(node))
-        # Classic's plugin is a node of its own besides, with the plugin's name.
-        name = next(iter(values_at(plugins[node.number], _NAMED)), "").strip() or _PROGRAM_NAME
-        yield LaunchedNode(*_PROGRAM, name, home, rules, given, "", (), "", model.place)
-
-
-def is_manager(node: ReadNode) -> bool:
-    """Does the plugin make a controller manager?"""
-    return any(site.path == _NAMED for site in node.section.sites)
+        yield LaunchedNode(*_PROGRAM, name, home or "/", rules, given, "", (), "", model.place)
 
 
 def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
@@ -177,7 +168,7 @@ def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]
     (gazebo_ros_pkgs ros2 gazebo_plugins/src/gazebo_ros_diff_drive.cpp, PublishOdometryTf)."""
     found: dict[str, list[tuple[str, Edge]]] = {}
     for reading in (it.reading for it in models if it.spawned):
-        for node in (it for it in reading.nodes if not is_manager(it)):
+        for node in (it for it in reading.nodes if not it.manager):
             own = {it.path: it.name for it in reading.names if _of(it, node)}
             parent, child = (
                 next((own[it] for it in way if it in own), "") for way in (_PARENTS, _CHILDREN)

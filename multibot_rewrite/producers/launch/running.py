@@ -36,7 +36,6 @@ from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
     Published,
-    is_manager,
     managers,
     models_of,
     rules_of,
@@ -154,13 +153,15 @@ def _rule(text: str) -> RemapRule:
 
 def _plugins(model: Model) -> Iterator[RunningNode]:
     """The nodes of plugins in the simulator."""
-    nodes = [it for it in model.reading.nodes if not is_manager(it)]
+    # Of gz the manager is the node of the plugin.
+    nodes = [it for it in model.reading.nodes if it.manager != it.full_name]
     facts = {fact.name: fact for fact, _ in plugin_nodes(model.reading, model.name)}
     for it in nodes:
         home, program = it.namespace or "/", it.section.names[0]
         names = (it.name, home, tuple(rules_of(it)), (), home)
-        # Of what only a remap rule names it is not known whether it is sent or read.
-        known = tuple(end for end in facts[it.name].endpoints if end.role)
+        # Of what only a remap rule names it is not known whether it is sent or read; what a plugin with
+        # a manager publishes its controllers do.
+        known = () if it.manager else tuple(end for end in facts[it.name].endpoints if end.role)
         own = facts[it.name]._replace(endpoints=known)
         yield RunningNode(*names, own, {}, SIMULATED, (), program, model.place)
 
