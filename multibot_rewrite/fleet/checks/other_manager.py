@@ -40,12 +40,12 @@ OTHER_MANAGER = declare(
     "MF850",
     "other-manager",
     ERROR,
-    what="The plugin in the description makes a controller manager under another name than that of the "
-    "robot's stack: it has a namespace or a name of its own.",
-    why="The launch file starts a second manager, which cannot load the hardware of a simulator, and "
-    "the spawners ask that one: no controller of the plugin's manager is loaded.",
-    fix="Remove `<namespace>` and `<controller_manager_name>` of the plugin: the rewrite gives it the "
-    "robot's namespace. Where an argument of the xacro sets it, give that `'{robot}'`.",
+    what="The plugin in the description makes a controller manager under another name than the "
+    "stack's.",
+    why="The launch file starts a second manager, which cannot load a simulator's hardware. The "
+    "spawners ask that one, so no controller is loaded.",
+    fix="Remove `<namespace>` and `<controller_manager_name>` of the plugin: it gets the robot's "
+    "namespace. Where an argument of the xacro sets it, give that `'{robot}'`.",
     bad=_FLEET.format("rover"),
     good=_FLEET.format("plain"),
     line=7,
