@@ -358,7 +358,8 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
     [
         (["{there}"], "is there already; name another with -o"),
         (["nowhere", "-o", "-"], "there is no such file or folder"),
-        (["{folder}/empty", "-o", "-"], "no description of a robot is there"),
+        (["{folder}/empty", "-o", "-"], "/empty: no description of a robot is there"),
+        (["{folder}/notes.yaml", "-o", "-"], "/notes.yaml: no description of a robot is there"),
         (["{folder}/bad.urdf", "-o", "-"], "bad.urdf"),
         (["{folder}/part.xacro", "-o", "-"], "it has no link; give the file that has the robot"),
         (["{folder}/need.xacro", "-o", "-"], "give it as size:=VALUE"),
@@ -371,6 +372,7 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
 )
 def test_mistakes_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: Any) -> None:
     (tmp_path / "empty").mkdir()
+    (tmp_path / "notes.yaml").write_text("a: 1\n")
     (tmp_path / "bad.urdf").write_text("<robot")
     (tmp_path / "part.xacro").write_text(TOOL)
     (tmp_path / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
