@@ -11,7 +11,6 @@ from typing import NamedTuple
 import pytest
 import yaml
 from nav2_graphs import ROVER
-from plans import PlannedRobot, planned
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
@@ -20,28 +19,11 @@ from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.spelling.domain_bridge import (
-    Crossing,
-    beyond,
-    bridge_files,
-    crossings,
-    services_apart,
-    with_bridges,
-)
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
 from multibot_rewrite.system.records import (
-    CALLS,
     PUBLISHES,
-    SERVES,
-    SERVICE,
     SUBSCRIBES,
-    TOPIC,
-    Domain,
-    End,
-    Node,
-    Topic,
 )
 
 FLEET = f"""\
@@ -142,32 +124,6 @@ def test_domain_bridge_takes_what_is_written(made: Outputs) -> None:
             )
         }
         assert in_plan == by_file
-
-
-def test_what_a_robot_only_reads_comes_from_the_domain_of_all() -> None:
-    names = ("robot1", "fleet/robot2")
-    robots = [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in names]
-    ends = [
-        planned_end(f"/{it}/drive", TOPIC, role, f"/{it}/{word}", type_, word)
-        for it in names
-        for role, word, type_ in (
-            (PUBLISHES, "odom", "nav_msgs/msg/Odometry"),
-            (SUBSCRIBES, "cmd_vel", "geometry_msgs/msg/Twist"),
-            (PUBLISHES, "odd", ""),
-        )
-    ]
-    ends.append(planned_end("/monitor", TOPIC, SUBSCRIBES, "/robot1/odd", "", "/robot1/odd"))
-    plan = planned("both", robots, ("/monitor",), (), (), tuple(ends))
-    domains = tuple(Domain(*it) for it in (("", 0), ("robot1", 1), ("fleet/robot2", 2)))
-    plan = with_bridges(plan._replace(domains=domains), ["odom", "cmd_vel"])
-    found = dict(as_domain_bridge_reads(data.decode()) for _, data in bridge_files(plan))
-    assert {name: [it[:4] for it in own] for name, own in found.items()} == {
-        f"{name.replace('/', '_')}_bridge": [
-            (f"/{name}/cmd_vel", "geometry_msgs/msg/Twist", 0, number),
-            (f"/{name}/odom", "nav_msgs/msg/Odometry", number, 0),
-        ]
-        for number, name in enumerate(names, 1)
-    }
 
 
 @pytest.mark.more
@@ -403,114 +359,3 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
         assert expected(made).robots
     assert "MR101" in told["one"]
     assert "MR101" not in told["two"]
-
-
-GRID, TEXT, TWIST = "nav_msgs/msg/OccupancyGrid", "std_msgs/msg/String", "geometry_msgs/msg/Twist"
-CLOCK = "rosgraph_msgs/msg/Clock"
-
-
-def end(node: str, role: str, name: str, type_: str, code_name: str = "", kind: str = TOPIC) -> End:
-    return planned_end(node, kind, role, name, type_, code_name or name)
-
-
-# r3 is in the domain of all robots.
-NUMBERS = {"": 0, "r1": 1, "r2": 2, "r3": 0}
-APART = planned(
-    "both", [PlannedRobot(it, (f"/{it}/drive",), (), f"/{it}/tf") for it in ("r1", "r2", "r3")],
-    ("/map_server", "/monitor"), (), (),
-    (
-        end("/map_server", PUBLISHES, "/map", GRID),
-        end("/r1/drive", SUBSCRIBES, "/map", GRID),
-        end("/r3/drive", SUBSCRIBES, "/map", GRID),
-        end("/r1/drive", PUBLISHES, "/r1/state", "", "~/state"),
-        end("/monitor", SUBSCRIBES, "/r1/state", TEXT),
-        end("/r1/drive", PUBLISHES, "/rosout", "rcl_interfaces/msg/Log"),
-        end("/monitor", SUBSCRIBES, "/rosout", "rcl_interfaces/msg/Log"),
-        end("/r1/drive", PUBLISHES, "/all", TEXT),
-        end("/r2/drive", SUBSCRIBES, "/all", TEXT),
-        *(end(f"/{it}/drive", SUBSCRIBES, f"/{it}/cmd_vel", TWIST, "cmd_vel") for it in NUMBERS if it),
-        end("/r2/drive", SUBSCRIBES, "/r2/scan", TEXT, "scan"),
-        end("/r2/drive", PUBLISHES, "/r2/twist/cmd_vel", TWIST, "twist/cmd_vel"),
-        end("/r1/drive", SERVES, "/r1/get", "", "get", SERVICE),
-        end("/r2/drive", SERVES, "/get", "", "get", SERVICE),
-        end("/r3/drive", SERVES, "/near", "", "near", SERVICE),
-        *(end("/monitor", CALLS, it, "", it, SERVICE) for it in ("/get", "/near", "/none")),
-    ),
-    topics=(Topic("/clock", bridge=(PUBLISHES,)), Topic("/other", bridge=(PUBLISHES,))),
-    domains=tuple(Domain(*it) for it in NUMBERS.items()),
-)  # fmt: skip
-NEEDED = [
-    Crossing("r1", "/clock", CLOCK, False),
-    Crossing("r1", "/map", GRID, False),
-    Crossing("r1", "/r1/state", TEXT, True),
-    Crossing("r2", "/clock", CLOCK, False),
-]
-
-
-def test_what_one_domain_reads_and_another_sends_crosses() -> None:
-    assert crossings(APART, []) == NEEDED
-    carried = APART._replace(topics=(Topic("/clock", bridge=(SUBSCRIBES,)),))
-    assert crossings(carried, []) == [it for it in NEEDED if it.name != "/clock"]
-
-
-@pytest.mark.parametrize(
-    ("word", "found"),
-    [
-        # People and planners drive a robot; a driver that nobody names sends its scan.
-        ("cmd_vel", [("r1", "/r1/cmd_vel", TWIST, False), ("r2", "/r2/cmd_vel", TWIST, False)]),
-        ("/cmd_vel/", [("r1", "/r1/cmd_vel", TWIST, False), ("r2", "/r2/cmd_vel", TWIST, False)]),
-        ("/r2/cmd_vel", [("r2", "/r2/cmd_vel", TWIST, False)]),
-        ("twist/cmd_vel", [("r2", "/r2/twist/cmd_vel", TWIST, True)]),
-        ("scan", [("r2", "/r2/scan", TEXT, True)]),
-    ],
-)
-def test_what_is_asked_for_crosses_for_each_robot_that_has_it(
-    word: str, found: list[tuple[str, str, str, bool]]
-) -> None:
-    assert sorted({*crossings(APART, [word])} - {*NEEDED}) == [Crossing(*it) for it in found]
-
-
-@pytest.mark.parametrize(
-    ("word", "said"),
-    [("sacn", "did you mean 'scan'?"), ("xyz", "add the node that has it"), ("state", "add the")],
-)
-def test_what_no_robot_has_cannot_cross(word: str, said: str) -> None:
-    message = f"crossing: no robot has a topic {word!r} by the plan; {said}"
-    with pytest.raises(UsageError, match=re.escape(message)):
-        crossings(APART, [word])
-
-
-def test_the_nodes_of_a_bridge_and_its_file_to_the_letter() -> None:
-    plan = with_bridges(APART, ["cmd_vel"])
-    assert plan.nodes[len(APART.nodes) :] == tuple(
-        Node(name, robot=robot, stack="domain_bridge")
-        for name, robot in (
-            ("/r1_bridge", "r1"), ("/r1_bridge_1", "r1"), ("/r1_bridge_0", ""),
-            ("/r2_bridge", "r2"), ("/r2_bridge_2", "r2"), ("/r2_bridge_0", ""),
-        )
-    )  # fmt: skip
-    assert beyond(plan) == {"/r1_bridge_0": "r1", "/r2_bridge_0": "r2"}
-    inside = "    from_domain: 0\n    to_domain: 1\n"
-    kept = "    qos: {reliability: reliable, durability: transient_local, depth: 100}\n"
-    assert next(bridge_files(plan)) == (
-        "domain_bridge/r1_bridge.yaml",
-        (
-            "name: r1_bridge\nfrom_domain: 1\nto_domain: 0\ntopics:\n"
-            f"  /clock:\n    type: {CLOCK}\n{inside}  /map:\n    type: {GRID}\n{inside}{kept}"
-            f"  /r1/cmd_vel:\n    type: {TWIST}\n{inside}  /r1/state:\n    type: {TEXT}\n"
-        ).encode(),
-    )
-    assert [path for path, _ in bridge_files(plan)][1:] == ["domain_bridge/r2_bridge.yaml"]
-
-
-@pytest.mark.parametrize("name", ["tf_static", "robot_description"])
-def test_what_is_sent_once_is_kept_by_its_name(name: str) -> None:
-    more = end("/r1/drive", PUBLISHES, f"/r1/{name}", TEXT, name)
-    plan = with_bridges(APART._replace(ends=(*APART.ends, more)), [name])
-    _, data = next(bridge_files(plan))
-    assert f"/r1/{name}:\n    type: {TEXT}\n    qos: {{reliability".encode() in data
-
-
-def test_a_service_that_another_domain_has_is_told() -> None:
-    assert [(it.name, *numbers) for it, *numbers in services_apart(APART)] == [("/get", 0, 2)]
-    assert list(services_apart(APART._replace(domains=()))) == []

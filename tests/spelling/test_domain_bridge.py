@@ -87,18 +87,19 @@ def test_the_time_of_the_simulator_goes_to_each_other_domain(
 
 
 @pytest.mark.parametrize(
-    ("role", "name", "word", "out"),
+    ("role", "name", "code_name", "word", "out"),
     [
-        (PUBLISHES, "/a/odom", "odom", True), (SUBSCRIBES, "/a/cmd_vel", "cmd_vel", False),
-        (SUBSCRIBES, "/a/scan", "/scan/", True), (SUBSCRIBES, "/a/cmd_vel", "/a/cmd_vel", False),
-        (PUBLISHES, "/a/cmd_vel", "cmd_vel", True),
+        (PUBLISHES, "/a/n/cmd_vel", "~/cmd_vel", "cmd_vel", True),
+        (SUBSCRIBES, "/a/scan", "scan", "/scan/", True),
+        (SUBSCRIBES, "/a/twist/cmd_vel", "/twist/cmd_vel", "twist/cmd_vel", False),
     ],
-)  # fmt: skip
+)
 def test_what_is_asked_for_goes_to_who_sends_it_or_out(
-    role: str, name: str, word: str, out: bool
+    role: str, name: str, code_name: str, word: str, out: bool
 ) -> None:
     """A command comes from outside; a sensor's driver need not be in the plan."""
-    found = crossings(plan(end("/a/n", role, name), end("/d/n", role, "/d/odom")), [word])
+    asked = end("/a/n", role, name)._replace(code_name=code_name)
+    found = crossings(plan(asked, end("/d/n", role, "/d/odom")), [word])
     assert found == [Crossing("a/b", name, STRING, out)]
 
 
