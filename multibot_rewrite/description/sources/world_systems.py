@@ -13,9 +13,9 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.description.checks.hazards import LEFT, system_key, world_systems
+from multibot_rewrite.description.checks.hazards import LEFT, WORLD, system_key, world_systems
 from multibot_rewrite.description.checks.problem import Problem, to_findings
-from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.rewriters.tree import Tree, plugin_keys
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document
@@ -31,7 +31,7 @@ Systems = tuple[tuple[str, str], ...]
 def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
     """The description with its systems of the world as comments; their names and texts. Raises
     InputError."""
-    if b"<plugin" not in source:
+    if b"<plugin" not in source or not _may_load(read_document(source, file, placed=False), tree):
         return source, ()
     document = read_document(source, file)
     spans = Spans(document)
@@ -41,6 +41,13 @@ def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
     edits = sorted(_edits({at: text for at, (_, text) in left.items()}))
     names = tuple((key, " ".join(text.decode().split())) for key, text in left.values())
     return b"".join(cut(source, edits)), names
+
+
+def _may_load(document: Document, tree: Tree) -> bool:
+    """Is a plugin called as a system of the world? Most descriptions have none: no walk is needed."""
+    found = (key for it in document.root.iter("plugin") for key in plugin_keys(it))
+    known = (it for key in found for it in tree.vocabulary.find("plugin", key))
+    return any(WORLD in it.opens for it in known)
 
 
 def _edits(texts: Mapping[tuple[int, int], bytes]) -> Iterator[Edit]:
