@@ -239,17 +239,21 @@ def _wrong(section: VocabularySection, message: str) -> VocabularyError:
 
 
 def plugin_keys(element: _Element) -> list[str]:
-    """The names a ``<plugin>`` may be known by: its library, else its class (gz-sim accepts both).
+    """The names a ``<plugin>`` may be known by: its library, else its class (gz-sim accepts both)."""
+    known = library_and_class(element.get("filename", ""), element.get("name", ""))
+    return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
+
+
+def library_and_class(filename: str, name: str) -> list[str]:
+    """The same without what stands in it.
 
     gz-sim's loader reads ``ignition-gazebo`` as ``gz-sim`` and takes versioned library names.
     """
-    library = element.get("filename", "").strip().rpartition("/")[2]
-    class_ = element.get("name", "").strip()
-    known = [library_key(library)]
+    known = [library_key(filename.strip().rpartition("/")[2])]
     # Without a scope it is a label, in Gazebo Classic a node name: anything at all.
-    if "::" in class_:
-        known.append(class_.replace("ignition::gazebo::", "gz::sim::"))
-    return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
+    if "::" in name:
+        known.append(name.strip().replace("ignition::gazebo::", "gz::sim::"))
+    return known
 
 
 def values_of_plugin(

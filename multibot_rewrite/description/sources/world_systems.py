@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.hazards import LEFT, WORLD, system_key, world_systems
 from multibot_rewrite.description.checks.problem import Problem, to_findings
-from multibot_rewrite.description.rewriters.tree import Tree, plugin_keys
+from multibot_rewrite.description.rewriters.tree import Tree, library_and_class
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document
@@ -23,6 +23,8 @@ from multibot_rewrite.description.steps.spans import Spans
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
 _ASIDE = re.compile(_OPEN + rb"(<plugin\b.*?>)" + _CLOSE, re.DOTALL)
+_TAGS = re.compile(rb"<plugin\b[^<]*")
+_SAID = re.compile(rb"""\b(filename|name)\s*=\s*(["'])(.*?)\2""", re.DOTALL)
 # A comment cannot hold two dashes, as the begin of another one.
 _DASHES, _WRITTEN = b"--", b"-&#45;"
 Systems = tuple[tuple[str, str], ...]
@@ -31,7 +33,7 @@ Systems = tuple[tuple[str, str], ...]
 def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
     """The description with its systems of the world as comments; their names and texts. Raises
     InputError."""
-    if b"<plugin" not in source or not _may_load(read_document(source, file, placed=False), tree):
+    if not any(_may_load(it, tree) for it in {*_TAGS.findall(source)}):
         return source, ()
     document = read_document(source, file)
     spans = Spans(document)
@@ -43,11 +45,15 @@ def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
     return b"".join(cut(source, edits)), names
 
 
-def _may_load(document: Document, tree: Tree) -> bool:
-    """Is a plugin called as a system of the world? Most descriptions have none: no walk is needed."""
-    found = (key for it in document.root.iter("plugin") for key in plugin_keys(it))
-    known = (it for key in found for it in tree.vocabulary.find("plugin", key))
-    return any(WORLD in it.opens for it in known)
+def _may_load(tag: bytes, tree: Tree) -> bool:
+    """Is a plugin called as a system of the world, or has it an entity? Most descriptions have none,
+    and need not be read for that."""
+    said = {
+        name.decode(): value.decode("utf-8", "replace") for name, _, value in _SAID.findall(tag)
+    }
+    keys = library_and_class(said.get("filename", ""), said.get("name", ""))
+    known = (it for key in keys for it in tree.vocabulary.find("plugin", key))
+    return b"&" in tag or any(WORLD in it.opens for it in known)
 
 
 def _edits(texts: Mapping[tuple[int, int], bytes]) -> Iterator[Edit]:
