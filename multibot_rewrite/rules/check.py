@@ -7,7 +7,7 @@ incomplete, a finding about something missing is *inconclusive*.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from fnmatch import fnmatchcase
 from types import ModuleType
 
@@ -113,8 +113,12 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 def judge(seen: Index) -> list[Finding]:
     """What is wrong with a system; empty for one that is as it should be."""
+    return _judged(seen, SYSTEM_RULES.values())
+
+
+def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
     with gc_paused():
-        found = [it for rule in SYSTEM_RULES.values() if rule.check for it in rule.check(seen)]
+        found = [it for rule in rules if rule.check for it in rule.check(seen)]
         return differing.unexplained(_of_localizers(seen, _of_readers(found)))
 
 
@@ -140,12 +144,20 @@ def _of_readers(found: Sequence[Finding]) -> list[Finding]:
 
 def contradictions(seen: Index) -> list[Finding]:
     """What two ends, senders or nodes do to each other: true whatever else runs."""
-    return [it for it in judge(seen) if it.code not in ABSENCE]
+    return _part(seen, absent=False)
 
 
 def absences(seen: Index) -> list[Finding]:
     """What is missing, as far as the system is known."""
-    return [it for it in judge(seen) if it.code in ABSENCE]
+    return _part(seen, absent=True)
+
+
+def _part(seen: Index, absent: bool) -> list[Finding]:
+    found = _judged(seen, (it for it in SYSTEM_RULES.values() if (it.code in ABSENCE) is absent))
+    # What is found of robots held against each other is left to any other finding.
+    if any(it.code in differing.COMPARED for it in found):
+        found = judge(seen)
+    return [it for it in found if (it.code in ABSENCE) is absent]
 
 
 def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
