@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import os
-from importlib.resources import files
 
+from multibot_rewrite.base.bounded import read_bytes
+
+_PACKAGE = os.path.dirname(os.path.dirname(__file__))
 # The schemas of what people edit, below this package.
 FLEET, NODES, PLAN = (
     "fleet/fleet.schema.json",
@@ -17,7 +19,7 @@ FLEET, NODES, PLAN = (
 def schema_line(schema: str, folder: str) -> str:
     """The comment by which yaml-language-server (VS Code, Vim, Emacs) finds a schema of this package:
     relative where it is installed below ``folder``, in which the file will be."""
-    path = str(files("multibot_rewrite") / schema)
+    path = os.path.join(_PACKAGE, schema)
     below = os.path.relpath(path, folder or os.curdir)
     return line_of(path if below.startswith(os.pardir) else below)
 
@@ -29,4 +31,4 @@ def line_of(path: str) -> str:
 
 def schema_text(schema: str) -> bytes:
     """A schema of this package, to be written beside a file that is the same on every machine."""
-    return (files("multibot_rewrite") / schema).read_bytes()
+    return read_bytes(os.path.join(_PACKAGE, schema))

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import os
 import re
-from traceback import extract_tb
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
+
+if TYPE_CHECKING:
+    from traceback import StackSummary
 
 # What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
 _OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
@@ -77,9 +80,15 @@ def _known(error: BaseException) -> str:
 def _line(error: BaseException) -> str:
     """The line of a launch file in Python that raised it."""
     # launch has an error of its own around it.
-    frames = reversed(extract_tb((error.__cause__ or error).__traceback__))
+    frames = reversed(_frames(error.__cause__ or error))
     last = next((it for it in frames if it.filename.endswith("launch.py")), None)
     return f" ({os.path.basename(last.filename)}:{last.lineno})" if last else ""
+
+
+def _frames(error: BaseException) -> StackSummary:
+    from traceback import extract_tb  # slow to import; few launch files fail
+
+    return extract_tb(error.__traceback__)
 
 
 def lost_file(error: BaseException) -> str:
@@ -97,7 +106,7 @@ def _variable(error: BaseException) -> str:
     if of_os and isinstance(error, KeyError):
         return str(error.args[0])
     # os.getenv gives None, which is no part of a path.
-    lines = [it.line or "" for it in extract_tb(error.__traceback__)]
+    lines = [it.line or "" for it in _frames(error)]
     asked = _ASKED.findall(" ".join(lines)) if isinstance(error, TypeError) else []
     return next((it for it in asked if it not in os.environ), "")
 

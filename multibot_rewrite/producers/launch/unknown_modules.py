@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 from multibot_rewrite.producers.launch.door import of_launch
 
@@ -81,7 +80,9 @@ class _Module(ModuleType):
         return Unknown(self.__name__)
 
 
-class _Finder(MetaPathFinder, Loader):
+class _Finder:
+    """Finds and loads; importlib.abc, which has the classes for that, is slow to import."""
+
     def __init__(self, name: str) -> None:
         self._name = name
 
@@ -90,7 +91,7 @@ class _Finder(MetaPathFinder, Loader):
     ) -> ModuleSpec | None:
         """The module itself, and whatever is below it."""
         mine = fullname == self._name or fullname.startswith(f"{self._name}.")
-        return ModuleSpec(fullname, self, is_package=True) if mine else None
+        return ModuleSpec(fullname, cast(Any, self), is_package=True) if mine else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """One that has everything."""

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import logging
 import re
 import sys
 from collections.abc import Iterator, Mapping
@@ -34,10 +33,16 @@ _OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubst
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
+def _get_logger(name: str | None = None) -> Any:
+    import logging  # slow to import; few launch files say anything
+
+    return logging.getLogger(name)
+
+
 def contents() -> dict[str, dict[str, Any]]:
     """The modules, each with what it has."""
     known = {key: it for room in _ROOMS for key, it in vars(room).items()}
-    known["get_logger"] = logging.getLogger
+    known["get_logger"] = _get_logger
     found = {
         module: {it: _OTHERWISE.get((module, it)) or known[it] for it in names.split()}
         for module, names in READ.items()
