@@ -82,9 +82,9 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
         return {}
     if not isinstance(item.value, Mapping):
         wrong(item, f"{what} is {_shape(item)}; write keys and values")
-    for key, value in item.value.items():
-        if allowed and key not in allowed:
-            wrong(value, unknown("key", key, allowed))
+    for key in item.value if allowed and item.value.keys() - allowed else ():
+        if key not in allowed:
+            wrong(item.value[key], unknown("key", key, allowed))
     return item.value
 
 
@@ -116,7 +116,7 @@ def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
 
 def words_of(keys: Mapping[str, YamlItem], key: str) -> tuple[str, ...]:
     """The words listed by a key, empty if it is missing."""
-    return tuple(word(entry, key) for entry in entries_of(keys, key))
+    return tuple(word(entry, key) for entry in entries_of(keys, key)) if key in keys else ()
 
 
 def word_of(keys: Mapping[str, YamlItem], key: str, otherwise: str = "") -> str:

@@ -21,8 +21,6 @@ _ID = re.compile(r"<([a-z_ ]+)>")
 _NUMBER = "N"
 # A type that a list has behind the name is called list/msg/Type and so on.
 OF_LIST = "list/"
-# What a name has that is not the same on every robot.
-_OPEN_MARKS = set("<*")
 _TYPE = re.compile(r"/(?:msg|srv|action)/")
 Ids = Mapping[str, str]
 
@@ -81,7 +79,8 @@ def _endpoint(
 ) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set; ``own`` is what the
     stack makes of it."""
-    if not (raw.parameter or raw.condition or raw.when or _OPEN_MARKS & {*raw.name}):
+    is_made = "<" in raw.name or "*" in raw.name
+    if not (raw.parameter or raw.condition or raw.when or is_made):
         yield from (_typed(it, value_of) if it.types else it for it in own)
         return
     ids = dict(node.ids)
