@@ -233,8 +233,8 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 def identity(settings: Settings) -> str:
     """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
-    folders = [_HERE, *map(_folder_of, LIBRARIES)]
-    programs = sorted(_state(it) for folder in folders for it in _files(folder))
+    folders = filter(None, (_HERE, *map(_folder_of, LIBRARIES)))
+    programs = sorted(it for folder in folders for it in _states(folder))
     return digest(repr((__version__, where, programs, _vocabulary(settings), plain(settings))))
 
 
@@ -260,12 +260,11 @@ def _folder_of(library: str) -> str:
     return os.path.dirname(spec.origin) if spec and spec.origin else ""
 
 
-def _files(folder: str) -> Iterator[str]:
-    for top, folders, names in os.walk(folder):
-        folders[:] = [it for it in folders if it != _COMPILED]
-        yield from (os.path.join(top, it) for it in names)
-
-
-def _state(path: str) -> tuple[str, int, int]:
-    it = os.stat(path)
-    return path, it.st_mtime_ns, it.st_size
+def _states(folder: str) -> Iterator[tuple[str, int, int]]:
+    with os.scandir(folder) as found:
+        for it in found:
+            if not it.is_dir(follow_symlinks=False):
+                of = it.stat()
+                yield it.path, of.st_mtime_ns, of.st_size
+            elif it.name != _COMPILED:
+                yield from _states(it.path)

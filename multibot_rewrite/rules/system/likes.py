@@ -94,16 +94,16 @@ def made_of(seen: Index) -> Mapping[str, Made]:
 
 def _made(seen: Index, own: Iterable[str]) -> Made:
     nodes, ends = {}, {}
-    by_node = seen.by_node
+    by_node, plain_of = seen.by_node, seen.plain
     for name in own:
-        plain = seen.plain(name)
         if seen.is_tool(name) or _RANDOM.search(last_word(name)):
             continue
+        plain = plain_of(name)
         nodes[plain] = name
         for it in by_node.get(name, ()):
-            plumbing = it.type.startswith(_EVERY_NODE) or it.name in EVERYBODYS
-            if it.type != TF and not plumbing and "/_" not in it.name:
-                ends[plain, it.kind, it.role, seen.plain(it.name)] = it
+            plumbing = it.name in EVERYBODYS or it.type.startswith(_EVERY_NODE)
+            if not plumbing and it.type != TF and "/_" not in it.name:
+                ends[plain, it.kind, it.role, plain_of(it.name)] = it
     return Made(nodes, ends)
 
 
