@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Controller managers that a plugin makes under another name than the one is started and asked."""
+"""Controller managers that a plugin makes under another name than that of the robot's stack."""
 
 from __future__ import annotations
 
