@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
     """Report what is wrong with the files and the remap table; does it stop the build?"""
-    both = {*found, *plan.fleet.table.problems}
+    both = dict.fromkeys((*found, *plan.fleet.table.problems))
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
     about = About([options.fleet], plan.fleet.words, plan.file.distro)
     return report_beside(options, chosen(options, ordered), about)

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
@@ -109,6 +110,19 @@ def test_a_manager_that_nobody_asks_is_an_error_in_one_line(
     assert second.message == message.replace("robot1", "robot2")
     # The line of the first robot is that of both: a report joins them.
     assert (first.file, first.line) == (second.file, second.line)
+
+
+def test_a_report_names_the_first_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    xacro(tmp_path, "", INSIDE.format("diffbot"))
+    robots = ", ".join(f"{{name: r{at}}}" for at in range(1, 7))
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(
+        "layout: both\naffix: prefix\ndistro: jazzy\nsimulator: gazebo\nstack: gz_ros2_control\n"
+        f"description: rover.urdf.xacro\nrobots: [{robots}]\n"
+    )
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
+    (said,) = (it for it in capsys.readouterr().err.splitlines() if "MF850" in it)
+    assert "asks /r1/controller_manager; the same for r2 and 4 more" in said
 
 
 @pytest.mark.parametrize(
