@@ -178,7 +178,8 @@ def _fleet(
     more = {it: value for it, value in {**FLEET, **options, **keys}.items() if it not in said}
     _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
     plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
-    return list(dict.fromkeys((*make_outputs(plan).findings, *plan.fleet.table.problems)))
+    found = [it for it in make_outputs(plan).findings if it.code == rule.code]
+    return found or list(plan.fleet.table.problems)
 
 
 def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
