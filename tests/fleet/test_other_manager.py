@@ -105,7 +105,7 @@ def test_a_manager_that_nobody_asks_is_an_error_in_one_line(
     inside: str, made: str, tmp_path: Path
 ) -> None:
     first, second = said(planned(xacro(tmp_path, "", inside)))
-    message = f"a plugin makes {made}, but what the robot runs asks /robot1/controller_manager"
+    message = f"the plugin makes {made}, but spawners ask /robot1/controller_manager"
     assert (first.message, first.level) == (message, "error")
     assert second.message == message.replace("robot1", "robot2")
     # The line of the first robot is that of both: a report joins them.
@@ -122,7 +122,7 @@ def test_a_report_names_the_first_robot(tmp_path: Path, capsys: pytest.CaptureFi
     )
     assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
     (said,) = (it for it in capsys.readouterr().err.splitlines() if "MF850" in it)
-    assert "asks /r1/controller_manager; the same for r2 and 4 more" in said
+    assert "ask /r1/controller_manager; the same for r2 and 4 more" in said
 
 
 @pytest.mark.parametrize(

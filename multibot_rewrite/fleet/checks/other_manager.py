@@ -65,7 +65,7 @@ def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Fi
         made = [it.manager for it in robot.member.reading.nodes if it.manager]
         asked = {it.full_name for it in own if it.node == MANAGER and not it.home.written}
         if made and asked and asked.isdisjoint(made):
-            message = f"a plugin makes {made[0]}, but what the robot runs asks {min(asked)}"
+            message = f"the plugin makes {made[0]}, but spawners ask {min(asked)}"
             hint = "remove <namespace> and <controller_manager_name> of the plugin"
             # What is the same for all robots of a description is said in one line.
             at = first.setdefault(robot.spec.description, robot)
