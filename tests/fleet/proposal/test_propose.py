@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -128,6 +129,42 @@ def test_what_is_asked_for_counts_more_than_what_is_there(
 ) -> None:
     looked = Looked("a.urdf", **({"simulator": has} if has else {}))
     assert seeing._is_simulated(looked, wanted(simulator=simulator)) is simulated
+
+
+@pytest.mark.parametrize(
+    ("looked", "said"),
+    [
+        # A URDF without links acts as far as anybody knows; one link of an SDF alone does not.
+        (Looked("a.urdf", tag="robot"), "a.urdf: it has no link; "),
+        (Looked("a.sdf", tag="sdf", links=1), "a.sdf: nothing in it moves or senses; "),
+    ],
+)
+def test_a_robot_has_links_and_acts(looked: Looked, said: str) -> None:
+    with pytest.raises(UsageError) as found:
+        seeing._likeliest(wanted(), search([]), [looked])
+    assert str(found.value).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("has", "asked", "package", "simulated"),
+    [
+        ("gz", "", "", True),
+        ("", "", "", False),
+        ("", "", "ros_gz_sim", True),
+        ("", "none", "ros_gz_sim", False),
+    ],
+)
+def test_a_launch_file_that_starts_a_simulator_is_for_simulated_robots(
+    has: str, asked: str, package: str, simulated: bool, tmp_path: Path, monkeypatch: Any
+) -> None:
+    launch = tmp_path / "sim.launch.py"
+    launch.write_text(f"Node(package='{package}')")
+    told = []
+    monkeypatch.setattr(seeing, "in_its_world", lambda it, is_so, _: told.append(bool(is_so)) or it)
+    looked = Looked(str(tmp_path / "a.urdf"), **({"simulator": has} if has else {}))
+    found = search([])._replace(launch=(str(launch),))
+    assert seeing.with_arguments([looked], wanted(simulator=asked), found) == [looked]
+    assert told == [simulated]
 
 
 def test_the_release_is_asked_for_or_that_of_the_simulator() -> None:
