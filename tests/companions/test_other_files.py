@@ -10,7 +10,7 @@ from made_params import L2, made, section
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.ports import node_name
 from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.params.controller_sections import takes_sections
+from multibot_rewrite.companions.params.lacking_sections import takes_sections
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.rviz.read_config import every, read_config
 from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot

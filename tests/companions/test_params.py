@@ -30,10 +30,11 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.params.lacking_sections import all_sections
+from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
-from multibot_rewrite.companions.yaml_text import quoted, read_yaml
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template, make_template
+from multibot_rewrite.companions.yaml_text import Splice, quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
 from multibot_rewrite.knowledge.parameter_entries import KINDS
 from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
@@ -601,22 +602,67 @@ def test_lines_are_inserted_as_the_file_is_written() -> None:
     assert "{robot_base_frame: r1/base_link}" in made(empty)[0]
 
 
-def test_a_node_without_any_section_is_reported() -> None:
-    document = read_yaml(section("amcl", "x: 1").encode(), "p.yaml")
-    found = nodes_without_section([document], setting(L2))
-    assert {it.code for it in found} == {"MF125"}
-    told = " ".join(it.message for it in found)
-    assert "collision_monitor" in told
-    assert "amcl" not in told.split()
-    wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
-    assert "collision_monitor" not in str(nodes_without_section([document, wild], setting(L2)))
-    every = read_yaml(section("/**", "x: 1").encode(), "r.yaml")
-    assert nodes_without_section([document, every], setting(L2)) == found
-    assert nodes_without_section([document], setting(L1)) == tuple(
-        it
-        for it in nodes_without_section([document], setting(L1))
-        if "tf_frame_prefix" in it.message
+AMCL = """\
+# multibot: the default is every robot's
+/robot1/amcl:
+  ros__parameters:
+    base_frame_id: r1/base_footprint
+    odom_frame_id: r1/odom
+"""
+SMOOTHER = """\
+# multibot: the default is every robot's
+/robot1/smoother_server:
+  ros__parameters:
+    robot_base_frame: r1/base_link
+"""
+BOTH = {"amcl": AMCL, "smoother_server": SMOOTHER}
+
+
+@pytest.mark.parametrize(
+    ("source", "beside", "added"),
+    [
+        (section("map_server", "a: 1"), "", ["amcl", "smoother_server"]),
+        (section("amcl", "a: 1"), "", ["smoother_server"]),
+        (section("map_server", "a: 1"), section("amcl", "a: 1"), ["smoother_server"]),
+        (section("/**/amcl", "a: 1"), "", ["smoother_server"]),
+        (section("/**", "robot_base_frame: tool0"), "", ["amcl"]),
+        (section("/*/*", "a: 1"), section("/**", "robot_base_frame: tool0"), ["amcl"]),
+    ],
+)
+def test_the_first_file_gets_the_sections_that_no_file_has(
+    source: str, beside: str, added: list[str]
+) -> None:
+    others = [read_yaml(beside.encode(), "q.yaml")] if beside else []
+    text, findings = made(source, beside=others, is_first=True)
+    assert "MF124" not in codes(findings)
+    assert [name for name, it in BOTH.items() if it in text] == added
+    assert not {it for it in BOTH.values() if it in made(source, beside=others)[0]}
+    with_bare_frames, _ = made(source, L1, beside=others, is_first=True)
+    assert "_frame" not in with_bare_frames.replace("tf_frame_prefix_enable", "").replace(
+        source, ""
     )
+
+
+def test_a_file_that_no_section_can_be_added_to_is_told() -> None:
+    text, findings = made("{amcl: {ros__parameters: {}}}\n", is_first=True)
+    assert "smoother_server" not in text
+    said = {it.message for it in findings if it.code == "MF124"}
+    assert (
+        "/<robot>/smoother_server has no section: robot_base_frame: all robots would share the "
+        "default, and no line can be inserted here"
+    ) in said
+
+
+def test_a_robot_without_a_file_gets_the_same_sections() -> None:
+    known = built_in_nodes("jazzy")
+    texts = [all_sections(setting(L2), known, it) for it in ((), ("amcl",))]
+    of_robot = [
+        fill_template(make_template("", [Splice(0, 0, it)]), "robot1", "r1") for it in texts
+    ]
+    added = made(section("map_server", "a: 1"), is_first=True)[0].partition("a: 1\n")[2]
+    assert of_robot[0] == added
+    assert AMCL in of_robot[0] and AMCL not in of_robot[1] and SMOOTHER in of_robot[1]
+    assert all_sections(make_context(DECLARED, make_naming("L2"), [], "jazzy"), known, ()) == ""
 
 
 @pytest.mark.parametrize(

@@ -789,7 +789,8 @@ def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
     (tmp_path / "params.yaml").write_text(own)
     assert build(tmp_path) == 0
     made = (tmp_path / "out" / "robot1" / "params.yaml").read_text()
-    assert made == own.replace("mast:", "/robot1/mast:").replace("base_link", "robot1/base_link")
+    mast = own.replace("mast:", "/robot1/mast:").replace("base_link", "robot1/base_link")
+    assert made.startswith(mast) and made.count("/mast:") == 1
 
 
 # ---------------------------------------------------------------- undo

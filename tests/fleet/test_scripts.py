@@ -183,8 +183,10 @@ def test_parameters_in_every_layout(layout: str, tmp_path: Path) -> None:
     costmap = one.params("params.yaml", "local_costmap/local_costmap")
     assert costmap["global_frame"] == one.frame("odom")
     assert one.params("params.yaml", "my_node").keys() == {"use_sim_time", "alpha1", "frame"}
-    # Of a stack, but not in the file: only what is for all.
-    assert one.params("params.yaml", "bt_navigator").keys() == {"use_sim_time", "alpha1"}
+    # Of a stack, but not in the file: what is for all, and frames where robots have their own.
+    of_all = {"use_sim_time": True, "alpha1": 0.1}
+    frames = {} if layout == "L1" else {"robot_base_frame": one.frame("base_link")}
+    assert one.params("params.yaml", "bt_navigator") == {**of_all, **frames}
 
 
 @pytest.mark.slow

@@ -18,10 +18,7 @@ from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.controller_sections import (
-    controller_sections,
-    takes_sections,
-)
+from multibot_rewrite.companions.params.lacking_sections import lacking_sections
 from multibot_rewrite.companions.params.name_sites import (
     NO_NAMES,
     Page,
@@ -31,8 +28,6 @@ from multibot_rewrite.companions.params.name_sites import (
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
-    controller_types,
-    identify_node,
     identify_sections,
     key_splices,
     raw_sections,
@@ -40,7 +35,6 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     default_lines,
-    without_section,
 )
 from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.sites import SECTION, Site, site_at
@@ -65,6 +59,7 @@ def rewrite_params(
     own: Iterable[str] = (),
     at_run_time: Iterable[str] = (),
     clock: bool | None = None,
+    is_first: bool = False,
 ) -> Companion:
     """A parameter file with slots for a robot, and the findings about it.
 
@@ -73,7 +68,8 @@ def rewrite_params(
     move topics too.
     A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the nodes that
     put the robot's name before their frames themselves. ``clock`` is the ``use_sim_time`` of all its
-    nodes, None if they keep their own. Raises InputError for a file that
+    nodes, None if they keep their own. The robot's first file gets sections of nodes of the stack that
+    no file has one for. Raises InputError for a file that
     is not a parameter file or that rcl rejects.
     """
     with gc_paused():
@@ -87,16 +83,16 @@ def rewrite_params(
             frozenset(at_run_time),
             clock,
         )
-        return _params(job, beside)
+        return _params(job, beside, is_first)
 
 
-def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
+def _params(job: ParamsJob, beside: Sequence[YamlText], is_first: bool) -> Companion:
     document, context = job.document, job.context
     file = read_params(document, context, job.known, job.own)
     job = job._replace(known=job.known._replace(sent=file.sent))
     found = [RawSection(*section[:3]) for section, _ in file.pages]
     others = [it for other in beside for it in without_own(raw_sections(other), job.own)]
-    made = [*_made(job, file.pages, others), *controller_sections(job, found, others)]
+    made = [*_made(job, file.pages, others), *lacking_sections(job, found, others, is_first)]
     splices = [it for it in made if isinstance(it, Splice)]
     findings = [it for it in made if isinstance(it, Finding)]
     template = make_template(document.text, splices)
@@ -132,36 +128,6 @@ def _in_words(found: Finding) -> Finding:
         for text in (found.message, found.hint)
     )
     return found._replace(message=message, hint=hint)
-
-
-def nodes_without_section(
-    documents: Sequence[YamlText],
-    context: Context,
-    known: KnownNodes | None = None,
-    own: Collection[str] = (),
-) -> tuple[Finding, ...]:
-    """Nodes of the stack that have no section in any of a robot's parameter files, though all robots
-    would share their defaults; reported at the first file."""
-    known = known or built_in_nodes(context.distro)
-    if not documents:
-        return ()
-    raw = [without_own(raw_sections(it), own) for it in documents]
-    types = controller_types(section for found in raw for section in found)
-    sections = [identify_sections(it, context, known) for it in raw]
-    full = [it.full for found in sections for it in found if it.path != "**"]
-    given = {
-        name
-        for file, found in zip(documents, raw, strict=True)
-        if takes_sections(file)
-        for name in controller_types(found)
-    }
-    nodes = {
-        name: node
-        for name in context.nodes
-        if name.rpartition("/")[2] not in given
-        if (node := identify_node(name.rpartition("/")[2], None, known, types))
-    }
-    return _once(without_section(documents[0], full, context, nodes))
 
 
 def read_params(

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import yaml
 
@@ -21,7 +21,6 @@ from multibot_rewrite.companions.params.sections import (
     pattern_of,
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
-from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_blocks import newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
@@ -54,11 +53,15 @@ def default_lines(
         done.add(section.full)
         same = [names.known for other, names in pages if other.full == section.full]
         here = set().union(*same) | _set_for(section, everywhere)
-        bare = {it.path for it in section.node.defaults if it.kind == "frame"}
-        there = here | bare if frames_stay(job, section) else here
+        there = here | bare_frames(section.node) if frames_stay(job, section) else here
         lines = list(missing_defaults(job.context, section.node, there))
         if lines:
             yield inserted(job.document, section.body, lines)
+
+
+def bare_frames(node: KnownNode) -> set[str]:
+    """The parameters of a node that hold frames, and have a default."""
+    return {it.path for it in node.defaults if it.kind == "frame"}
 
 
 def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
@@ -108,8 +111,8 @@ NOT_INSERTED = declare(
     "MF124",
     "default-not-inserted",
     WARNING,
-    what="All robots would share the default of a parameter, and the section has no place for a line "
-    "that sets it.",
+    what="All robots would share the default of a parameter, and the file has no place for a line that "
+    "sets it.",
     why="The default has no robot's name in it: the node looks for base_link, but the robot's frame is "
     "robot1/base_link.",
     fix="Write each parameter on its own line, as in name: value.",
@@ -143,60 +146,24 @@ def inserted(
         text = "".join(f"{line.path}: {line.value}, " for line in lines)
         return Splice(at, at, text)
     if before.strip():
-        names = ", ".join(line.path for line in lines)
-        message = f"{names}: all robots would share the default, and no line can be inserted here"
-        hint = "write each parameter on its own line"
-        return found_at(document, body, NOT_INSERTED, message, hint)
+        return not_inserted(document, body, lines)
     end = newline(document) + before
     return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
+
+
+def not_inserted(
+    document: YamlText, node: yaml.Node, lines: Sequence[DefaultLine], of: str = ""
+) -> Finding:
+    """That there is no place for lines in a node of a document, ``of`` a ROS node without a section."""
+    names = ", ".join(line.path for line in lines)
+    whose = f"{of} has no section: " if of else ""
+    message = (
+        f"{whose}{names}: all robots would share the default, and no line can be inserted here"
+    )
+    return found_at(document, node, NOT_INSERTED, message, "write each parameter on its own line")
 
 
 def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
     for comment in dict.fromkeys(line.comment for line in lines):
         yield comment
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
-
-
-NO_SECTION = declare(
-    "MF125",
-    "node-without-section",
-    WARNING,
-    what="A node of the stack has no section in any parameter file of the robot, so all robots would "
-    "share its defaults.",
-    why="Defaults have no robot's name in them: amcl looks for base_footprint, but the robot's frame "
-    "is robot1/base_footprint. Without a section there is no place to insert the parameters.",
-    fix="Add a section for the node; use_sim_time is enough in it.",
-    bad="""\
-map_server:
-  ros__parameters:
-    use_sim_time: true
-""",
-    good="""\
-amcl:
-  ros__parameters:
-    use_sim_time: true
-""",
-    formats=("params",),
-    beside={"nodes.yaml": "stacks: {own: {nodes: [amcl]}}"},
-    options={"stack": "own", "nodes": "nodes.yaml"},
-)
-
-
-def without_section(
-    document: YamlText, sections: Iterable[str], context: Context, nodes: Mapping[str, KnownNode]
-) -> Iterator[Finding]:
-    """Nodes of the stack without a section, whose defaults all robots would share.
-
-    ``nodes`` are the known ones by the stack's name, ``sections`` the full names that have one.
-    """
-    patterns = [re.compile(pattern_of(full)) for full in sections]
-    for name, node in nodes.items():
-        place = context.nodes[name]
-        if NAMESPACE_SLOT not in place or any(it.fullmatch(place) for it in patterns):
-            continue
-        lines = list(missing_defaults(context, node, set()))
-        if lines:
-            words = ", ".join(it.path for it in lines)
-            message = f"{name} has no section, so all robots would share its defaults for {words}"
-            hint = "add a section for it (use_sim_time is enough); the lines are inserted there"
-            yield NO_SECTION.finding(message, hint, file=document.file, line=1)

@@ -80,7 +80,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.code == tf_pieces.tf_tree_in_pieces.code:
         return WARNING if _sender_left(it, planned, started) else ""
     if it.code in _OF_SOURCES:
-        return WARNING
+        return WARNING if it.robot else ERROR
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     return "" if it.code in ABSENCE and doubts(seen) else ERROR

@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
-from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
+from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_paths, path_for
 from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
@@ -70,7 +70,7 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     starts += [it.start for it in placed]
     copied, bridged_tf = _relays(given)
     starts += [*copied, *_domain_bridge(robot, files)]
-    params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
+    params = params_paths(robot, files)
     told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
     found = tuple(starts), tuple(spawned), tuple(left.items())
     nodes = tuple(_nodes(names, left))
@@ -182,9 +182,7 @@ def _components(given: _Given, container: str) -> Iterator[Component]:
 def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[File | Mapping[str, Any]] = [
-        File(path_for(robot, it)) for it in robot.spec.companions.get("params", ())
-    ]
+    found: list[File | Mapping[str, Any]] = [File(it) for it in params_paths(robot, given.files)]
     known = facts.kind
     if facts.usual and all(it.known != known for it in given.plan.evidence_of(robot).given):
         found.append(dict(facts.usual))

@@ -12,17 +12,22 @@ from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.formats import made_for_any
 from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.params.lacking_sections import all_sections
+from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.sites import found_in
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
     NUMBER_STEP,
     TAG_SLOT,
     fill_template,
+    make_template,
 )
+from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.own_ports import said_of_numbers
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
+    DEFAULTS,
     FilesAndFindings,
     OutputFile,
     params_of,
@@ -68,6 +73,19 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
                     number = numbers[spec.name]
                     text = fill_template(made.template, spec.namespace, spec.tag, number)
                     yield OutputFile(path_for(robot, path), text.encode(), (path,))
+    for group in group_robots(plan) if plan.file.params_style != BRINGUP else ():
+        yield from () if "params" in group.companions else _own_defaults(plan, group)
+
+
+def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
+    """What a parameter file of each robot would get for its nodes, where there is no such file."""
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    given = plan.evidence_of(group.robots[0]).given
+    text = all_sections(group.context, known, _at_run_time(plan.fleet.naming, given, known))
+    template = make_template("", [Splice(0, 0, text)])
+    for robot in group.robots if text else ():
+        made = fill_template(template, robot.spec.namespace, robot.spec.tag)
+        yield OutputFile(path_for(robot, DEFAULTS), made.encode())
 
 
 def _numbers(plan: FleetPlan, key: str, path: str) -> dict[str, int]:
@@ -122,7 +140,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     bare = _at_run_time(plan.fleet.naming, evidence.given, known)
     known = known._replace(sent=known.sent | {*_sent(nodes, group.context.names.declared["link"])})
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
-    made = rewrite_params(
+    return rewrite_params(
         read[path],
         group.context,
         known,
@@ -131,11 +149,8 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
         own,
         bare,
         group.robots[0].spec.use_sim_time,
+        path == next(iter(read)),
     )
-    if path != next(iter(read)):
-        return made
-    more = nodes_without_section(list(read.values()), group.context, known, own)
-    return made._replace(findings=(*made.findings, *more))
 
 
 def _sent(nodes: Iterable[NodeFacts], links: Iterable[str]) -> Iterator[str]:

@@ -19,6 +19,8 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 
 # The plan of a built fleet, and the schema that it names for editors.
 PLAN, PLAN_SCHEMA = "plan.yaml", ".plan.schema.json"
+# The parameter file of a robot that has none, with what its nodes need.
+DEFAULTS = "params.yaml"
 
 
 class OutputFile(NamedTuple):
@@ -70,6 +72,14 @@ def expanded_name(path: str) -> str:
     """The file's name once xacro is expanded, or parts are joined."""
     name = os.path.basename(path).removesuffix(XACRO).removesuffix(JOIN)
     return name if "." in name else f"{name}.urdf"
+
+
+def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
+    """Where a robot's parameter files are among the ``files`` of a build, the one that it is given
+    where it has none included."""
+    named = robot.spec.companions.get("params", ())
+    paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
+    return tuple(it for it in paths if it in files)
 
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:

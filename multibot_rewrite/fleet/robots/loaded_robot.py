@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.moveit_parameters import move_group_parameters
-from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, params_paths
 from multibot_rewrite.fleet.outputs.relays import Relay, relays
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, Rules, names_of
@@ -79,8 +79,8 @@ class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
-    None if the fleet file has none; ``params_files`` are the names of its parameter files, ``stack``
-    the nodes of its stacks. It can be copied and pickled, with its fleet.
+    None if the fleet file has none; ``stack`` are the nodes of its stacks. It can be copied and
+    pickled, with its fleet.
     """
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
@@ -93,10 +93,8 @@ class LoadedRobot:
         self.pose: Pose | None = spec.pose
         self.use_sim_time: bool | None = spec.use_sim_time
         self.distro: str = fleet.plan.file.distro
-        params = spec.companions.get("params", ())
         nodes = stack_nodes(spec, fleet.plan.file)
         self.stack: tuple[str, ...] = tuple(it.name for it in nodes)
-        self.params_files: tuple[str, ...] = tuple(map(os.path.basename, params))
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
@@ -105,6 +103,13 @@ class LoadedRobot:
 
     def __reduce__(self) -> tuple[Callable[..., LoadedRobot], tuple[object, ...]]:
         return type(self._fleet).robot, (self._fleet, self.name)
+
+    @property
+    @checked
+    def params_files(self) -> tuple[str, ...]:
+        """The names of its parameter files: those of the fleet file, else ``params.yaml`` where its
+        nodes need parameters. Raises as ``LoadedFleet.made``."""
+        return tuple(map(os.path.basename, params_paths(self._robot, self._fleet.files)))
 
     @property
     def description(self) -> str:
