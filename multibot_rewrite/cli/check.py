@@ -36,10 +36,7 @@ from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
 from multibot_rewrite.system.domains import by_domain, side_by_side
-from multibot_rewrite.system.index import NO_COUNTS
 from multibot_rewrite.system.records import System, answering
-
-ONE_VIEW: Mapping[int, System] = {}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,7 +61,8 @@ def run(options: argparse.Namespace) -> int:
     graph = live.graph(options, judge=lambda it: check(plan, it))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
-    return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
+    graph = live.with_states(options, graph, _parameters(plan))
+    return conclude(options, plan, graph, check(plan, graph))
 
 
 def _looked_at(
@@ -90,7 +88,7 @@ def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System
         plan = _with_files(options, plan)
     asked = _parameters(plan)
     seen = {it: live.with_states(live.at(options, it), seen[it], asked) for it in seen}
-    return conclude(options, plan, side_by_side(seen), views=seen)
+    return conclude(options, plan, side_by_side(seen), check_domains(plan, seen))
 
 
 def _with_files(options: argparse.Namespace, plan: System) -> System:
@@ -112,7 +110,8 @@ def _recorded(options: argparse.Namespace, plan: System) -> int:
     from multibot_rewrite.producers.bags.read import read_bag
 
     recording = read_bag(options.bag)
-    return conclude(options, plan, as_snapshot(recording, plan), messages=counted(recording))
+    graph = as_snapshot(recording, plan)
+    return conclude(options, plan, graph, check(plan, graph, counted(recording)))
 
 
 def _check_use(options: argparse.Namespace) -> None:
@@ -169,16 +168,11 @@ def conclude(
     options: argparse.Namespace,
     plan: System,
     graph: System,
+    compared: Sequence[Finding],
     before: Sequence[Finding] = (),
-    messages: Mapping[str, int] = NO_COUNTS,
-    views: Mapping[int, System] = ONE_VIEW,
 ) -> int:
-    """Compare, report the findings, draw what is asked for; the exit code.
-
-    ``before`` are findings from before there was a graph, ``messages`` are counted for each topic,
-    ``views`` has what was seen in each domain where there are several.
-    """
-    compared = check_domains(plan, views) if views else check(plan, graph, messages)
+    """Report the findings, draw what is asked for; the exit code. ``compared`` are those about the
+    graph and its plan, ``before`` those from before there was a graph."""
     found = chosen(options, compared)
     of_graph, gaps = [*before, *found], _gaps(options, plan)
     findings = [*of_graph, *gaps]

@@ -7,7 +7,6 @@ import argparse
 import shlex
 from collections.abc import Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import own_nodes
@@ -18,14 +17,10 @@ from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read
-from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
-from multibot_rewrite.rules.launch.judge import judge_launch, placed
-from multibot_rewrite.rules.system.interfaces import (
-    interface_claimed_twice,
-    interface_not_exported,
-)
-from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
+from multibot_rewrite.rules.check import check as compared
+from multibot_rewrite.rules.check import side_by_side
+from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 
 
 def run(options: argparse.Namespace) -> int:
@@ -42,11 +37,13 @@ def run(options: argparse.Namespace) -> int:
     if options.format != "text":
         found += not_read(made.graph)
     if plan is not None:
-        return check.conclude(options, plan, made.system, chosen(options, found))
+        whose = side_by_side(plan, made.system)[1]
+        sure = [as_sure(it, made, whose) for it in compared(plan, made.system)]
+        return check.conclude(options, plan, made.system, sure, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *(placed(_certain(it, made), made) for it in seen.findings))
+    every = (*found, *(placed(as_sure(it, made, seen.whose), made) for it in seen.findings))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 
@@ -54,19 +51,6 @@ def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchO
     """The launch files that words name, with the arguments; raises UsageError for other words."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
     return [it._replace(trusted=True) for it in orders]
-
-
-def _certain(it: Finding, made: Launched) -> Finding:
-    """A claim that no hardware meets is an error where all that is started is known. The odometry of a
-    robot that is in no simulator may come from a driver that is started apart."""
-    claims = it.code in (interface_not_exported.code, interface_claimed_twice.code)
-    if claims and it.level == WARNING:
-        return it._replace(level=ERROR)
-    doubted = it.code == tf_tree_in_pieces.code and it.level == ERROR
-    apart = doubted and not any(one.spawned for one in made.models.found)
-    if apart and it.names and not any(edge.parent == it.names[0] for edge in made.system.edges):
-        return it._replace(level=WARNING)
-    return it
 
 
 def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:

@@ -10,7 +10,7 @@ from functools import partial
 
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli import fleet, live, pictures
-from multibot_rewrite.cli.check import ONE_VIEW, conclude
+from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -24,6 +24,8 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.live.staged import staged, stages
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.transforms import Edges, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
@@ -53,7 +55,8 @@ def run(options: argparse.Namespace) -> int:
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
     _note_substitutes(options, replaced)
-    return conclude(options, plan, graph, table, views=seen if plan.domains else ONE_VIEW)
+    found = check_domains(plan, seen) if plan.domains else check(plan, graph)
+    return conclude(options, plan, graph, found, table)
 
 
 def _played(

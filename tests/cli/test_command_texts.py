@@ -17,7 +17,6 @@ from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageE
 from multibot_rewrite.cli import (
     adopt,
     build,
-    check_launch,
     coverage,
     inspect,
     learn,
@@ -585,36 +584,6 @@ def test_what_a_check_of_a_build_lists(capsys: pytest.CaptureFixture[str]) -> No
     said = capsys.readouterr()
     assert said.out == "a: stale\nb: left over\n"
     assert said.err == "multibot: 2 files of out differ from what fleet.yaml makes\n"
-
-
-@pytest.mark.parametrize(
-    ("code", "level", "spawned", "parents", "becomes"),
-    [
-        ("MG601", "warning", False, (), "warning"), ("claim", "warning", False, (), "error"),
-        ("twice", "warning", True, (), "error"), ("claim", "note", False, (), "note"),
-        ("pieces", "error", False, (), "warning"), ("pieces", "error", True, (), "error"),
-        ("pieces", "error", False, ("odom",), "error"), ("pieces", "note", False, (), "note"),
-        ("pieces", "error", False, ("map",), "warning"),
-    ],
-)  # fmt: skip
-def test_how_sure_a_finding_about_a_launch_file_is(
-    code: str, level: str, spawned: bool, parents: tuple[str, ...], becomes: str
-) -> None:
-    """Of a robot that no simulator has a driver may send the odometry."""
-    codes = {
-        "claim": check_launch.interface_not_exported.code,
-        "twice": check_launch.interface_claimed_twice.code,
-        "pieces": check_launch.tf_tree_in_pieces.code,
-    }
-    made: Any = options(
-        models=options(found=[options(spawned=spawned)]),
-        system=options(edges=[options(parent=it) for it in parents]),
-    )
-    it = Finding(codes.get(code, code), level, "m", names=("odom",))
-    assert check_launch._certain(it, made).level == becomes
-    assert check_launch._certain(it._replace(names=()), made).level == (
-        level if code == "pieces" else becomes
-    )
 
 
 # ---------------------------------------------------------------- help and mistakes

@@ -32,14 +32,15 @@ def test_the_examples_are_there() -> None:
 
 
 STACKS = list(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
-# Frames of nodes without a parameter file are those of their code: build says so (MG402).
-LAYOUTS = ["postfix", "tf-per-robot", "both"]
+LAYOUTS = ["postfix", "tf-per-robot", "both", "frames-per-robot", "frame-prefix"]
 REFUSED = {
     # The rover has no such plugin, and Jazzy no Gazebo Classic.
     ("", "", "gazebo_ros2_control"),
     # Nothing starts their controller manager, and that of Humble has no description without the plugin.
     ("", "", "controllers"),
     ("humble", "", "gz_ros2_control"),
+    # move_group finds no link of the description in tf (MF837).
+    ("", "frame-prefix", "moveit"),
     # The spawner waits for a description that somebody else sends.
     ("", "", "no_robot_state_publisher"),
     # The base is base_link by default, and that of the rover is base_footprint.

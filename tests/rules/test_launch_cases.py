@@ -8,9 +8,12 @@ spawner.py.
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import yaml
+from graph_examples import read_example
 from launched_nodes import AT, started
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -25,7 +28,13 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
-from multibot_rewrite.rules.launch.judge import judge_launch
+from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.rules.system.interfaces import (
+    interface_claimed_twice,
+    interface_not_exported,
+)
+from multibot_rewrite.system.guess import guess_robots, whose_by_guess
+from multibot_rewrite.system.index import index
 
 START = "start ros2_control_node there, or load gz_ros2_control in the description"
 TF = ("tf2_ros", "static_transform_publisher", "s")
@@ -379,3 +388,51 @@ def test_a_system_of_the_world_is_loaded_again_with_a_second_model(known: Knowle
     ]
     found = named_findings(launched(LaunchGraph(tuple(spawn), ()), known))
     assert {it.code for it in found} == {"MB416"}
+
+
+SENT = "running: transform {} on /tf by /a\n"
+LOOSE, BODY = SENT.format("map -> odom"), SENT.format("base_link -> laser")
+MISSPELLED = SENT.format("odom -> base_lnk") + SENT.format("base_link -> front")
+WHOLE = SENT.format("odom -> base_link")
+PLUGIN = "<robot name='r'><gazebo><plugin name='p' filename='p'/></gazebo></robot>"
+NO_PLUGIN = "<robot name='r'><!-- <plugin/> --></robot>"
+
+
+@pytest.mark.parametrize(
+    ("lines", "spawned", "becomes"),
+    [
+        (LOOSE + BODY, "", "warning"),
+        (LOOSE + BODY, NO_PLUGIN, "warning"),
+        (LOOSE + BODY, "<robot", "warning"),
+        (LOOSE + BODY, PLUGIN, "error"),
+        (MISSPELLED, "", "error"),
+        (WHOLE + BODY, PLUGIN, "warning"),
+        (WHOLE + BODY + SENT.format("tool -> tip"), "", "warning"),
+    ],
+)
+def test_how_sure_it_is_that_a_launch_file_leaves_a_tree_in_pieces(
+    lines: str, spawned: str, becomes: str
+) -> None:
+    """Of a robot that nothing moves a driver may send the odometry; other pieces may be meant."""
+    _, graph = read_example(lines)
+    seen = index(graph, whose_by_guess(guess_robots(graph)))
+    models: Any = SimpleNamespace(found=[SimpleNamespace(spawned=bool(spawned), text=spawned)])
+    launched: Any = SimpleNamespace(models=models)
+    found = Finding("MG406", "error", "m", names=("odom", "base_link"))
+    assert as_sure(found, launched, seen).level == becomes
+    assert as_sure(found._replace(level="note"), launched, seen).level == "note"
+
+
+@pytest.mark.parametrize(
+    ("code", "level", "becomes"),
+    [
+        (interface_not_exported.code, "warning", "error"), ("MG601", "warning", "warning"),
+        (interface_claimed_twice.code, "warning", "error"), ("MG601", "error", "error"),
+        (interface_not_exported.code, "note", "note"),
+    ],
+)  # fmt: skip
+def test_a_claim_that_nothing_meets_is_an_error_where_all_is_known(
+    code: str, level: str, becomes: str
+) -> None:
+    nothing: Any = None
+    assert as_sure(Finding(code, level, "m"), nothing, nothing).level == becomes

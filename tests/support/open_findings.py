@@ -13,7 +13,7 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 # What a build tells of the odometry of these robots in some layouts, and is no gap.
-BESIDE = ("MB105", "MF125", "MF7", "MB4", "MR")
+BESIDE = ("MB105", "MF7", "MB4", "MR")
 
 
 def found(

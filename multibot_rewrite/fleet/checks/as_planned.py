@@ -29,7 +29,7 @@ from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
-# no parameter file names.
+# no parameter file names. Between robots they are the build's.
 _OF_SOURCES = frozenset(
     it.code
     for it in (
@@ -78,7 +78,8 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
     if it.code == tf_pieces.tf_tree_in_pieces.code:
-        return WARNING if _sender_left(it, planned, started) else ""
+        known = not doubts(seen)
+        return WARNING if known or _sender_left(it, planned, started) else ""
     if it.code in _OF_SOURCES:
         return WARNING if it.robot else ERROR
     if it.code == demands.bridged_topic_missing.code:

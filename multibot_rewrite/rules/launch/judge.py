@@ -5,12 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
+from multibot_rewrite.rules.system.interfaces import (
+    interface_claimed_twice,
+    interface_not_exported,
+)
+from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
+from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
+_CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
 MODULES = (ending, joints, models, rows, started, words, world)
 
 
@@ -20,6 +29,25 @@ def _rules() -> Iterator[Rule]:
 
 
 RULES = tuple(sorted(_rules(), key=lambda it: it.code))
+
+
+def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
+    """A finding about the system of a launch. A claim that no hardware meets is an error, since all
+    that is started is known; a tree in pieces is a warning where more may be started."""
+    if it.code in _CLAIMS and it.level == WARNING:
+        return it._replace(level=ERROR)
+    if it.code == tf_tree_in_pieces.code and it.level == ERROR:
+        moved = any(one.spawned and has_plugin(one.text.encode()) for one in launched.models.found)
+        return it if is_sure(seen, it, moved) else it._replace(level=WARNING)
+    return it
+
+
+def has_plugin(description: bytes) -> bool:
+    """Has a description a plugin, which may move the robot in a simulator? Raises nothing."""
+    try:
+        return next(read_xml(description, "").iter("plugin"), None) is not None
+    except InputError:
+        return False
 
 
 def placed(it: Finding, launched: Launched) -> Finding:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
@@ -17,11 +17,13 @@ from multibot_rewrite.rules.pair.tf_senders import (
     where_set,
 )
 from multibot_rewrite.rules.pair.tf_trees import TfTree, tf_trees
+from multibot_rewrite.rules.system.tf_pieces import loose_odometry, no_odometry
 from multibot_rewrite.system.index import Index, Sent, ends_of
 from multibot_rewrite.system.records import PUBLISHES, Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 JOINT_STATES, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
+_BRIDGE = "a ros_gz_bridge has to bridge: is it started?"
 
 
 def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
@@ -32,7 +34,10 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
         _two_names(plan, robot, roots, edges),
         _misspelled(plan, robot, roots, edges),
         *(_not_sent(plan, seen, robot, it) for it in unsent),
-        *(_silent(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
+        *(_silent_bridge(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
+        _silent(plan, seen, robot, TF),
+        _no_odometry(seen, robot, roots),
+        _silent(plan, seen, robot, JOINT_STATES),
         _bridged(plan, seen, robot),
     )
     general = "a transform between them is missing: joint states of a moving joint, odometry or"
@@ -114,6 +119,15 @@ def _plain(plan: Index, parent: str, child: str, robot: str) -> tuple[str, ...]:
     return tuple(plan.of_frames.without_robot(it, robot) for it in (parent, child))
 
 
+def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> Cause | None:
+    """Two roots, of which one is that of an odometry frame that nothing is sent below."""
+    for odom, root in loose_odometry(seen) if len(roots) == 2 else ():
+        if root in roots and seen.frame_robot(odom) in ("", robot.name):
+            (other,) = {*roots} - {root}
+            return Cause(no_odometry(odom, other))
+    return None
+
+
 def _bridged(plan: Index, seen: Index, robot: Robot) -> Cause | None:
     """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
     carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
@@ -127,15 +141,14 @@ def _bridged(plan: Index, seen: Index, robot: Robot) -> Cause | None:
     )
 
 
+def _silent_bridge(plan: Index, seen: Index, robot: Robot, type_: str) -> Cause | None:
+    silent = silent_topics(plan, seen, robot, type_)
+    topics = {it.name for it in plan.system.topics if it.bridge} & {min(silent, default="")}
+    return next((Cause(f"nothing publishes {it}, which {_BRIDGE}") for it in topics), None)
+
+
 def _silent(plan: Index, seen: Index, robot: Robot, type_: str) -> Cause | None:
-    silent: Set[str] = silent_topics(plan, seen, robot, type_)
-    if not silent:
-        return None
-    topic = min(silent)
-    bridged = any(it.name == topic and it.bridge for it in plan.system.topics)
-    if bridged:
-        return Cause(
-            f"nothing publishes {topic}, which a ros_gz_bridge has to bridge: is it started?"
-        )
+    silent = silent_topics(plan, seen, robot, type_)
     source = "joint_state_publisher, joint_state_broadcaster or the bridge"
-    return Cause(f"nothing publishes {topic}: is {source} started for {robot.name}?")
+    why = f"nothing publishes {min(silent, default='')}: is {source} started for {robot.name}?"
+    return Cause(why) if silent else None

@@ -51,6 +51,10 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
         for tree in seen.trees:
             yield from _senders_apart(seen, tree)
         return
+    yield from _by_frames(seen)
+
+
+def _by_frames(seen: Index) -> Iterator[Finding]:
     yield from _misspelled(seen)
     for tree in seen.trees:
         yield from _odometry_apart(seen, tree)
@@ -74,7 +78,7 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         found = next(iter(roots))
         robot = robot or only(robots_of(seen, tree.senders))
         message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
-        cause = f"no node sends {odom} -> {found}: is odometry started, are its frames the same?"
+        cause = no_odometry(odom, found)
         yield tf_tree_in_pieces.finding(message, cause, robot=robot, names=(odom, own[0], found))
 
 
@@ -186,6 +190,28 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
                     f"{message} of {first.publishers[0]}", cause + see((first, it)), level=WARNING,
                     robot=robot, node=it.publishers[0], names=(it.child,), **where([it]),
                 )  # fmt: skip
+
+
+def no_odometry(odom: str, root: str) -> str:
+    """The cause of a tree in pieces: nothing is sent below an odometry frame."""
+    return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
+
+
+def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
+    """The odometry frames that nothing is sent below, each with the root that it hangs from."""
+    for tree in seen.trees:
+        above, parents = _above(tree), {it.parent for it in tree.edges}
+        loose = (it for it in above if it not in parents and seen.plain_frame(it) == "odom")
+        yield from ((it, root_of(it, above)) for it in loose)
+
+
+def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
+    """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
+    by a plugin in a simulator a driver that is started apart may send the odometry; pieces without the
+    usual frames may be meant."""
+    odometry = any({*found.names} & {*it} for it in loose_odometry(seen))
+    alone = (*told_not_to(seen), *_by_frames(seen))
+    return (moved or not odometry) and any(it.robot == found.robot for it in alone)
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:
