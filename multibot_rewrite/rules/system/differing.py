@@ -207,7 +207,8 @@ def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterat
 
 def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
     """Of a robot that sends some: where it sends none, its robot_state_publisher is the finding."""
-    frames = {robot: it for robot, it in _frames(seen).items() if robot in likes}
+    by_robot = _frames(seen)
+    frames = {robot: by_robot[robot] for robot in likes if robot in by_robot}
     counts = Counter(it for own in frames.values() for it in own)
     for robot in likes if len(frames) == len(likes) else ():
         lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)

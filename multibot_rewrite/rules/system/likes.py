@@ -71,13 +71,15 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
         others = len(likes) - 1
         nodes = Counter(node for it in likes for node in made[it].nodes)
         ends = Counter(key for it in likes for key in made[it].ends)
-        for robot in likes:
+        all_but_one = [it for it in nodes if nodes[it] == others]
+        ends_but_one = [it for it in ends if ends[it] == others]
+        for robot in likes if all_but_one or ends_but_one else ():
             more = any(nodes[it] == 1 for it in made[robot].nodes)
-            lost = [it for it in nodes if nodes[it] == others and it not in made[robot].nodes]
+            lost = [it for it in all_but_one if it not in made[robot].nodes]
             # Two robots of which each has a node of its own are made for two things.
             if lost and (others > 1 or not more):
                 yield from _lost_nodes(seen, made, robot, likes, lost)
-            gone = [it for it in ends if ends[it] == others and it not in made[robot].ends]
+            gone = [it for it in ends_but_one if it not in made[robot].ends]
             yield from _lost_ends(
                 seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
             )
@@ -113,7 +115,8 @@ def alike(made: Mapping[str, Made]) -> Iterator[Sequence[str]]:
     while left:
         first = made[left[0]].nodes.keys()
         group = [it for it in left if _are_alike(first, made[it].nodes.keys())]
-        left = [it for it in left if it not in group]
+        others = {*left}.difference(group)
+        left = [it for it in left if it in others]
         if len(group) > 1:
             yield group
 
