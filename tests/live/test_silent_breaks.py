@@ -387,3 +387,33 @@ def test_the_odometry_of_a_simulated_robot_names_its_bridge() -> None:
         + "running: transform robot2_arm -> robot2_hand on /tf\n"
     )
     assert "comes over /ros_gz_bridge" in found["MG406"]
+
+
+LOOSE = ONE_TF.replace("on /tf: robot1_", "on /tf: robot1_odom, robot1_x, robot1_y, robot1_").replace(
+    "on /tf: robot2_", "on /tf: robot2_odom, robot2_"
+) + "".join(
+    f"running: transform {one} -> {other} on /tf\n"
+    for one, other in (
+        ("map", "robot1_odom"), ("robot2_base_link", "robot2_arm"),
+        ("map", "robot2_odom"), ("robot2_odom", "robot2_base_link"),
+    )
+)  # fmt: skip
+READ = "as planned: /robot1/robot_state_publisher subscribes /robot1/joints {}\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "said_"),
+    [
+        ("", "no node sends robot1_odom -> robot1_base_link: is odometry started, are its frames"),
+        (
+            READ.format("sensor_msgs/msg/JointState"),
+            "no node sends robot1_odom -> robot1_base_link",
+        ),
+        ("running: transform robot1_odom -> robot1_x on /tf\n", "a transform between them is miss"),
+        # Of three roots odometry is not the only thing that is missing.
+        ("running: transform robot1_x -> robot1_y on /tf\n", "a transform between them is miss"),
+    ],
+)
+def test_odometry_that_nobody_sends_is_the_cause(more: str, said_: str) -> None:
+    """Of the robot itself: robot2's odometry is sent, and its frames are no cause."""
+    assert said(LOOSE + more)["MG406"].startswith(said_)

@@ -30,15 +30,16 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
     """The node that sends a frame under another name, or does not send what it should."""
     edges = [edge for tree in _trees(plan, seen, robot) for edge in tree.edges]
     unsent = [it for it in sent_by_robot(plan, robot) if not _is_sent(it, edges)]
+    bridged = _bridged(plan, seen, robot)
     causes = (
         _two_names(plan, robot, roots, edges),
         _misspelled(plan, robot, roots, edges),
         *(_not_sent(plan, seen, robot, it) for it in unsent),
         *(_silent_bridge(plan, seen, robot, type_) for type_ in (TF, JOINT_STATES)),
         _silent(plan, seen, robot, TF),
-        _no_odometry(seen, robot, roots),
+        None if bridged else _no_odometry(seen, robot, roots),
         _silent(plan, seen, robot, JOINT_STATES),
-        _bridged(plan, seen, robot),
+        bridged,
     )
     general = "a transform between them is missing: joint states of a moving joint, odometry or"
     return next(filter(None, causes), Cause(f"{general} localization"))
