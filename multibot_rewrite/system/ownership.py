@@ -73,7 +73,7 @@ class NameOwnership(NamedTuple):
 
     def without_robot(self, name: str, robot: str) -> str:
         """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
-        tag = self.tag(robot)
+        tag = self.tags.get(robot, robot)
         if not tag or tag not in name:
             return name
         # Most are called so.

@@ -65,8 +65,10 @@ def _has(name: str, words: Iterable[str]) -> bool:
 
 def is_pose_order(plain: str, type_: str) -> bool:
     """Does the topic (without its robot's name) send a robot somewhere, or say where it is?"""
+    if type_ not in _POSES:
+        return False
     bare = plain.strip("/").replace("_", "")
-    return type_ in _POSES and (bare in _POSE_NAMES or bare.startswith("goalpos"))
+    return bare in _POSE_NAMES or bare.startswith("goalpos")
 
 
 def is_start_pose(plain: str, type_: str) -> bool:

@@ -140,10 +140,10 @@ def _types(seen: Index) -> _Values:
     """Of a topic that all its nodes have with one type: where they differ that is the finding."""
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
     for it in seen.topics:
-        ends = (*it.publishers, *it.subscribers)
-        if (robot := seen.robot(it.name)) and len({end.type for end in ends}) == 1 and it.type:
-            node = (it.publishers or it.subscribers)[0].node
-            found[(seen.plain(it.name),)][robot] = _Told(node, it.name, it.type, it.type)
+        robot = seen.robot(it.name) if it.type else ""
+        ends = (*it.publishers, *it.subscribers) if robot else ()
+        if ends and all(end.type == it.type for end in ends):
+            found[(seen.plain(it.name),)][robot] = _Told(ends[0].node, it.name, it.type, it.type)
     return found
 
 

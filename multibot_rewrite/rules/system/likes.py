@@ -122,7 +122,8 @@ def alike(made: Mapping[str, Made]) -> Iterator[Sequence[str]]:
 
 
 def _are_alike(one: Set[str], other: Set[str]) -> bool:
-    return len(one & other) >= _ENOUGH and 2 * len(one & other) > len(one | other)
+    same = len(one & other)
+    return same >= _ENOUGH and 2 * same > len(one) + len(other) - same
 
 
 def _lost_nodes(
