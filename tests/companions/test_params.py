@@ -32,7 +32,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.params.lacking_sections import all_sections
 from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
+from multibot_rewrite.companions.params.sections import is_for, raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template, make_template
 from multibot_rewrite.companions.yaml_text import Splice, quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
@@ -675,11 +675,15 @@ def test_a_robot_without_a_file_gets_the_same_sections() -> None:
         ("/*/amcl", "/amcl", False),
         ("/*/amcl", "/a/b/amcl", False),
         ("/a.b", "/axb", False),
+        ("/*.b", "/axb", False),
+        ("amcl", "/amcl", True),
+        ("/a/amcl/", "/a/amcl", True),
+        ("/amcl", "/a/amcl", False),
     ],
 )
 def test_what_a_wildcard_stands_for(pattern: str, full: str, matches: bool) -> None:
     """One star is one word, two are any number of them, none too (rcl_yaml_param_parser)."""
-    assert (re.fullmatch(pattern_of(pattern), full) is not None) == matches
+    assert is_for(pattern, full) == matches
 
 
 # ---------------------------------------------------------------- what is told

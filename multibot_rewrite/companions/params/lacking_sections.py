@@ -26,7 +26,7 @@ from multibot_rewrite.companions.params.sections import (
     flattened,
     identify_node,
     identify_sections,
-    pattern_of,
+    is_for,
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     DefaultLine,
@@ -92,12 +92,11 @@ def _of_nodes(
 ) -> Iterator[tuple[str, list[DefaultLine]]]:
     """The full names of nodes of the stack that no section is for, and what they need."""
     types = controller_types(every)
-    own = (it for it in identify_sections(every, context, known) if not _is_of_all(it))
-    patterns = [re.compile(pattern_of(it.full)) for it in own]
+    own = [it.full for it in identify_sections(every, context, known) if not _is_of_all(it)]
     for name, full in context.nodes.items():
         last = name.rpartition("/")[2]
         shared = NAMESPACE_SLOT not in full
-        if shared or last in types or any(it.fullmatch(full) for it in patterns):
+        if shared or last in types or any(is_for(it, full) for it in own):
             continue
         if node := identify_node(last, None, known, types):
             bare = bare_frames(node) if last in at_run_time else ()
@@ -113,8 +112,7 @@ def _is_of_all(section: ParamSection) -> bool:
 
 def _set(path: str, every: Iterable[RawSection]) -> set[str]:
     """What sections of many nodes set for it, too."""
-    whole = f"/{path.strip('/')}"
-    fitting = (it for it in every if re.fullmatch(pattern_of(it.path), whole))
+    fitting = (it for it in every if is_for(it.path, f"/{path.strip('/')}"))
     return {name for it in fitting for name, _ in flattened(it.body)}
 
 

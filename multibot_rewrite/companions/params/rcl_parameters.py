@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
+from multibot_rewrite.companions.params.sections import is_for, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 
 Scalar = bool | int | float | str
@@ -52,7 +52,7 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     """
     sections: dict[str, dict[str, Value]] = {}
     for found in raw_sections(document):
-        if re.fullmatch(pattern_of(found.path), full):
+        if is_for(found.path, full):
             sections.setdefault(found.path, {}).update(_flat(document, found.body, ""))
     return {name: value for section in sections.values() for name, value in section.items()}
 

@@ -327,7 +327,14 @@ def _texts(section: ParamSection) -> list[str]:
     return [first, *reversed(texts)]
 
 
-def pattern_of(full: str) -> str:
+def is_for(section: str, full: str) -> bool:
+    """Is a section of this name for the node with this full name? Raises nothing."""
+    if "*" not in section:
+        return section.strip("/") == full.strip("/")
+    return re.fullmatch(_pattern_of(section), full) is not None
+
+
+def _pattern_of(full: str) -> str:
     """A wildcard section as a regular expression for full node names."""
     parts = {"**": "(?:/[^/]+)*", "*": "/[^/]+"}
     return "".join(parts.get(it, "/" + re.escape(it)) for it in full.strip("/").split("/"))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 import yaml
@@ -18,7 +17,7 @@ from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
     flattened,
-    pattern_of,
+    is_for,
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.yaml_blocks import newline
@@ -96,15 +95,11 @@ def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) 
     for full, names in everywhere:
         if (
             f"/{section.path}" == full
-            or _matches(full, section.full)
-            or _matches(section.full, full)
+            or ("*" in full and is_for(full, section.full))
+            or (section.wild and is_for(section.full, full))
         ):
             found |= names
     return found
-
-
-def _matches(pattern: str, full: str) -> bool:
-    return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
 
 
 NOT_INSERTED = declare(

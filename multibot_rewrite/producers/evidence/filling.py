@@ -261,14 +261,14 @@ def _topics(name: str, given: Given) -> Iterator[tuple[str, str]]:
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:
     """The values that a parameter may stand for, in their order."""
     pattern = _pattern(parameter)
-    if pattern.pattern == re.escape(parameter):
+    if pattern == re.escape(parameter):
         return [parameter] if parameter in values else []
-    return [name for name in values if pattern.fullmatch(name)]
+    return [name for name in values if re.fullmatch(pattern, name)]
 
 
 @lru_cache(maxsize=1024)
-def _pattern(parameter: str) -> re.Pattern[str]:
+def _pattern(parameter: str) -> str:
     text = re.escape(parameter).replace(r"\*", r"[^.]+")
     if parameter.endswith(_NUMBER) and parameter[:-1].islower():
         text = rf"{text[: -len(_NUMBER)]}\d+"
-    return re.compile(re.sub(r"<[^<>]+>", r"[^.]+", text))
+    return re.sub(r"<[^<>]+>", r"[^.]+", text)

@@ -8,7 +8,6 @@ controller_manager/spawner.py (``type`` of a controller's own section is set as 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -28,7 +27,7 @@ from multibot_rewrite.companions.params.sections import (
     MANAGER,
     RawSection,
     identify_node,
-    pattern_of,
+    is_for,
     raw_sections,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
@@ -47,7 +46,6 @@ class _Section(NamedTuple):
     raw: RawSection
     values: dict[str, Given]
     name: str
-    pattern: str
 
     @property
     def place(self) -> Place:
@@ -100,7 +98,7 @@ def named_values(
     """
     sections = _sections(document)
     for node in nodes:
-        own = [it for it in sections if re.fullmatch(it.pattern, node)]
+        own = [it for it in sections if is_for(it.raw.path, node)]
         if any(it.name for it in own):
             yield node, _values(own)
 
@@ -121,7 +119,6 @@ def _sections(document: YamlText) -> tuple[_Section, ...]:
             it,
             dict(_flat(document, it.body, "")),
             _name(it.path),
-            pattern_of(it.path),
         )
         for it in raw_sections(document)
     )
@@ -160,9 +157,8 @@ def _controllers(
         if MANAGER not in last and section.name not in managers:
             continue
         # What is for every node is for the manager, too; those of MoveIt are below a name there.
-        for_all = [
-            it for it in sections if not it.name and re.fullmatch(it.pattern, f"/{section.name}")
-        ]
+        own = f"/{section.name}"
+        for_all = [it for it in sections if not it.name and is_for(it.raw.path, own)]
         shared = (pair for it in for_all for pair in it.values.items() if pair[0].count(".") == 1)
         for name, given in (*shared, *section.values.items()):
             if name.endswith(TYPE):
@@ -182,7 +178,7 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 
 def _own(sections: Sequence[_Section], name: str) -> list[_Section]:
     # A section such as /*/NODE is for the node in whatever namespace it is.
-    return [it for it in sections if it.name == name or re.fullmatch(it.pattern, f"/{name}")]
+    return [it for it in sections if it.name == name or is_for(it.raw.path, f"/{name}")]
 
 
 def _values(sections: Sequence[_Section]) -> dict[str, Given]:

@@ -7,7 +7,6 @@ plugins, filters, docks. What is not listed is not read.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import WARNING
@@ -15,7 +14,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.sections import ParamSection, flattened, pattern_of
+from multibot_rewrite.companions.params.sections import ParamSection, flattened, is_for
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.rules.files.examples import a_section
@@ -90,10 +89,9 @@ def overridden(file: NamedFile) -> Iterator[Remark]:
     for at, section in enumerate(sections):
         if not section.wild:
             continue
-        matches = re.compile(pattern_of(section.full)).fullmatch
         here = dict(flattened(section.body))
         for earlier in sections[:at]:
-            if earlier.wild or not matches(earlier.full):
+            if earlier.wild or not is_for(section.full, earlier.full):
                 continue
             for name in here.keys() & dict(flattened(earlier.body)).keys():
                 message = (
