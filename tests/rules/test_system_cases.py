@@ -854,3 +854,25 @@ def test_what_a_robot_lacks_that_its_likes_have(lines: tuple[str, ...], found: l
     judged = judge(read_system("\n".join(f"running: {it}" for it in lines)))
     told = [it for it in judged if it.code == "MG327"]
     assert [f"{it.node or it.robot}: {it.message}; {it.hint}" for it in told] == found
+
+
+@pytest.mark.parametrize("reader", ["/robot1/viewer", "/rviz2"])
+@pytest.mark.parametrize(
+    ("shown", "end", "is_meant"),
+    [
+        (SCAN, "subscribes /robot1/scan", False),
+        (SCAN, "subscribes /robot1/cloud", True),
+        ("sensor_msgs/msg/PointCloud2", "subscribes /robot1/scan", False),
+    ],
+)
+def test_what_is_made_of_a_topic_is_not_meant_by_its_name(
+    shown: str, end: str, is_meant: bool, reader: str
+) -> None:
+    """slam_toolbox shows the scan that it reads (slam_toolbox_common.cpp): without one it shows none."""
+    found = said(
+        f"/robot1/monitor subscribes /robot1/scan {SCAN} as scan",
+        f"/robot1/slam publishes /robot1/slam/scan_visualization {shown}",
+        f"/robot1/slam {end} {SCAN} as {end.rpartition('/')[2]}",
+        f"{reader} subscribes /robot1/slam/scan_visualization {shown}",
+    )
+    assert any("scan_visualization" in it for it in found) is is_meant

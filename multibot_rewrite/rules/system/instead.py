@@ -12,7 +12,7 @@ from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, once
+from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once
 from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
@@ -69,12 +69,19 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         for it in _unread(seen).get((end.type, robot), ())
         if last_word(end.node) not in (last_word(one.node) for one in it.publishers)
         and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
+        and not _waits_itself(seen, it, end)
     ]
     akin = [it for it in given if _words(seen, it.name) & _words(seen, end.name)]
     akin = akin or [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
     plain = plain or is_from_outside(end.name)
     return _only(akin) or (None if plain else _only(given))
+
+
+def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
+    """Is it made of what is missing, as slam_toolbox shows the scan that it reads?"""
+    readers = {it.node for it in ends_of(seen, end.name) if it.role == SUBSCRIBES}
+    return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
 
 def _is_costmap(ends: Ends) -> bool:
@@ -158,7 +165,7 @@ def _only(given: Sequence[Ends]) -> Ends | None:
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
     """Does another node of its robot send it, and does its own not read it already? What the nodes of
     Nav2 and MoveIt show is no sensor; a twist_mux that no node reads is a finding of its own."""
-    if any(it.node == end.node for it in ends.subscribers):
+    if any(it.node == end.node for it in ends.subscribers) or _waits_itself(seen, ends, end):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)
     commands = words.moves(ends.name, ends.type)
@@ -249,7 +256,8 @@ def meant(seen: Index, end: End) -> Ends | None:
     own = {"", seen.robot(end.node)}
     same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
     ranked = (same[at] for at in sorted(same) if not _is_costmap(same[at]))
-    alike = {it.name: it for it in ranked if _may_be(seen, it, end)}
+    likely = (it for it in ranked if _may_be(seen, it, end))
+    alike = {it.name: it for it in likely if not _waits_itself(seen, it, end)}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.
         words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}
