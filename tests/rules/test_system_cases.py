@@ -876,3 +876,20 @@ def test_what_is_made_of_a_topic_is_not_meant_by_its_name(
         f"{reader} subscribes /robot1/slam/scan_visualization {shown}",
     )
     assert any("scan_visualization" in it for it in found) is is_meant
+
+
+@pytest.mark.parametrize(
+    ("node", "type_", "is_meant"),
+    [
+        ("controller_server", "sensor_msgs/msg/PointCloud2", False),
+        ("camera", "sensor_msgs/msg/PointCloud2", True),
+        ("controller_server", TWIST, True),
+    ],
+)
+def test_what_nav2_shows_is_no_sensor(node: str, type_: str, is_meant: bool) -> None:
+    """cost_cloud of dwb_core (publisher.cpp) is a picture of costs."""
+    found = said(
+        f"/robot1/local_costmap/local_costmap subscribes /robot1/zed/cloud {type_} as zed/cloud",
+        f"/robot1/{node} publishes /robot1/cost_cloud {type_} as cost_cloud",
+    )
+    assert any("cost_cloud" in it and it.startswith("MG303") for it in found) is is_meant

@@ -35,6 +35,7 @@ _PLAIN_DATA = ("std_msgs/", "geometry_msgs/", "visualization_msgs/")
 # Shorter words of a name, and these, say nothing of what it is.
 _SAYING = 4
 _OF_ALL = frozenset({"data", "state", "status", "pose", "info", "robot", "topic"})
+_SENSED = "sensor_msgs/"
 # Of which the name says what they are for.
 _TRIGGERS = "std_srvs/"
 
@@ -282,14 +283,18 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Does a node of another name, of its robot or of none, send it, and is it not read already?"""
+    """Does a node of another name, of its robot or of none, send it, and is it not read already? What
+    the nodes of Nav2 and MoveIt show is no sensor."""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
     own, twin = ("", seen.robot(end.node)), last_word(end.node)
+    senders = _givers(ends)
+    if end.type.startswith(_SENSED):
+        senders = [it for it in senders if team(it.node) == it.node]
     # A node of the same name elsewhere does the same for another robot.
-    return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in _givers(ends))
+    return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in senders)
 
 
-def _givers(ends: Ends) -> Iterable[End]:
+def _givers(ends: Ends) -> list[End]:
     """Who sends or serves it; what only may be there is not offered."""
     return [it for it in (*ends.publishers, *ends.servers) if it.sure == RUNS]
