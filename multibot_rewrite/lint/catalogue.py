@@ -26,7 +26,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF1",
         (
-            "companions.params.sections",
+            "companions.params.section_keys",
             "companions.params.values",
             "companions.params.shared_defaults",
             "companions.params.bringup_style",

@@ -25,11 +25,11 @@ from multibot_rewrite.companions.params.name_sites import (
     SectionNames,
     find_names,
 )
+from multibot_rewrite.companions.params.section_keys import key_splices
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
     identify_sections,
-    key_splices,
     raw_sections,
     without_own,
 )

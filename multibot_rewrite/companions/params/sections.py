@@ -8,13 +8,11 @@ As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.base.record import NamedTuple
@@ -22,13 +20,10 @@ from multibot_rewrite.companions.context import Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import (
-    Splice,
     YamlText,
     anchors,
-    found_at,
     line_of,
     pairs,
-    replaced,
 )
 from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
@@ -37,7 +32,6 @@ PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
 ANY = ("*", "**")
 _TO_DO = f"put each node's parameters below {PARAMETERS}:"
-_PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Helper nodes of old releases: they have sections, but no names of their own.
 INNER = ("_rclcpp_node", "_client")
@@ -263,68 +257,6 @@ def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
             if isinstance(type_, yaml.ScalarNode):
                 types[name if dot else key.value] = type_.value
     return types
-
-
-MIXED_KEY = declare(
-    "MF101",
-    "mixed-section-key",
-    ERROR,
-    what="The sections below one key need different names. Below it is a node of each robot, and "
-    "also a wildcard, a placeholder or a node that serves all robots.",
-    why="A node of each robot needs the robot's namespace in the key, the others need it as it is. "
-    "With either key, one of the nodes has no section and runs with its defaults.",
-    fix="Write each section under its own key, as in sensors/camera:.",
-    bad="""\
-sensors:
-  camera:
-    ros__parameters: {rate: 30}
-  "**":
-    ros__parameters: {use_sim_time: true}
-""",
-    good="""\
-/**:
-  ros__parameters: {use_sim_time: true}
-sensors/camera:
-  ros__parameters: {rate: 30}
-""",
-    formats=("params",),
-)
-
-
-def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:
-    """The new keys above the sections."""
-    new: dict[int, tuple[yaml.ScalarNode, str]] = {}
-    made: list[Splice | Finding] = []
-    for section in sections:
-        kept = section.shared or section.full == section.path
-        texts = [key.value for key in section.keys] if kept else _texts(section)
-        for key, text in zip(section.keys, texts, strict=True):
-            _, other = new.setdefault(id(key), (key, text))
-            if other != text:
-                message = f"the sections below {key.value!r} need different names: {other}, {text}"
-                hint = "write each section under its own key, as in node: ros__parameters:"
-                made.append(found_at(document, key, MIXED_KEY, message, hint))
-    made += [_key_splice(key, text) for key, text in new.values() if text != key.value]
-    return made
-
-
-def _key_splice(key: yaml.ScalarNode, text: str) -> Splice:
-    """A pattern needs no quotes unless it starts with a star."""
-    splice = replaced(key, text)
-    return splice if key.style or not _PATTERN.fullmatch(text) else splice._replace(new=text)
-
-
-def _texts(section: ParamSection) -> list[str]:
-    """The full name, divided over the keys as before; the namespace goes into the first key."""
-    tokens = section.full.strip("/").split("/")
-    texts = []
-    for key in reversed(section.keys[1:]):
-        count = key.value.strip("/").count("/") + 1
-        texts.append("/".join(tokens[-count:]))
-        tokens = tokens[:-count]
-    # Without namespaces nothing is left of a key that was the robot's own.
-    first = "/" + ("/".join(tokens) or "**")
-    return [first, *reversed(texts)]
 
 
 def is_for(section: str, full: str) -> bool:

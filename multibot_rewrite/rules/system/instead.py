@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.lazy import lazy_compile
