@@ -868,7 +868,7 @@ def test_what_a_robot_lacks_that_its_likes_have(lines: tuple[str, ...], found: l
 def test_what_is_made_of_a_topic_is_not_meant_by_its_name(
     shown: str, end: str, is_meant: bool, reader: str
 ) -> None:
-    """slam_toolbox shows the scan that it reads (slam_toolbox_common.cpp): without one it shows none."""
+    """slam_toolbox shows the scan that it reads (slam_toolbox_common.cpp)."""
     found = said(
         f"/robot1/monitor subscribes /robot1/scan {SCAN} as scan",
         f"/robot1/slam publishes /robot1/slam/scan_visualization {shown}",
