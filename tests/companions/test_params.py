@@ -396,6 +396,14 @@ def test_a_controller_without_a_section_gets_one_behind_the_last_line(above: str
     assert text.count("\n\n") == len(end) // 2
 
 
+@pytest.mark.parametrize("above", ["", "arm/", "/**/"])
+def test_a_controller_with_a_section_in_any_namespace_gets_no_second_one(above: str) -> None:
+    kind = "type: diff_drive_controller/DiffDriveController"
+    manager = section(f"{above}controller_manager", "wheels_x:", f"  {kind}")
+    text, _ = made(manager + section(f"{above}wheels_x", "a: 1"))
+    assert len(yaml.safe_load(text)) == 2
+
+
 def test_a_section_is_identified_by_its_parameters() -> None:
     lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
     assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]
