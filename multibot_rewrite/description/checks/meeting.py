@@ -24,7 +24,7 @@ from multibot_rewrite.description.readback.meeting import (
 )
 from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
 from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
-from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read
+from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read, read_tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
@@ -141,7 +141,7 @@ def _changed(
     images = any(CAMERA_INFO in it.name for it in reading.names)
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
-    before = read(document.source, document.file, vocabulary)
+    before = read_tree(document.root, vocabulary)
     yield from _lost(document, before, reading, naming)
     for it, other in parted(before, reading):
         one, two = (name.name.replace(robot, ROBOT) for name in (it, other))

@@ -82,7 +82,11 @@ class _Host(NamedTuple):
 
 def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     """Read a description as the programs do that load it; raises InputError."""
-    root = read_xml(data, file)
+    return read_tree(read_xml(data, file), vocabulary)
+
+
+def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
+    """The same of one that is parsed already. Raises nothing."""
     hosts, unknown = _hosts(root, vocabulary)
     links = [*_links(root)]
     nodes = _nodes(hosts, links, vocabulary.release)

@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of
+from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.tool_nodes import last_word
 
@@ -67,12 +67,16 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
             )
 
 
-def _of_bodies(seen: Index) -> Iterator[Ends]:
+@once
+def _of_bodies(seen: Index) -> Sequence[Ends]:
     """The robots' topics with commands, and with what a body measures."""
-    for (kind, name), ends in seen.by_name.items():
-        own = kind == TOPIC and seen.robot(name)
-        if own and (words.is_of_a_body(ends.type) or words.moves(seen.plain(name), ends.type)):
-            yield ends
+    return [
+        it
+        for it in seen.by_name.values()
+        if it.kind == TOPIC
+        and (words.is_of_a_body(it.type) or words.moves(seen.plain(it.name), it.type))
+        and seen.robot(it.name)
+    ]
 
 
 @system_rule(
