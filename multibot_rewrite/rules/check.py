@@ -107,6 +107,7 @@ SYSTEM_RULES = {it.code: it for it in sorted(_declared(_SYSTEM, SYSTEM), key=lam
 FINDERS = tuple(sorted(_finders(), key=lambda it: it.rule.code))
 RULES = {**{it.code: it for it in _declared(_PAIR, PAIR)}, **SYSTEM_RULES}
 WAITED_FOR = "expected-not-seen"
+_LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
@@ -189,7 +190,9 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
     told = {name for it in found for name in it.names}
-    for it in judge(seen._replace(system=_without_planned(plan, seen.system))):
+    # What a robot has not and others have is meant where nothing that is planned is missing.
+    asked = [it for it in SYSTEM_RULES.values() if it is not _LACKS or lost or loose]
+    for it in _judged(seen._replace(system=_without_planned(plan, seen.system)), asked):
         options = RULES[it.code].options
         abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
         by_plan = any((it.code, about) in said for about in abouts)

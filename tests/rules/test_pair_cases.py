@@ -358,3 +358,20 @@ NO_RULE = "the remap rule /tf_static:=tf_static is missing for /robot1/robot_sta
 def test_why_a_tree_is_not_as_planned(lines: str, said: list[str]) -> None:
     plan, graph = read_example(lines)
     assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said
+
+
+ALIKE = "".join(
+    f"{word}: /robot{robot}/{node} publishes /robot{robot}/{node}/x {TEXT}\n"
+    for word in ("planned", "running")
+    for robot in (1, 2, 3)
+    for node in ("a", "b", "c", "d")
+    if (robot, node) != (3, "d")
+)
+
+
+@pytest.mark.parametrize(("more", "is_told"), [("", False), ("planned: /robot3/d\n", True)])
+def test_a_robot_that_is_planned_without_what_others_have(more: str, is_told: bool) -> None:
+    plan, graph = read_example(ALIKE + more)
+    codes = {it.code for it in check(plan, graph)}
+    assert "MG327" not in codes or is_told
+    assert ("MG101" in codes) is is_told

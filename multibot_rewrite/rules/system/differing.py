@@ -11,7 +11,12 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.likes import alike, lacks_what_its_likes_have, made_of
+from multibot_rewrite.rules.system.likes import (
+    alike,
+    lacks_what_its_likes_have,
+    made_of,
+    nodes_of_each,
+)
 from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge, End
 
@@ -70,7 +75,7 @@ running: /robot2/imu publishes /robot2/imu/data sensor_msgs/msg/Imu
 )
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
     """All of a node, and all transforms of a robot, are one finding."""
-    for likes in alike(made_of(seen)):
+    for likes in alike(nodes_of_each(seen)):
         for values in (_parameters(seen), _types(seen), _qualities(seen)):
             yield from _told(_odd(values, likes), len(likes) == _TWO)
         yield from _moved_parts(seen, _odd(_parts(seen), likes))
@@ -151,8 +156,8 @@ def _types(seen: Index) -> _Values:
 def _qualities(seen: Index) -> _Values:
     """Not of Zenoh, which connects any two."""
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
-    zenoh = seen.system.environment.rmw == ZENOH
-    for robot, made in made_of(seen).items() if not zenoh else ():
+    told = seen.system.environment.rmw != ZENOH and any(it.qos for it in seen.system.ends)
+    for robot, made in made_of(seen).items() if told else ():
         for key, end in made.ends.items():
             if end.qos:
                 words, what = _words(end), (*key, "qos")

@@ -67,7 +67,7 @@ running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """What another finding is about as well is left to that one (``unexplained``)."""
     made = made_of(seen)
-    for likes in alike(made):
+    for likes in alike(nodes_of_each(seen)):
         others = len(likes) - 1
         nodes = Counter(node for it in likes for node in made[it].nodes)
         ends = Counter(key for it in likes for key in made[it].ends)
@@ -88,33 +88,38 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
 @once
 def made_of(seen: Index) -> Mapping[str, Made]:
     """What each robot is made of."""
-    own: dict[str, list[str]] = {it: [] for it in seen.robots}
-    for node in seen.nodes:
-        own.get(seen.robot(node), []).append(node)
-    return {robot: _made(seen, names) for robot, names in own.items()}
+    return {robot: Made(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
-def _made(seen: Index, own: Iterable[str]) -> Made:
-    nodes, ends = {}, {}
-    by_node, plain_of = seen.by_node, seen.plain
-    for name in own:
-        if seen.is_tool(name) or _RANDOM.search(last_word(name)):
+@once
+def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
+    """The nodes of each robot by their names without its own."""
+    own: dict[str, dict[str, str]] = {it: {} for it in seen.robots}
+    for name in seen.nodes:
+        if (robot := seen.robot(name)) not in own:
             continue
-        plain = plain_of(name)
-        nodes[plain] = name
+        if not seen.is_tool(name) and not _RANDOM.search(last_word(name)):
+            own[robot][seen.plain(name)] = name
+    return own
+
+
+def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+    ends = {}
+    by_node, plain_of = seen.by_node, seen.plain
+    for plain, name in nodes.items():
         for it in by_node.get(name, ()):
             plumbing = it.name in EVERYBODYS or it.type.startswith(_EVERY_NODE)
             if not plumbing and it.type != TF and "/_" not in it.name:
                 ends[plain, it.kind, it.role, plain_of(it.name)] = it
-    return Made(nodes, ends)
+    return ends
 
 
-def alike(made: Mapping[str, Made]) -> Iterator[Sequence[str]]:
+def alike(nodes: Mapping[str, Mapping[str, str]]) -> Iterator[Sequence[str]]:
     """Groups of robots of which more than half of all nodes are the same, and enough of them."""
-    left = [it for it in made if len(made[it].nodes) >= _ENOUGH]
+    left = [it for it in nodes if len(nodes[it]) >= _ENOUGH]
     while left:
-        first = made[left[0]].nodes.keys()
-        group = [it for it in left if _are_alike(first, made[it].nodes.keys())]
+        first = nodes[left[0]].keys()
+        group = [it for it in left if _are_alike(first, nodes[it].keys())]
         others = {*left}.difference(group)
         left = [it for it in left if it in others]
         if len(group) > 1:
