@@ -502,3 +502,35 @@ def test_which_nodes_are_in_a_process(tmp_path: Path) -> None:
     whole = set(table.inside("nav2_container"))
     assert {"amcl", "controller_server", "global_costmap/global_costmap"} <= whole
     assert whole.isdisjoint({"robot_state_publisher", "nav2_container"})
+
+
+STACK_ALONE = """\
+layout: {layout}
+affix: {affix}
+stack: [nav2, robot_state]
+robots:
+  - {{name: robot1, description: rover.urdf}}
+  - {{name: robot2, description: rover.urdf}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("layout", "more", "given"),
+    [
+        ("L2", "", "robot2/odom"),
+        ("L1", "", ""),
+        # nav2_bringup takes one file, with all that Nav2 needs.
+        ("L3", "params_style: bringup\n", ""),
+    ],
+)
+def test_a_robot_without_parameter_files_gets_the_frames_of_its_nodes(
+    layout: str, more: str, given: str, tmp_path: Path
+) -> None:
+    loaded = fleet(tmp_path, layout, more + STACK_ALONE)
+    robot, name = loaded.robot("robot2"), "robot2/params.yaml"
+    assert robot.params_files == (("params.yaml",) if given else ())
+    assert (name in loaded.files) is bool(given)
+    started = loaded.text("fleet.launch.py")
+    assert ("params.yaml" in started) is bool(given)
+    if given:
+        assert robot.params("params.yaml", "amcl")["odom_frame_id"] == given

@@ -55,26 +55,32 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
 
     Raises InputError for a file that cannot be read or rewritten.
     """
-    for key, kind in _KINDS.items():
-        for group in group_robots(plan):
+    groups = list(group_robots(plan))
+    for key in _KINDS:
+        for group in groups:
             for path in group.companions.get(key, ()):
-                made = _made(plan, group, kind, path)
-                evidence = plan.evidence_of(group.robots[0])
-                made.file.memo[Beside] = Beside(evidence.given, evidence.known)
-                numbers = _numbers(plan, key, path)
-                file = of_fleet(plan, made.file, group.robots)
-                # Robots that differ in their descriptions may have one file.
-                file = file._replace(is_for_one=file.is_for_one and len(numbers) == 1)
-                found = (*made.findings, *judged_once(file))
-                yield from (_with_names_of(group.robots[0], it) for it in found)
-                yield from _numbered(made.file, numbers)
-                for robot in group.robots:
-                    spec = robot.spec
-                    number = numbers[spec.name]
-                    text = fill_template(made.template, spec.namespace, spec.tag, number)
-                    yield OutputFile(path_for(robot, path), text.encode(), (path,))
-    for group in group_robots(plan) if plan.file.params_style != BRINGUP else ():
-        yield from () if "params" in group.companions else _own_defaults(plan, group)
+                yield from _files(plan, group, key, path)
+    if plan.file.params_style != BRINGUP:
+        for group in groups:
+            yield from () if "params" in group.companions else _own_defaults(plan, group)
+
+
+def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
+    """A file for each robot of a group, and what is found in it."""
+    made = _made(plan, group, _KINDS[key], path)
+    evidence = plan.evidence_of(group.robots[0])
+    made.file.memo[Beside] = Beside(evidence.given, evidence.known)
+    numbers = _numbers(plan, key, path)
+    file = of_fleet(plan, made.file, group.robots)
+    # Robots that differ in their descriptions may have one file.
+    file = file._replace(is_for_one=file.is_for_one and len(numbers) == 1)
+    found = (*made.findings, *judged_once(file))
+    yield from (_with_names_of(group.robots[0], it) for it in found)
+    yield from _numbered(made.file, numbers)
+    for robot in group.robots:
+        spec = robot.spec
+        text = fill_template(made.template, spec.namespace, spec.tag, numbers[spec.name])
+        yield OutputFile(path_for(robot, path), text.encode(), (path,))
 
 
 def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
