@@ -893,3 +893,27 @@ def test_what_nav2_shows_is_no_sensor(node: str, type_: str, is_meant: bool) -> 
         f"/robot1/{node} publishes /robot1/cost_cloud {type_} as cost_cloud",
     )
     assert any("cost_cloud" in it and it.startswith("MG303") for it in found) is is_meant
+
+
+@pytest.mark.parametrize(
+    ("topic", "type_", "is_told"),
+    [("scan", SCAN, True), ("cmd_vel", TWIST, True), ("note", TEXT, False)],
+)
+def test_a_relay_from_one_robot_to_another(topic: str, type_: str, is_told: bool) -> None:
+    """What a body measures and what moves it are a robot's own; a text may be for all."""
+    found = said(
+        f"/robot1/a publishes /robot1/{topic} {type_}",
+        f"/relay subscribes /robot1/{topic} {type_}",
+        f"/relay publishes /robot2/{topic} {type_}",
+        f"/robot2/a subscribes /robot2/{topic} {type_}",
+    )
+    assert any(it.startswith("MG314 error /relay") for it in found) is is_told
+
+
+def test_qos_is_held_against_that_of_another_robot_where_not_all_of_it_is_known() -> None:
+    lines = [
+        f"/robot{robot}/{node} publishes /robot{robot}/{node}/x {TEXT}{qos}"
+        for robot, best in ((1, " reliable volatile"), (2, " best_effort volatile"))
+        for node, qos in (("a", best), ("b", ""), ("c", ""))
+    ]
+    assert [it.split(":")[0] for it in said(*lines)] == ["MG328 warning /robot2/a"]
