@@ -41,7 +41,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.system.records import ROLES
 
-STACK_KEYS = ("about", "include", "container", "nodes", "releases")
+STACK_KEYS = ("about", "include", "container", "nodes", "remaps", "releases")
 ENTRY_KEYS = (
     *("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases"),
     "parameters",
@@ -59,6 +59,8 @@ class Stack(NamedTuple):
     words for the releases that have it.
 
     ``container`` is the node among them that all others are loaded into as components, if any.
+    ``remaps`` are a node of it or of an included stack, a name of the node, and what that is remapped
+    to here.
     """
 
     about: str
@@ -66,6 +68,7 @@ class Stack(NamedTuple):
     nodes: tuple[NodeFacts, ...]
     releases: str = ""
     container: str = ""
+    remaps: tuple[tuple[str, str, str], ...] = ()
 
 
 class NodeLibrary(NamedTuple):
@@ -130,12 +133,15 @@ def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterat
         raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
     stack = library.stacks[name]
     for other in stack.include:
-        yield from (_loaded(it, stack) for it in _gathered(library, other, (*above, name)))
-    yield from (_loaded(it, stack) for it in stack.nodes)
+        yield from (_in_stack(it, stack) for it in _gathered(library, other, (*above, name)))
+    yield from (_in_stack(it, stack) for it in stack.nodes)
 
 
-def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
-    """The node as a component, if the stack has a container for it."""
+def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
+    """The node under the rules of the stack, as a component if the stack has a container for it."""
+    rules = {given: target for name, given, target in stack.remaps if name == node.name}
+    ends = (it._replace(remapped=rules.get(it.name, it.remapped)) for it in node.endpoints)
+    node = node._replace(endpoints=tuple(ends)) if rules else node
     kept = node.host or node.shared or node.name == stack.container or not stack.container
     return node if kept else node._replace(container=stack.container)
 
@@ -187,9 +193,23 @@ def _as_before(node: NodeFacts, old: NodeFacts | None) -> NodeFacts:
 def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
     """Includes and names can be checked only when all stacks are known."""
     try:
-        stack_of(library, name)
+        nodes = stack_of(library, name)
     except UsageError as error:
         wrong(item, str(error))
+    for node, rules in table_of(table(item, "a stack", STACK_KEYS), "remaps").items():
+        ends = [end for it in nodes if it.name == node for end in it.endpoints]
+        if not ends:
+            wrong(rules, unknown("node", node, {it.name for it in nodes}))
+        for given, target in table(rules, f"remaps of {node}").items():
+            _check_rule(target, given, ends)
+
+
+def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
+    """Is it a name of these ends?"""
+    found = next((it for it in ends if it.name == given), None)
+    if found is None:
+        wrong(item, unknown("name", given, {it.name for it in ends}))
+    checked_endpoint(item, found._replace(remapped=word(item, f"remaps {given}")))
 
 
 def _part(item: YamlItem) -> tuple[Endpoint, ...]:
@@ -205,7 +225,14 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
         word_of(keys, "container"),
+        tuple(_rules(keys)),
     )
+
+
+def _rules(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str, str]]:
+    for node, item in table_of(keys, "remaps").items():
+        for given, target in table(item, f"remaps of {node}").items():
+            yield node, given, word(target, f"remaps {given}")
 
 
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
@@ -282,8 +309,7 @@ def _remapped(
 ) -> tuple[Endpoint, ...]:
     """The endpoints with the remap rules of the usual launch file."""
     for given, item in table_of(keys, "remaps").items():
-        if all(endpoint.name != given for endpoint in endpoints):
-            wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
+        _check_rule(item, given, endpoints)
         target = word(item, f"remaps {given}")
         endpoints = tuple(
             checked_endpoint(item, e._replace(remapped=target)) if e.name == given else e

@@ -148,7 +148,9 @@ def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
 ) -> None:
     """twist_mux.cpp subscribes to what ``topics`` has, and to nothing else (twist_mux_topics.yaml)."""
     (tmp_path / "mux.yaml").write_text(
-        "twist_mux:\n  ros__parameters:\n    topics.pad: {topic: pad_vel, timeout: 0.5, priority: 1}\n"
+        "twist_mux:\n  ros__parameters:\n    topics:\n"
+        "      pad: {topic: joy_vel, timeout: 0.5, priority: 1}\n"
+        "      keys: {topic: key_vel, timeout: 0.5, priority: 2}\n"
     )
     text = f"description: {ROBOTS / 'rover.urdf'}\nlayout: both\nstack: teleop\n"
     text += "robots: [{name: robot1}, {name: robot2}]\n"

@@ -226,6 +226,8 @@ def test_a_manager_in_a_plugin_is_not_started_besides(
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
     python = (tmp_path / "out" / "fleet.launch.py").read_text()
     assert ("executable='ros2_control_node'" in python) == program
+    # What ros2_control_node of Humble reads is below its name (ros2_control ros2_control_node.cpp).
+    assert ("('~/robot_description', 'robot_description')" in python) == program
     assert "executable='spawner'" in python
 
 

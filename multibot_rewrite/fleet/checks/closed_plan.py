@@ -19,11 +19,13 @@ from multibot_rewrite.fleet.checks.judged import (
 )
 from multibot_rewrite.fleet.checks.written_files import written_findings
 from multibot_rewrite.fleet.checks.written_system import of_each_kind, with_robots, written_system
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
@@ -109,8 +111,15 @@ def _gaps(
         yield from not_sent(robot, before.system)
         loads = any(it.name.endswith(MANAGER) for it in group.facts)
         yield from unread_drives(robot, loads)
-        yield from missing(robot, before.system, after.system, whose)
+        alone = _starts_alone(plan, robot)
+        yield from missing(robot, before.system, after.system, whose, alone)
         yield from written_findings(plan, group, texts, known)
+
+
+def _starts_alone(plan: FleetPlan, robot: RewrittenRobot) -> bool:
+    """Does no launch file but the built one start nodes of the robot?"""
+    file = plan.file
+    return not (robot.spec.launch or file.shape or file.params_style == BRINGUP)
 
 
 def _one_of_each(plan: FleetPlan) -> FleetPlan:

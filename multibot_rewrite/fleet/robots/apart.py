@@ -23,11 +23,11 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
     """The robots in a simulator that start in another one.
 
     A robot turns in its place, so half of what the larger one reaches is let pass: what is found
-    overlaps however they are turned. A fleet without any pose is a warning: somebody else may place it,
-    but the launch file of a build does not.
+    overlaps however they are turned. A fleet that all stands at the origin is a warning: somebody else
+    may place it, but the launch file of a build does not.
     """
     robots = [it for it in plan.robots if is_simulated(it)]
-    if all(it.spec.pose is None for it in robots):
+    if not any(any(_place(it.spec)) for it in robots):
         yield from _without_poses(robots)
         return
     reach = {it.spec.sources: _within(it) for it in {it.spec.sources: it for it in robots}.values()}
@@ -41,7 +41,7 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
 def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
     if len(robots) > 1:
         room = max(1, ceil(4 * max(map(_within, robots))))
-        message = f"no robot has a start pose: all {len(robots)} are spawned in each other"
+        message = f"all {len(robots)} robots are spawned at the origin, in each other"
         hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
         yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
 

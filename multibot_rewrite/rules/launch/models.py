@@ -12,7 +12,7 @@ from contextlib import suppress
 from itertools import combinations
 from math import dist
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, models_in_simulator
@@ -63,7 +63,7 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
     "robots-in-each-other",
     what="Two robots start in each other. A launch file spawns one where another stands, or the "
     "start poses of a fleet file have less room between them than the shapes need. It is a warning "
-    "where no robot of a fleet file has a start pose, since something else may place them.",
+    "where all of them stand at the origin, since something else may place them.",
     why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
     "entangled.",
     fix="Give each a place of its own: `-x` and `-y` of its spawner. In a fleet file it is `pose` "
@@ -78,13 +78,13 @@ def in_each_other(launched: Launched) -> Iterator[Finding]:
     """Of descriptions in URDF: a model in SDF may have a pose of its own."""
     models = [it for it in models_in_simulator(launched) if it.root.tag == "robot"]
     placed = [(it, place, filled_by(it.root)) for it in models for place in _place_of(it)]
+    level = ERROR if any(any(place) for _, place, _ in placed) else WARNING
     for (one, here, own), (other, there, reach) in combinations(placed, 2):
         if one.name != other.name and dist(here, there) < max(_NEAR, own + reach):
             where = ", ".join(other.words.get(it, "0") for it in _POSE)
             message = f"spawns {other.name} where {one.name} stands, at {where}"
-            yield at(
-                in_each_other, other.place, message, f"move one with -x or -y; see {one.place}"
-            )
+            hint = f"move one with -x or -y; see {one.place}"
+            yield at(in_each_other, other.place, message, hint)._replace(level=level)
 
 
 def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:

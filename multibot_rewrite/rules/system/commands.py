@@ -117,8 +117,8 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """The velocities that a robot's drive reads and no node sends, where those that its twist_mux or
-    its Nav2 sends are unread."""
+    """The velocities that a robot's drive reads and no node sends, else others do, where those that its
+    twist_mux or its Nav2 sends are unread."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -128,15 +128,20 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     # Who sends velocities of its own is no drive.
     senders = {node for it in moving for node in nodes_of(it.publishers)}
-    drives = (
-        it.name
+    sent = (it for it in moving if it.publishers)
+    relays = senders.intersection(node for it in sent for node in nodes_of(it.subscribers))
+    drives = [
+        it
         for it in moving
-        if seen.robot(it.name) == robot and not it.publishers and kinds & _kinds(it)
+        if seen.robot(it.name) == robot and kinds & _kinds(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
+        # What a drive gets by way of another node may be meant, and what is chosen for it as well.
+        if relays.isdisjoint(nodes_of(it.publishers))
+        if not set(nodes_of(ends.publishers)).intersection(nodes_of(it.subscribers))
         # What a drive that runs for certain reads in vain is the finding, but for a topic of its own.
         if chosen or not any(end.sure == RUNS and not _is_own(end) for end in it.subscribers)
-    )
-    return next(drives, "")
+    ]
+    return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
 
 
 def _is_own(end: End) -> bool:
