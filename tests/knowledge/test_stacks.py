@@ -358,3 +358,41 @@ def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:
     code = "import sys, multibot_rewrite.knowledge.stacks; print('yaml' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "False\n"
+
+
+RULES = """\
+stacks:
+  here: {include: [nav2], remaps: {amcl: {scan: front/scan}, controller_server: {odom: wheels}}}
+  there: {include: [here], remaps: {amcl: {scan: rear/scan}}}
+"""
+
+
+def test_a_stack_remaps_names_of_the_nodes_that_it_includes() -> None:
+    """The outer rule counts; the other rules of the node stay."""
+    ends = {
+        (name, it.name, end.name): end.remapped
+        for name in ("nav2", "here", "there")
+        for it in stack_of(extra(RULES), name)
+        for end in it.endpoints
+    }
+    assert ends["nav2", "amcl", "scan"] == ""
+    assert ends["here", "amcl", "scan"] == "front/scan"
+    assert ends["there", "amcl", "scan"] == "rear/scan"
+    assert ends["there", "controller_server", "odom"] == "wheels"
+    assert ends["here", "controller_server", "cmd_vel"] == "cmd_vel_nav"
+
+
+@pytest.mark.parametrize(
+    ("remaps", "message"),
+    [
+        ("{aml: {scan: x}}", "mine.yaml:1: node 'aml' is not known; did you mean 'amcl'?"),
+        ("{amcl: {scam: x}}", "mine.yaml:1: name 'scam' is not known; did you mean 'scan'?"),
+        ("{amcl: {scan: x//y}}", "name 'x//y': "),
+        ("{amcl: scan}", "remaps of amcl is the text 'scan'; write keys and values"),
+        ("{amcl: {scan: [x]}}", "remaps scan is a list; "),
+    ],
+)
+def test_a_rule_of_a_stack_that_cannot_be_meant_is_told(remaps: str, message: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        extra(f"stacks: {{here: {{include: [nav2], remaps: {remaps}}}}}")
+    assert message in str(caught.value)

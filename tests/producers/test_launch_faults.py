@@ -51,6 +51,7 @@ FAULTS = {
     ),
     "one model name": Fault(LAUNCH, "'-name', name,", "'-name', 'robot1',", "MG701"),
     "one place": Fault(LAUNCH, "'robot2', x=3.0", "'robot2', x=1.0", "MG702"),
+    "all at the origin": Fault(LAUNCH, "'-x', str(x),", "'-x', '0',", "MG702", level="warning"),
     "commands the wrong way": Fault(BRIDGE, "ROS_TO_GZ", "GZ_TO_ROS", "MG704"),
     "a row of another type": Fault(BRIDGE, "gz.msgs.Twist", "gz.msgs.Pose", "MB879", BRIDGE),
     "types that are not converted": Fault(

@@ -76,6 +76,14 @@ def chain_rows() -> tuple[Fault, ...]:
             "MG308", ("/robot2/twist_mux", "/robot2/cmd_vel_out:=/robot2/diff_drive/cmd_vel"),
         ),
         Fault(
+            "a recovery alone reaches the drive", nav,
+            both(
+                renamed("/robot2/cmd_vel", "/robot2/drive/cmd_vel", "/robot2/diff_drive"),
+                added("/robot2/recovery", (PUBLISHES, "/robot2/drive/cmd_vel", TWIST)),
+            ),
+            "MG308", ("/robot2/collision_monitor", "/robot2/cmd_vel:=/robot2/drive/cmd_vel"),
+        ),
+        Fault(
             "the drive has a topic of its own", nav,
             renamed("/robot2/cmd_vel", "/robot2/diff_drive/cmd_vel", "/robot2/diff_drive"),
             "MG303", ("/robot2/collision_monitor", "/robot2/diff_drive/cmd_vel"),

@@ -37,7 +37,7 @@ from multibot_rewrite.knowledge.parameters import (
     load_known_nodes,
 )
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.records import GivenNode
@@ -46,7 +46,7 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 
 WORLD = "world"
-# The stack of a manager that no plugin makes.
+# The stack of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
 # What decides the nodes of a robot.
 NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
@@ -83,11 +83,11 @@ def robot_nodes(
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
-    stack = (*stack, *_manager(stack, spec, own, member, file.distro))
+    stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
-    without, findings = nodes_with(launched, stack, given, known)
+    without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
     source = member.source
     standing = _standing(without, given) if _is_mounted(source.root) else without
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
@@ -169,23 +169,24 @@ def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
     return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
 
 
-def _manager(
-    stack: Iterable[NodeFacts],
-    spec: RobotSpec,
-    own: Iterable[GivenNode],
-    member: Member,
-    release: str,
+def _manager_in_plugin(
+    stack: Iterable[NodeFacts], own: Iterable[GivenNode], member: Member, release: str
 ) -> Iterator[NodeFacts]:
-    """The controller manager that a file of the robot sets, as the stack has it that is called as the
-    plugin of its description, else as its program has it; none where a stack or launch file has it."""
+    """The controller manager that a file of the robot sets and a plugin of its description makes, as
+    the stack of the plugin's name has it; none where a stack says who makes it."""
     there = any(it.name == MANAGER for it in stack)
     if there or all(it.known != MANAGER for it in own):
         return
     library = built_in(release)
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
-    plugins = {name for it in wide for name in it.names} & library.stacks.keys()
-    for name in plugins or ({PROGRAM} if not spec.launch else ()):
+    for name in {name for it in wide for name in it.names} & library.stacks.keys():
         yield from (it for it in stack_of(library, name) if it.name == MANAGER)
+
+
+def _started_here(release: str) -> dict[str, NodeFacts]:
+    """The controller manager that nothing but a parameter file has, as its usual launch files start
+    it."""
+    return {it.name: it for it in load_stack(PROGRAM, release) if it.name == MANAGER}
 
 
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:

@@ -6,7 +6,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.conventions import EVERYBODYS, OF_EVERY_NODE, chooses, team
+from multibot_rewrite.base.conventions import (
+    EVERYBODYS,
+    OF_EVERY_NODE,
+    chooses,
+    is_from_outside,
+    team,
+)
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
@@ -104,21 +110,16 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         meant = meant or _of_a_person(seen, ends, same)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
-            continue
-        absent = nobody_in(seen, name, same)
-        for node in nodes_of(at_work(ends.publishers)) if absent else ():
-            yield command_to_nobody.finding(
-                f"publishes {name}, which no node reads; {absent}",
-                ABSENT,
-                level=WARNING,
-                node=node,
-                names=(name,),
-            )
+        elif absent := nobody_in(seen, name, same):
+            for node in nodes_of(at_work(ends.publishers)):
+                yield command_to_nobody.finding(
+                    f"publishes {name}, which no node reads; {absent}", ABSENT,
+                    level=WARNING, node=node, names=(name,),
+                )  # fmt: skip
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """The velocities that a robot's drive reads and no node sends, else others do, where those that its
-    twist_mux or its Nav2 sends are unread."""
+    """What a robot's drive reads, where the velocities that its twist_mux or its Nav2 sends are unread."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -128,8 +129,8 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     # Who sends velocities of its own is no drive.
     senders = {node for it in moving for node in nodes_of(it.publishers)}
-    sent = (it for it in moving if it.publishers)
-    relays = senders.intersection(node for it in sent for node in nodes_of(it.subscribers))
+    asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
+    relays = senders.intersection(node for it in asked for node in nodes_of(it.subscribers))
     drives = [
         it
         for it in moving
@@ -139,14 +140,14 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         if relays.isdisjoint(nodes_of(it.publishers))
         if not set(nodes_of(ends.publishers)).intersection(nodes_of(it.subscribers))
         # What a drive that runs for certain reads in vain is the finding, but for a topic of its own.
-        if chosen or not any(end.sure == RUNS and not _is_own(end) for end in it.subscribers)
+        if chosen or it.publishers or not any(map(_waits_for_sure, it.subscribers))
     ]
     return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
 
 
-def _is_own(end: End) -> bool:
-    """Is the topic below its node: nobody is asked for it, since people send there, too?"""
-    return end.name.startswith(f"{end.node}/")
+def _waits_for_sure(end: End) -> bool:
+    """Nobody is asked for a topic below its node, since people send there, too."""
+    return end.sure == RUNS and not end.name.startswith(f"{end.node}/")
 
 
 def _kinds(ends: Ends) -> set[str]:
