@@ -119,7 +119,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """What the drive reads, where the velocities that its robot's twist_mux or Nav2 sends are unread."""
+    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
