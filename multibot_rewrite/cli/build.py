@@ -8,7 +8,7 @@ import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
@@ -55,7 +55,9 @@ def run(options: argparse.Namespace) -> int:
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
     back = read_back(plan, made, os.path.abspath(options.output))
-    if _reported(options, plan, (*made.findings, *back)):
+    # What is told in both is said once, at the level of the folder.
+    told = (it for it in made.findings if it._replace(level=ERROR) not in back)
+    if _reported(options, plan, (*told, *back)):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)

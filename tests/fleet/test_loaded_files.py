@@ -16,7 +16,10 @@ controller_manager:
     update_rate: 100
     wheels: {type: diff_drive_controller/DiffDriveController}
 wheels:
-  ros__parameters: {left_wheel_names: [left_wheel_joint], right_wheel_names: [right_wheel_joint]}
+  ros__parameters:
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+    enable_odom_tf: false
 """
 FLEET = "layout: both\naffix: prefix\nstack: gz_ros2_control\ndescription: rover_gz.urdf\n"
 ROBOTS_TWO = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"

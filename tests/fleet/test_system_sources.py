@@ -120,7 +120,11 @@ def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
 def test_a_built_folder_runs_as_its_plan_says(tmp_path: Path) -> None:
     robots = "".join(f"  - {{name: {it}, description: {ROVER}}}\n" for it in ROBOTS)
     text = f"layout: frames-per-robot\nstack: [robot_localization]\nrobots:\n{robots}"
+    text += "companions: {params: ekf.yaml}\n"
     (tmp_path / "fleet.yaml").write_text(text)
+    # The plugin of the drive sends it.
+    frame = "{odom0: odom, publish_tf: false}"
+    (tmp_path / "ekf.yaml").write_text(f"ekf_filter_node: {{ros__parameters: {frame}}}\n")
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "built")]) == 0
     seen = system_of_folder(tmp_path / "built")
     names = {it.name for it in seen.nodes}

@@ -7,37 +7,24 @@ started by hand or on a condition.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
-from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
-from multibot_rewrite.rules.system import (
-    clocks,
-    matching,
-    names,
-    relays,
-    sharing,
-    tf_pieces,
-    transforms,
-)
+from multibot_rewrite.rules.pair import demands, endpoints, nodes
+from multibot_rewrite.rules.system import clocks, names, tf_pieces
+from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.spelling.ways import SPAWNER
-from multibot_rewrite.system.index import index
+from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
 
-# Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
-# no parameter file names. Between robots they are the build's.
-_OF_SOURCES = frozenset(
-    it.code
-    for it in (
-        *(matching.types_differ, relays.limits_left_out, sharing.topic_of_several_robots),
-        *(transforms.frame_with_two_parents, transforms.robots_frames_collide),
-        *(transforms.tf_cycle, transforms.static_and_moving, transforms.transform_of_two_senders),
-        frame_names.frame_without_robot_name,
-    )
+# Both sides are known by the launch file, and they miss each other by name.
+_MISSED = frozenset(
+    it.code for it in (names.topic_names_miss, names.server_names_miss, command_to_nobody)
 )
 # What a simulator may give that the launch file does not start.
 _OF_OTHERS = clocks.no_clock.code
@@ -48,27 +35,39 @@ _OF_NODES = frozenset(
 
 
 def not_as_planned(
-    planned: System, seen: System, started: Set[str], told: Iterable[Finding]
+    planned: System, seen: System, started: Set[str], told: Sequence[Finding]
 ) -> Iterator[Finding]:
     """What ``multibot check`` would say of the running fleet, as errors; ``started`` are the planned
-    nodes that the launch file is to start, ``told`` is what the build has found already."""
+    nodes that the launch file is to start. What the build has ``told`` is said as it was told."""
     running = {it.name: it for it in seen.nodes}
     found = check(planned, seen._replace(environment=Environment()))
-    open_ = _open(planned, told) if found else frozenset()
+    if not found:
+        return
+    by_plan = index(planned, whose_by_plan(planned))
+    open_, known = _open(by_plan, told), defaultdict(list)
+    for it in told:
+        known[_key(by_plan, it)].append(it)
     for it in found:
-        level = _level(it, planned, seen, started)
-        if level and not any((it.code, name) in open_ for name in it.names):
-            place = _place(it, running)
-            yield it._replace(level=level, file=place.file, line=place.line, column=place.column)
+        level, place = _level(it, planned, seen, started), _place(it, running)
+        if not level or any((it.code, name) in open_ for name in it.names):
+            continue
+        here = it._replace(file=place.file, line=place.line, column=place.column)
+        yield from (one._replace(level=level) for one in known.get(_key(by_plan, it), [here]))
 
 
-def _open(planned: System, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
+def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
+    """The code and the names without those of robots."""
+    return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
+
+
+def _open(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
     """What has no sender or server by the plan, or by what was told, is no fault of the folder, nor is
-    a client that has no server."""
-    lacking = (*told, *absences(index(planned, whose_by_plan(planned))))
-    found = {(it.code, name) for it in lacking if it.code in ABSENCE for name in it.names}
-    unserved = {name for code, name in found if code == names.server_names_miss.code}
-    return frozenset(found | {(endpoints.missing_endpoint.code, name) for name in unserved})
+    a client that has no server; of two that miss each other both are there."""
+    lacking = [it for it in (*told, *absences(by_plan)) if it.code in ABSENCE]
+    alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)
+    found = {(it.code, name) for it in alone for name in it.names}
+    calls = (it for it in lacking if it.code == names.server_names_miss.code)
+    return frozenset(found | {(endpoints.missing_endpoint.code, it.names[0]) for it in calls})
 
 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
@@ -80,8 +79,6 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.code == tf_pieces.tf_tree_in_pieces.code:
         known = not doubts(seen)
         return WARNING if known or _sender_left(it, planned, started) else ""
-    if it.code in _OF_SOURCES:
-        return WARNING if it.robot else ERROR
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     return "" if it.code in ABSENCE and doubts(seen) else ERROR

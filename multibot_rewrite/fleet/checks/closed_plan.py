@@ -19,14 +19,12 @@ from multibot_rewrite.fleet.checks.judged import (
 )
 from multibot_rewrite.fleet.checks.written_files import written_findings
 from multibot_rewrite.fleet.checks.written_system import of_each_kind, with_robots, written_system
-from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.fleet.robots.systems import system_after, system_before
@@ -111,16 +109,8 @@ def _gaps(
         yield from not_sent(robot, before.system)
         loads = any(it.name.endswith(MANAGER) for it in group.facts)
         yield from unread_drives(robot, loads)
-        alone = _starts_alone(plan, evidence)
-        yield from missing(robot, before.system, after.system, whose, alone)
+        yield from missing(robot, before.system, after.system, whose)
         yield from written_findings(plan, group, texts, known)
-
-
-def _starts_alone(plan: FleetPlan, evidence: RobotEvidence) -> bool:
-    """Does the built launch file start all nodes of the robot, and is the code of each known?"""
-    if plan.file.shape or plan.file.params_style == BRINGUP:
-        return False
-    return all(it.endpoints or it.kind in evidence.known for it in evidence.nodes)
 
 
 def _one_of_each(plan: FleetPlan) -> FleetPlan:

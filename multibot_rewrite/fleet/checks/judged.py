@@ -16,8 +16,6 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_sourc
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.check import absences, contradictions
-from multibot_rewrite.rules.system import names
-from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
@@ -46,10 +44,6 @@ from multibot_rewrite.system.records import (
 )
 
 Key = tuple[str, ...]
-# The other side is known as well, and the two miss each other.
-_BOTH_KNOWN = frozenset(
-    it.code for it in (names.topic_names_miss, names.server_names_miss, command_to_nobody)
-)
 
 
 def whose_names(fleet: Fleet) -> Whose:
@@ -77,10 +71,9 @@ def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Findi
 
 
 def missing(
-    robot: RewrittenRobot, before: System, after: System, whose: Whose, alone: bool
+    robot: RewrittenRobot, before: System, after: System, whose: Whose
 ) -> Iterator[Finding]:
-    """What a robot needs and nothing gives, as it is written: an error where its sources had it, or
-    where the built launch file ``alone`` starts both sides under these names.
+    """What a robot needs and nothing gives, as it is written: an error where its sources had it.
 
     What the sources need is asked for; what the build adds, such as rows of a bridge, may give it.
     """
@@ -101,8 +94,8 @@ def missing(
         # Names as the sources have them, where these have both.
         source = in_sources.get(_about(it, after)) if it.node else None
         said = source if source and _is_placed(before, source.names[-1]) else it
-        judged = said if alone and said.code in _BOTH_KNOWN else _of_sources(said)
-        yield in_file(judged, robot, by_sources=said is source)
+        level = WARNING if said.level == ERROR else said.level
+        yield in_file(said._replace(level=level), robot, by_sources=said is source)
     yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
 
 
