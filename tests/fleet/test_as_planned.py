@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 from graph_examples import read_example
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.system.records import Caveat, Environment
@@ -46,3 +47,34 @@ def test_a_tree_in_pieces_is_not_told_where_more_may_be_started() -> None:
     lines = AMCLS + MAP.format("robot1/odom", 1) + BASE
     assert levels(lines, Caveat(NOT_WHOLE, True, "a program is not known")) == set()
     assert levels(lines, Caveat("note", False, "a stand-in read it")) == {"MG406 warning"}
+
+
+READERS = """\
+planned: /robot1/pilot subscribes /robot1/odom nav_msgs/msg/Odometry as odom
+planned: /robot1/drive publishes /robot1/drive/odom nav_msgs/msg/Odometry as ~/odom
+running: /robot1/pilot subscribes /robot1/odom nav_msgs/msg/Odometry as odom
+running: /robot1/drive publishes /robot1/drive/odom nav_msgs/msg/Odometry as ~/odom
+"""
+
+
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        ((), ["/robot1/pilot error"]),
+        # Both readers were told, with names of the sources.
+        (
+            (
+                Finding("MG303", "warning", "one", names=("/odom", "/drive/odom")),
+                Finding("MG303", "warning", "other", names=("/odom", "/drive/odom")),
+            ),
+            ["one error", "other error"],
+        ),
+        # Nothing else is known to send it.
+        ((Finding("MG303", "warning", "alone", names=("/robot1/odom",)),), []),
+    ],
+)
+def test_what_was_told_is_said_as_it_was_told(told: tuple[Finding, ...], said: list[str]) -> None:
+    plan, seen = read_example(READERS)
+    found = not_as_planned(plan, seen, {it.name for it in plan.nodes}, told)
+    about = [it for it in found if it.code == "MG303"]
+    assert [f"{it.node or it.message} {it.level}" for it in about] == said

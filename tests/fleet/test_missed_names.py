@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from closed_robot import FILES
 
 from multibot_rewrite.cli.multibot import main
 
@@ -133,3 +134,17 @@ def test_the_rules_that_are_named_are_all_that_is_needed(
     words = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
     assert main(words) == 0
     assert "as planned" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_two_senders_in_one_robot_are_told_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By the parameter files, and by the built folder: the error has the place in the file."""
+    both = FILES["controllers.yaml"].replace("    enable_odom_tf: false\n", "")
+    for name, text in {**FILES, "controllers.yaml": both}.items():
+        (tmp_path / name).write_text(text)
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 1
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if " MG408 " in it)
+    assert "controllers.yaml:" in line and ": error: MG408" in line
+    assert not (tmp_path / "out").exists()

@@ -137,6 +137,16 @@ def test_a_remap_rule_for_a_name_that_is_nearly_there(
     assert judged(known, "MR103", UNKNOWN._replace(remappings=((rule, "x"),))) == []
 
 
+def test_a_rule_for_what_the_node_calls_so_already_is_no_slip(known: Knowledge) -> None:
+    """A manager whose node_names have the robot's name needs no rule, and has one in a build."""
+    manager = ("nav2_lifecycle_manager", "lifecycle_manager", "lifecycle_manager")
+    values = with_values({"node_names": ["amcl_robot1"]})
+    for target, count in (("amcl_robot1/change_state", 0), ("x", 1)):
+        rules = (("amcl_robot/change_state", target),)
+        node = started(*manager, parameters=values, remappings=rules)
+        assert len(judged(known, "MR103", node)) == count
+
+
 @pytest.mark.parametrize("rule", ["scan", "/scan", "~/change_state"])
 def test_a_slash_before_a_name_or_a_rule_is_no_slip(rule: str, known: Knowledge) -> None:
     """slam_toolbox asks for /scan; launch files write both."""

@@ -106,15 +106,16 @@ def _number(word: str) -> float | None:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Only for a name that is mistyped: the code of a node may have more than is known. A rule for a
-    name that a parameter has in the node's namespace already does no harm."""
+    """Only for a name that is mistyped: the code of a node may have more than is known. A rule does no
+    harm whose name, or what it makes of it, a parameter of the node has already."""
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
         known = it.facts.endpoints if it.facts else ()
         names = [end.name.removeprefix(above).lstrip("/~") for end in known]
-        for old, _ in it.rules:
+        for old, new in it.rules:
             bare = old.lstrip("/~")
-            near = nearest(bare, names, SLIP) if bare not in names and ":" not in old else ""
+            asked = ":" not in old and not {bare, new.lstrip("/~")} & {*names}
+            near = nearest(bare, names, SLIP) if asked else ""
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"
                 yield at(matches_nothing, it.place, message, f"did you mean {near}?")
