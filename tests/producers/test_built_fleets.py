@@ -34,8 +34,8 @@ def test_the_examples_are_there() -> None:
 STACKS = list(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
 LAYOUTS = ["postfix", "tf-per-robot", "both", "frames-per-robot", "frame-prefix"]
 REFUSED = {
-    # The rover's plugin of Classic sends the odometry already; a manager has no description without its
-    # own plugin.
+    # Nothing starts their controller manager; that of gz_ros2_control has no description without its
+    # plugin.
     ("humble", "", "controllers"),
     ("humble", "", "gz_ros2_control"),
     ("humble", "", "gazebo_ros2_control"),
