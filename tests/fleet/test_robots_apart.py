@@ -80,7 +80,7 @@ def test_neighbours_of_a_large_fleet(tmp_path: Path) -> None:
 def test_robots_in_a_simulator_without_any_pose(more: str, told: bool, tmp_path: Path) -> None:
     """The launch file that is written spawns them, and check-launch tells it of that file."""
     said = found(tmp_path, "  - {name: a}\n  - {name: b}\n", more, "MG702")
-    assert said == (["all 2 robots are spawned at the origin, in each other"] if told else [])
+    assert said == (["the 2 robots are spawned at the origin, in each other"] if told else [])
     zero = "  - {name: a, pose: {x: 0}}\n  - {name: b, pose: {yaw: 1}}\n"
     assert found(tmp_path, zero, more, "MG702") == said
     posed = "  - {name: a}\n  - {name: b, pose: {y: 2}}\n"

@@ -41,7 +41,7 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
 def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
     if len(robots) > 1:
         room = max(1, ceil(4 * max(map(_within, robots))))
-        message = f"all {len(robots)} robots are spawned at the origin, in each other"
+        message = f"the {len(robots)} robots are spawned at the origin, in each other"
         hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
         yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
 
