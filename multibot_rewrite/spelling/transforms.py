@@ -78,8 +78,11 @@ def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
 
 
 def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
-    """The links of a rewritten description as frames."""
-    return [at_run_time(naming, robot, link) for link in inventory.declared["link"]]
+    """The links of a rewritten description as frames; those below ``<gazebo>`` are in no tf."""
+    root = inventory.document.root
+    own = [it.get("name", "") for it in root.iterfind("link")]
+    links = own if root.tag == "robot" else inventory.declared["link"]
+    return [at_run_time(naming, robot, link) for link in links]
 
 
 def at_run_time(naming: Naming, robot: str, link: str) -> str:
@@ -88,16 +91,26 @@ def at_run_time(naming: Naming, robot: str, link: str) -> str:
 
 
 def edges_in(root: _Element) -> Iterator[Edge]:
-    """The transforms that robot_state_publisher sends for the joints of a description as it is. A
-    frame of an SDF is the link that it is attached to."""
+    """The transforms that robot_state_publisher sends for the joints of a description as it is."""
+    yield from (it for _, it in tree_joints(root))
+
+
+def tree_joints(root: _Element) -> Iterator[tuple[_Element, Edge]]:
+    """The joints of the tree, each with its transform. A frame of an SDF is the link that it is
+    attached to; a joint below ``<gazebo>`` is for the simulator alone. Of two with one child the last
+    by name counts (urdfdom_headers model.h initTree)."""
     frames = root.iter("frame")
     attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
-    for joint in root.iter("joint"):
+    found: list[tuple[_Element, Edge]] = []
+    for joint in root.iterfind("joint") if root.tag == "robot" else root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
             parent, child = (_attached_to(name, attached) for name in names)
-            yield edge_of(parent, child, joint.get("type") == "fixed")
+            found.append((joint, edge_of(parent, child, joint.get("type") == "fixed")))
+    by_name = sorted(found, key=lambda it: it[0].get("name", ""))
+    last = {it.child: joint for joint, it in by_name}
+    yield from ((joint, it) for joint, it in found if last[it.child] is joint)
 
 
 def _attached_to(name: str, attached: Mapping[str, str]) -> str:

@@ -137,14 +137,18 @@ def test_the_rules_that_are_named_are_all_that_is_needed(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("started", "level"), [(False, "warning"), (True, "error")])
 def test_two_senders_in_one_robot_are_told_once(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    started: bool, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By the parameter files, and by the built folder: the error has the place in the file."""
+    """By the parameter files, and by the built folder if its launch file starts both: one line, with
+    its place in the file."""
     both = FILES["controllers.yaml"].replace("    enable_odom_tf: false\n", "")
-    for name, text in {**FILES, "controllers.yaml": both}.items():
+    stacks = "twist_mux, robot_localization" if started else "twist_mux"
+    fleet = FILES["fleet.yaml"].replace("twist_mux", stacks)
+    for name, text in {**FILES, "controllers.yaml": both, "fleet.yaml": fleet}.items():
         (tmp_path / name).write_text(text)
-    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 1
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == started
     (line,) = (it for it in capsys.readouterr().err.splitlines() if " MG408 " in it)
-    assert "controllers.yaml:" in line and ": error: MG408" in line
-    assert not (tmp_path / "out").exists()
+    assert ".yaml:" in line and f": {level}: MG408" in line
+    assert (tmp_path / "out").exists() is not started

@@ -30,6 +30,7 @@ from multibot_rewrite.spelling.transforms import (
     edges_in,
     edges_of,
     frames_of,
+    links_of,
     sent_by,
     state_publisher_of,
     with_odometry,
@@ -230,6 +231,30 @@ def test_transforms_of_a_description() -> None:
         edge_of("base", "tip", True),
         edge_of("loop", "free"),
     ]
+
+
+LOOPED = """<robot name="r"><link name="base"/><link name="left"/><link name="right"/><link name="rod"/>
+<joint name="a" type="fixed"><parent link="base"/><child link="left"/></joint>
+<joint name="b" type="fixed"><parent link="base"/><child link="right"/></joint>
+<joint name="d" type="fixed"><parent link="left"/><child link="rod"/></joint>
+<joint name="c" type="fixed"><parent link="right"/><child link="rod"/></joint>
+<gazebo><link name="buckle"/>
+<joint name="e" type="ball"><parent>left</parent><child>buckle</child></joint>
+<joint name="f" type="ball"><parent>right</parent><child>buckle</child></joint>
+</gazebo></robot>"""
+
+
+def test_each_link_has_one_parent_in_tf_and_what_is_for_gazebo_none() -> None:
+    """urdfdom_headers model.h initTree: a joint is a link's parent after those before it by name, and
+    parser model.cpp reads the joints of the robot alone."""
+    inventory = inventory_of(LOOPED)
+    assert list(edges_in(inventory.document.root)) == [
+        edge_of("base", "left", True),
+        edge_of("base", "right", True),
+        edge_of("left", "rod", True),
+    ]
+    links = links_of(inventory, make_naming("L1"), "a")
+    assert links == ["base", "left", "right", "rod"]
 
 
 def test_who_sends_which_transform() -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from typing import cast
 
 from lxml.etree import _Element
 
@@ -18,7 +19,7 @@ from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.checks.written_system import DRIVERS, of_robot
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, own_yaml, path_for
-from multibot_rewrite.fleet.robots.member import line_of, without_simulator
+from multibot_rewrite.fleet.robots.member import without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
@@ -39,7 +40,7 @@ from multibot_rewrite.producers.transforms import (
     node_edges,
     virtual_lookups,
 )
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
@@ -157,10 +158,9 @@ def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
 def _edges_of(
     robot: RewrittenRobot, nodes: Sequence[NodeFacts], evidence: RobotEvidence, sent: Container[str]
 ) -> Iterator[Edge]:
-    source = robot.member.source
     tree = (
-        (it, Place(robot.spec.description, line_of(source, "joint", at)))
-        for at, it in enumerate(edges_in(source.root))
+        (it, Place(robot.spec.description, cast(int, joint.sourceline or 1)))
+        for joint, it in tree_joints(robot.member.source.root)
     )
     yield from joint_edges(tree)
     yield from node_edges(nodes, evidence.given, _root(robot))
