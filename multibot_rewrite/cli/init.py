@@ -33,6 +33,7 @@ from multibot_rewrite.fleet.proposal.trying import (
     first_that_builds,
     in_layout,
     that_builds,
+    with_faults_of_sources,
 )
 
 SIMULATORS = ("gazebo", "none")
@@ -59,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
-    done = _deliver(options, made)
+    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it.trust))
+    done = _deliver(options, whole)
     if made.others:
         note(options, _one_of_several(made))
     return done

@@ -14,14 +14,33 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
-from multibot_rewrite.rules.pair import demands, endpoints, nodes
-from multibot_rewrite.rules.system import clocks, names, tf_pieces
+from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
+from multibot_rewrite.rules.system import (
+    clocks,
+    matching,
+    names,
+    relays,
+    sharing,
+    tf_pieces,
+    transforms,
+)
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.spelling.ways import SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
 
+# Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
+# no parameter file names. Between robots they are the build's.
+_OF_SOURCES = frozenset(
+    it.code
+    for it in (
+        *(matching.types_differ, relays.limits_left_out, sharing.topic_of_several_robots),
+        *(transforms.frame_with_two_parents, transforms.robots_frames_collide),
+        *(transforms.tf_cycle, transforms.static_and_moving, transforms.transform_of_two_senders),
+        frame_names.frame_without_robot_name,
+    )
+)
 # Both sides are known by the launch file, and they miss each other by name.
 _MISSED = frozenset(
     it.code for it in (names.topic_names_miss, names.server_names_miss, command_to_nobody)
@@ -53,6 +72,11 @@ def not_as_planned(
             continue
         here = it._replace(file=place.file, line=place.line, column=place.column)
         yield from (one._replace(level=level) for one in known.get(_key(by_plan, it), [here]))
+
+
+def is_of_sources(it: Finding) -> bool:
+    """Does a robot alone have it, whatever it is called?"""
+    return bool(it.robot) and it.code in _OF_SOURCES | _MISSED
 
 
 def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:

@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding, by_place
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place
 from multibot_rewrite.base.findings.formats.shared import said
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_data import DICT, without_dict
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -108,20 +109,29 @@ def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[s
             yield VALUES, line if file else why
 
 
-def errors_of(data: Mapping[str, Any], trust: bool = False) -> list[tuple[str, str]]:
+def errors_of(
+    data: Mapping[str, Any], trust: bool = False, of_sources: bool = False
+) -> list[tuple[str, str]]:
     """Why a fleet does not build: the file, if one is at fault, and a line each; paths are relative to
-    the working directory. What else is right is read back, as a build does."""
+    the working directory. What else is right is read back, as a build does: what that finds of the
+    sources (``of_sources``) is in any layout."""
     folder = os.path.abspath("out")
     try:
         plan = plan_fleet(read_fleet(data, "", os.environ), trust=trust)
         made = make_outputs(plan, folder)
         found = {*made.findings, *plan.fleet.table.problems}
         if not any(it.level == ERROR for it in found):
-            found |= {*read_back(plan, made, folder)}
+            back = read_back(plan, made, folder)
+            asked = (it for it in back if of_sources or not _is_of_sources(it, found))
+            found |= {*asked}
     except MultibotError as error:
         return [("", without_dict(str(error)))]
     errors = sorted((it for it in found if it.level == ERROR), key=by_place)
     return [(_file(it), _line(it)) for it in grouped(errors, plan.fleet.words)]
+
+
+def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:
+    return it._replace(level=WARNING) in told or is_of_sources(it)
 
 
 def _line(it: Finding) -> str:
@@ -148,7 +158,16 @@ def in_a_layout_that_builds(
         other = in_layout(it, Choice(layout, why))
         if not errors_of(data_of(other, os.curdir), trust):
             return other
-    notes = (f"It does not build yet: {line}" for _, line in own[:3])
+    return _with_notes(it, own)
+
+
+def with_faults_of_sources(it: Proposal, trust: bool = False) -> Proposal:
+    """The proposal that was chosen; what no choice mends is a note as well."""
+    return it if it.notes else _with_notes(it, errors_of(data_of(it, os.curdir), trust, True))
+
+
+def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:
+    notes = (f"It does not build yet: {line}" for _, line in errors[:3])
     return it._replace(notes=(*it.notes, *notes))
 
 

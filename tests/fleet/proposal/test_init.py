@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import closed_robot
 import pytest
 import yaml
 from paths import ROBOTS, ROOT
@@ -183,6 +184,22 @@ def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path
 def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
     assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]
+
+
+@pytest.mark.slow
+def test_a_fault_of_the_files_is_told_and_changes_no_choice(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No other layout mends it, and without its file the robot is another one."""
+    for name, text in closed_robot.FILES.items():
+        if not name.startswith(("fleet", "nodes", "moveit")):
+            (tmp_path / name).write_text(
+                text.replace("enable_odom_tf: false", "publish_rate: 50.0")
+            )
+    made(tmp_path, tmp_path, code=1)
+    said, text = capsys.readouterr().err, (tmp_path / "fleet.yaml").read_text()
+    assert "It does not build yet: MG408 several nodes send " in said
+    assert "does not work for" not in text and "not taken" not in text
 
 
 @pytest.mark.more
