@@ -28,7 +28,7 @@ from pairs import MACHINE, as_installed, child, seconds
 from robots import robot
 
 HERE = Path(__file__).parent.parent
-RUNS = 15
+RUNS = 31
 # A check reads a snapshot by this option, before and now.
 OPTIONS = ("--snapshot", "--from")
 # The sizes of fleets whose graphs are checked: robots, nodes a robot, topics a node.
