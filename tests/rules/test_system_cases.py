@@ -917,3 +917,48 @@ def test_qos_is_held_against_that_of_another_robot_where_not_all_of_it_is_known(
         for node, qos in (("a", best), ("b", ""), ("c", ""))
     ]
     assert [it.split(":")[0] for it in said(*lines)] == ["MG328 warning /robot2/a"]
+
+
+FED = (
+    f"/robot1/diff_drive subscribes /robot1/drive_vel {TWIST}",
+    f"/robot1/velocity_smoother subscribes /robot1/cmd_vel_nav {TWIST}",
+    f"/robot1/controller_server publishes /robot1/cmd_vel_nav {TWIST}",
+    f"/robot1/velocity_smoother publishes /robot1/cmd_vel {TWIST}",
+)
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        # What assisted teleop may send is read by behavior_server, and passes nothing on.
+        (
+            [
+                f"/robot1/behavior_server publishes /robot1/drive_vel {TWIST}",
+                f"/robot1/behavior_server subscribes /robot1/cmd_vel_teleop {TWIST}",
+            ],
+            True,
+        ),
+        # A chain past the smoother leads to the drive.
+        (
+            [
+                f"/robot1/stamper publishes /robot1/drive_vel {TWIST}",
+                f"/robot1/stamper subscribes /robot1/cmd_vel_nav {TWIST}",
+            ],
+            False,
+        ),
+        # One that waits for its input is the finding.
+        (
+            [
+                f"/robot1/stamper publishes /robot1/drive_vel {TWIST}",
+                f"/robot1/stamper subscribes /robot1/cmd_vel_smoothed {TWIST}",
+            ],
+            False,
+        ),
+    ],
+)
+def test_velocities_of_nav2_that_pass_the_drive_by(more: list[str], told: bool) -> None:
+    found = [it for it in said(*FED, *more) if it.startswith("MG308")]
+    text = (
+        "publishes /robot1/cmd_vel, which no node reads; /robot1/diff_drive reads /robot1/drive_vel"
+    )
+    assert found == ([f"MG308 error /robot1/velocity_smoother: {text}"] if told else [])
