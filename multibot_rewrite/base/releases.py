@@ -35,9 +35,8 @@ _OLD = lazy_compile(
     rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
 )
 _OLD_ADAPTER = lazy_compile(rb"(" + _ADAPTERS + rb"\w+)")
-_NEW = lazy_compile(rb"gz(?:-sim|::sim|_ros2_control)")
-_NEW_ADAPTERS = b"default_planning_request_adapters/"
-_COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
+_NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")
+_NEW = lazy_compile(b"|".join(_NEW_WORDS))
 _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
 
 
@@ -103,11 +102,21 @@ def evidence(text: bytes) -> str:
     that may be for any release."""
     if not any(it in text for it in _OLD_WORDS):
         return ""
-    text = _COMMENT.sub(b"", text)
-    if _NEW.search(text) or _NEW_ADAPTERS in text:
+    if any(it in text for it in _NEW_WORDS) and _in_force(_NEW, text):
         return ""
-    found = _OLD.search(text) or _OLD_ADAPTER.search(text)
+    found = _in_force(_OLD, text) or _in_force(_OLD_ADAPTER, text)
     return found[1].decode() if found else ""
+
+
+def _in_force(pattern: re.Pattern[bytes], text: bytes) -> re.Match[bytes] | None:
+    """The first match that is in no comment."""
+    at = 0
+    while found := pattern.search(text, at):
+        comment = text.rfind(b"<!--", at, found.start())
+        at = text.find(b"-->", comment) if comment >= 0 else -1
+        if at < found.start():
+            return found
+    return None
 
 
 def lacks_classic(release: str, text: bytes) -> bool:

@@ -99,6 +99,8 @@ def test_what_real_files_hold_is_no_fault(body: str) -> None:
 
 
 FAULTS = (
+    (joint("").replace('parent link="a"', 'parent link=""'), "missing", "parent", "link"),
+    (joint('<mimic joint=""/>'), "missing", "mimic", "joint"),
     ('<link name="a"><inertail/></link>', "misspelt", "inertail", None),
     # What it is meant to be may be there as well.
     (
