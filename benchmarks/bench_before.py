@@ -23,6 +23,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from bench_build import ROBOTS, write_fleets
 from one_page import write_section
 from pairs import MACHINE, as_installed, child, seconds
 from robots import robot
@@ -100,6 +101,11 @@ def rows(before: Path, folder: Path) -> Iterator[Row]:
     for file in sorted(before.glob("examples/*/fleet.yaml")):
         out = ("-q", "-o", folder / "out")
         yield _row("multibot build", file.parent.name, before, "multibot", "build", file, *out)
+    _, many = write_fleets(folder)
+    out = ("-q", "-o", folder / "many")
+    yield _row(
+        "multibot build", f"{ROBOTS} robots with Nav2", before, "multibot", "build", many, *out
+    )
     for about, size in FLEETS.items():
         yield compared("multibot check", about, partial(_checked, folder, size), before)
 

@@ -74,6 +74,11 @@ def test_topics_that_a_robot_needs_and_nobody_sends(lines: str, silent: set[str]
 
 ORDER = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
 SCAN = "/robot1/driver publishes {} sensor_msgs/msg/LaserScan"
+ALONE = """\
+planned: frames of robot1 on /robot1/tf: robot1/base_link, {}robot1/odom
+as planned: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage
+{}as planned: transform map -> robot1/odom on /robot1/tf by /robot1/amcl
+"""
 FRAMES = (
     "planned: frames of robot1 on /robot1/tf: robot1/base_link, robot1/laser\n"
     "as planned: /robot1/robot_state_publisher publishes /robot1/tf_static tf2_msgs/msg/TFMessage\n"
@@ -109,6 +114,19 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
              " robot1/laser? Otherwise add it to other_frames of the plan",
              "MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
              " /robot1/robot_state_publisher the description of robot1, or that of another robot?"],
+        ),
+        # A description of one link has no transform: its frame comes with the odometry.
+        (ALONE.format("", ""), []),
+        (
+            ALONE.format("robot1/laser, ", ""),
+            ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
+             " has robot_state_publisher the description of robot1, or that of another robot?"],
+        ),
+        (
+            ALONE.format("", "planned: transform robot1/odom -> robot1/base_link on /robot1/tf by"
+                         " /robot1/amcl\n"),
+            ["MG208 frame robot1/base_link of robot1 is in no transform: robot1/base_link; by the plan"
+             " /robot1/amcl sends robot1/odom -> robot1/base_link: has it the parameters of robot1?"],
         ),
         (
             FRAMES.format("base_link", "laser"),

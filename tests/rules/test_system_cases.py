@@ -649,6 +649,15 @@ def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") 
                 f"no known node sends it; the same for /robot1/amcl, /robot1/x; {INSTEAD}",
             ),
         ),
+        # On one tf of all robots its own node is named.
+        (
+            (
+                *("/robot1/planner subscribes /tf " + TF, "/robot1/planner looks up base_footprint"),
+                "transform odom/robot2 -> base_link/robot2 on /tf by /robot2/ekf",
+                "transform odom -> base_link on /tf by /robot1/ekf",
+            ),
+            reads("base_footprint", f"no known node sends it; {INSTEAD}"),
+        ),
         # A map often comes from elsewhere.
         (
             (SENT, "/robot1/planner looks up map"),

@@ -38,15 +38,16 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
-    read; where they are not as they should be, or name other ones, all are.
+    read; where they have an error, or name other ones, all are.
 
     Raises MultibotError where no temporary file can be written.
     """
-    few, left = two_of_each(made, [it.spec for it in plan.robots])
-    found, graph = _read(plan, few, folder)
-    if left and (found or names_one_of(graph, left)):
-        found, _ = _read(plan, made, folder)
-    return found
+    sample = two_of_each(made, [it.spec for it in plan.robots])
+    found, graph = _read(plan, sample.made, folder)
+    mild = all(it.level != ERROR and (it.robots or it.robot in sample.alike) for it in found)
+    if sample.left and (not mild or names_one_of(graph, sample.left)):
+        return _read(plan, made, folder)[0]
+    return [it._replace(robots=it.robots or sample.alike.get(it.robot, ())) for it in found]
 
 
 def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], LaunchGraph]:

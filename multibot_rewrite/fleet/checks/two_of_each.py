@@ -44,11 +44,19 @@ class _Sort(NamedTuple):
     pose: Pose
 
 
-def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> tuple[Outputs, frozenset[str]]:
-    """The outputs with two robots of each sort, and the words of the robots that are left out: none
-    where the launch file and the plan have not one part for each robot."""
+class Sample(NamedTuple):
+    """The outputs with two robots of each sort. ``left`` are the words of the robots that are left out,
+    ``alike`` has for the namespace of each other one those of its sort, its own first."""
+
+    made: Outputs
+    left: frozenset[str] = frozenset()
+    alike: Mapping[str, tuple[str, ...]] = {}
+
+
+def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
+    """The sample; all robots where the launch file and the plan have not one part for each."""
     if len(robots) <= _OF_EACH or _within_each_other({word for it in robots for word in it.words}):
-        return made, frozenset()
+        return Sample(made)
     files = {it.path: it for it in made.files}
     launch, plan = (files[it].text if it in files else "" for it in (LAUNCH, PLAN))
     parts, plans = _by_name(_FUNCTION, launch), _by_name(_PLANNED, plan)
@@ -59,13 +67,20 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> tuple[Outputs, fr
         row, part = rows.get(it.name, ""), parts.get(it.name, "")
         is_whole = bool(part) == (f"start_{it.name}" in row)
         if not (row and is_whole and it.namespace in plans):
-            return made, frozenset()
+            return Sample(made)
         own = _sort(it, (row, part, plans[it.namespace]), files)
         at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
-    left = [it for alike in of_sort.values() for it in alike[_OF_EACH:]]
-    return _without(made, left), frozenset(word for it in left for word in it.words)
+    return _sample(made, of_sort.values())
+
+
+def _sample(made: Outputs, sorts: Collection[Sequence[RobotSpec]]) -> Sample:
+    left = [it for alike in sorts for it in alike[_OF_EACH:]]
+    alike: dict[str, tuple[str, ...]] = {}
+    for names in ([it.namespace for it in one] for one in sorts):
+        alike |= {it: tuple(dict.fromkeys((it, *names))) for it in names[:_OF_EACH]}
+    return Sample(_without(made, left), frozenset(word for it in left for word in it.words), alike)
 
 
 def _within_each_other(words: Collection[str]) -> bool:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
@@ -64,11 +64,14 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
-    """The frames that only nodes send which may be missing by the plan, and are."""
+    """The frames that only nodes send which may be missing by the plan, and are. A link without joints
+    comes with the odometry, or not at all."""
     sent = sent_by_robot(plan, robot)
     absent = plan.may_miss - seen.nodes.keys()
-    of_absent = {name for it in sent if it.node in absent for name in it[1:]}
-    return of_absent.difference(*(it[1:] for it in sent if it.node not in absent))
+    left = {name for it in sent if it.node in absent for name in it[1:]}
+    links = {it for it in robot.frames if _plain(plan, robot, it) not in SENT_FRAMES}
+    left |= links if len(links) == 1 else set()
+    return left.difference(*(it[1:] for it in sent if it.node not in absent))
 
 
 def _senders(plan: Index) -> Mapping[str, set[str]]:

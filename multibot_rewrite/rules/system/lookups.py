@@ -69,7 +69,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     bare = it.frame.rpartition("/")[2]
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
-    sender = _sender(seen, edges) if usual else None
+    sender = _sender(seen, it.node, edges) if usual else None
     if sender is None and usual and edges and not _in_doubt(seen) and _listens(seen, it.node):
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
@@ -93,12 +93,13 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
-def _sender(seen: Index, edges: Sequence[Edge]) -> Edge | None:
-    """A transform that a node sends by its file. Nothing is known where only nodes without one send
-    any, and others may run."""
+def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
+    """A transform that a node sends by its file, of the robot of ``node`` if there is one. Nothing is
+    known where only nodes without one send any, and others may run."""
     own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
     placed = [it for it in own if it.place != NOWHERE]
-    return next(iter(placed if placed or _in_doubt(seen) else own), None)
+    found, robot = placed if placed or _in_doubt(seen) else own, seen.robot(node)
+    return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
 def _listens(seen: Index, node: str) -> bool:
