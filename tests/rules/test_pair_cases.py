@@ -13,6 +13,7 @@ from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.pair.silent_topics import silent_topics
 from multibot_rewrite.system.index import beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import Edge
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
 
@@ -77,7 +78,7 @@ SCAN = "/robot1/driver publishes {} sensor_msgs/msg/LaserScan"
 ALONE = """\
 planned: frames of robot1 on /robot1/tf: robot1/base_link, {}robot1/odom
 as planned: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage
-{}as planned: transform map -> robot1/odom on /robot1/tf by /robot1/amcl
+as planned: transform map -> robot1/odom on /robot1/tf by /robot1/amcl
 """
 FRAMES = (
     "planned: frames of robot1 on /robot1/tf: robot1/base_link, robot1/laser\n"
@@ -116,17 +117,11 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
              " /robot1/robot_state_publisher the description of robot1, or that of another robot?"],
         ),
         # A description of one link has no transform: its frame comes with the odometry.
-        (ALONE.format("", ""), []),
+        (ALONE.format(""), []),
         (
-            ALONE.format("robot1/laser, ", ""),
+            ALONE.format("robot1/laser, "),
             ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
              " has robot_state_publisher the description of robot1, or that of another robot?"],
-        ),
-        (
-            ALONE.format("", "planned: transform robot1/odom -> robot1/base_link on /robot1/tf by"
-                         " /robot1/amcl\n"),
-            ["MG208 frame robot1/base_link of robot1 is in no transform: robot1/base_link; by the plan"
-             " /robot1/amcl sends robot1/odom -> robot1/base_link: has it the parameters of robot1?"],
         ),
         (
             FRAMES.format("base_link", "laser"),
@@ -160,6 +155,13 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
 def test_what_is_other_than_planned_and_why(lines: str, said: list[str]) -> None:
     plan, graph = read_example(lines)
     assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said
+
+
+def test_a_link_alone_is_missed_where_a_node_is_planned_to_send_it() -> None:
+    plan, graph = read_example(ALONE.format(""))
+    odometry = Edge("robot1/base_link", "robot1/odom", "/robot1/tf", False, ("/robot1/amcl",))
+    found = check(plan._replace(edges=(odometry,)), graph)
+    assert ("MG208", ("robot1/base_link",)) in {(it.code, it.names) for it in found}
 
 
 AMCL = "as planned: /robot1/amcl\nas planned: /robot2/amcl\n"
