@@ -75,6 +75,18 @@ def levels(text: str, code: str) -> set[str]:
     return {it.split(": ")[1] for it in text.splitlines() if f" {code} " in it}
 
 
+def test_robots_of_one_line_are_told_apart(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is told of the first robot was told of the last one in the line of the fleet file, too."""
+    three = FLEET.replace("{name: robot2}", "{name: robot2}, {name: robot3}")
+    monkeypatch.setitem(globals(), "FLEET", three)
+    assert build(tmp_path, "") == 1
+    told = [it for it in capsys.readouterr().err.splitlines() if " MG316 " in it]
+    assert told
+    assert not any("the same for" in it for it in told)
+
+
 def test_a_rule_that_is_missing_is_an_error_and_nothing_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -38,14 +38,15 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
-    read; where they have an error, or name other ones, all are.
+    read: what a robot has is true of its sort. All are where they do something to each other, or name
+    other ones.
 
     Raises MultibotError where no temporary file can be written.
     """
     sample = two_of_each(made, [it.spec for it in plan.robots])
     found, graph = _read(plan, sample.made, folder)
-    mild = all(it.level != ERROR and (it.robots or it.robot in sample.alike) for it in found)
-    if sample.left and (not mild or names_one_of(graph, sample.left)):
+    alone = all(it.robots or it.robot in sample.alike for it in found)
+    if sample.left and (not alone or names_one_of(graph, sample.left)):
         return _read(plan, made, folder)[0]
     return [it._replace(robots=it.robots or sample.alike.get(it.robot, ())) for it in found]
 

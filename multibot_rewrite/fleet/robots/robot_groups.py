@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -74,8 +74,9 @@ def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
     ordered = sorted(
         set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
     )
-    # Lines of robots in the fleet file: that they differ is no difference.
-    names = {(it.file, it.line): it.name for it in specs}
+    # Lines of robots in the fleet file: that they differ is no difference. One for several tells none.
+    count = Counter((it.file, it.line) for it in specs)
+    names = {key: it.name for it in specs if count[key := (it.file, it.line)] == 1}
     lines = {name: line for (_, line), name in names.items()}
     alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
     return [
