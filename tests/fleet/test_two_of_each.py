@@ -15,9 +15,7 @@ from tempfile import TemporaryDirectory
 import pytest
 from built_faults import BUILT, FLEET, LAUNCH, OUT, Edit, edited, fleet, in_file
 
-from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks import read_back as back
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.checks.two_of_each import two_of_each
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -104,37 +102,6 @@ def test_a_file_of_all_robots_may_name_one_that_is_left_out() -> None:
     spoiled = edited(made, lambda path, text: text + row if path == "bridge.yaml" else text)
     assert "robot5" in two_of_each(spoiled, [it.spec for it in plan.robots]).left
     assert "/robot5/scan" in {name for it in read_back(plan, spoiled, OUT) for name in it.names}
-
-
-def test_a_warning_of_one_is_true_of_its_sort(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Drivers that send the odometry are started apart. To read all for that costs seconds."""
-    (tmp_path / "rover.urdf").write_text(
-        '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">'
-        '<parent link="base_link"/><child link="laser"/></joint></robot>'
-    )
-    rows = ", ".join(f"{{name: {it}, pose: {{x: {it[-1]}}}}}" for it in NAMES)
-    (tmp_path / "fleet.yaml").write_text(
-        "layout: tf-per-robot\ndistro: jazzy\ndescription: rover.urdf\nstack: [nav2]\n"
-        f"robots: [{rows}]\n"
-    )
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", os.environ))
-    made = make_outputs(plan, OUT)
-    counts: list[int] = []
-    read = back._read
-    monkeypatch.setattr(
-        back,
-        "_read",
-        lambda plan, made, at: counts.append(len(made.planned.robots)) or read(plan, made, at),
-    )
-    told = [(it.code, it.level, it.robots) for it in read_back(plan, made, OUT)]
-    assert counts == [2]
-    others = ("robot5", "robot1", "robot2")
-    assert told == [
-        ("MG406", WARNING, ("robot3", "robot4", *others)),
-        ("MG406", WARNING, ("robot4", "robot3", *others)),
-    ]
 
 
 @pytest.mark.sample(5)
