@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.policy import Policy
@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     nodes_with,
     under_plugins,
 )
-from multibot_rewrite.fleet.robots.member import Member, line_of, member
+from multibot_rewrite.fleet.robots.member import Member, is_for_simulator, line_of, member
 from multibot_rewrite.knowledge.node_library import with_included
 from multibot_rewrite.knowledge.nodl.facts import NodeKnowledge, nodes_of
 from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
@@ -131,9 +131,10 @@ def _with_bridge_and_findings(
 ) -> Fleet:
     """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
     table = with_meetings(fleet.table, members, fleet.naming)
-    table = table._replace(
-        problems=(*table.problems, *wrong_in_descriptions(members, vocabulary), *findings)
-    )
+    found = wrong_in_descriptions(members, vocabulary, filter(is_for_simulator, members))
+    # Nothing is started, and nothing says that they are simulated.
+    wrong = (it._replace(level=WARNING) for it in found)
+    table = table._replace(problems=(*table.problems, *wrong, *findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))

@@ -16,7 +16,6 @@ from multibot_rewrite.fleet.checks.other_manager import other_manager
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import (
-    REAL,
     Sources,
 )
 from multibot_rewrite.fleet.file.shape import placed, with_shape
@@ -39,7 +38,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.simulators import is_chosen, may_be_real, note
+from multibot_rewrite.fleet.robots.simulators import is_simulated, may_be_real, note
 from multibot_rewrite.fleet.robots.world_systems import without_world_systems
 from multibot_rewrite.spelling.table_checks import UNREACHABLE_NAME
 
@@ -145,9 +144,8 @@ def _fleet(
     written = {it.spec.namespace: it.written for it in robots}
     domains = {it.robot: it.number for it in file.apart.domains}
     table = with_meetings(fleet.table, members, naming, written, domains)
-    chosen = [it.member for it in robots if is_chosen(it)]
-    real = [it.member for it in robots if it.spec.simulator == REAL]
-    wrong = wrong_in_descriptions(members, file.vocabulary, chosen, real)
+    simulated = [it.member for it in robots if is_simulated(it)]
+    wrong = wrong_in_descriptions(members, file.vocabulary, simulated)
     told = (*declared_twice(robots, naming, table), *other_manager(robots, table), *wrong)
     every = (
         it for it in table.problems if it.code != UNREACHABLE_NAME.code or not _never_meet(file)

@@ -38,12 +38,20 @@ def lint_file(path: str, settings: Settings) -> list[Finding]:
     return _linted(path, partial(read_file, path), settings)
 
 
-def lint_data(path: str, data: bytes, settings: Settings) -> list[Finding]:
-    """The same for given text; ``path`` is its name, and xacro resolves includes from there."""
-    return _linted(path, lambda: data, settings)
+def lint_data(
+    path: str, data: bytes, settings: Settings, wanted: Callable[[Rule], bool] = bool
+) -> list[Finding]:
+    """The same for given text; ``path`` is its name, and xacro resolves includes from there. Of a
+    description the ``wanted`` rules are asked."""
+    return _linted(path, lambda: data, settings, wanted)
 
 
-def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Finding]:
+def _linted(
+    path: str,
+    read: Callable[[], bytes],
+    settings: Settings,
+    wanted: Callable[[Rule], bool] = bool,
+) -> list[Finding]:
     found: list[Finding] = []
     sources: dict[str, bytes] = {}
     try:
@@ -54,7 +62,7 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
                 refuse_templates(data, path)
             if beside:
                 return sorted(_beside(path, data, settings), key=by_place)
-            _look(path, data, settings, found, sources)
+            _look(path, data, settings, wanted, found, sources)
     except InputError as error:
         found.append(failure(path, str(error), settings))
     except _TooLongError:
@@ -67,7 +75,12 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
 
 
 def _look(
-    path: str, data: bytes, settings: Settings, found: list[Finding], sources: dict[str, bytes]
+    path: str,
+    data: bytes,
+    settings: Settings,
+    wanted: Callable[[Rule], bool],
+    found: list[Finding],
+    sources: dict[str, bytes],
 ) -> None:
     """Adds findings, and the files that were read; the subjects are let go before the garbage
     collector is back, which would look through all of them."""
@@ -76,7 +89,7 @@ def _look(
             it = failure(path, subject.message, settings)
             found.append(it._replace(arguments=subject.arguments))
             continue
-        found += lint_subject(subject)
+        found += lint_subject(subject, wanted)
         sources |= {**subject.sources, path: data}
 
 

@@ -24,7 +24,9 @@ from multibot_rewrite.companions.kinds import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.described import in_use, may_stop
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
@@ -41,15 +43,11 @@ from multibot_rewrite.rules.files.bridges import (
     not_converted,
 )
 from multibot_rewrite.rules.files.judge import judged
-from multibot_rewrite.rules.settings import LEFT_OUT, Settings
+from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import NOWHERE, Place
 
-# What a program refuses: values, what is missing, references.
-_REFUSED = ("MB11", "MB12", "MB2")
 # What is wrong as soon as a second model has it, too.
 _AGAIN = "MB416"
-# What has no effect in this simulator and this ROS, and a joint that is not found there.
-_NO_EFFECT = ("MB163", "MB211")
 # Names that the node has not, and values of another type.
 _OF_VALUES = ("MB110", "MB111", "MB120")
 _FOR_ALL = "/**:"
@@ -69,14 +67,12 @@ def named_findings(launched: Launched) -> list[Finding]:
 
 def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
-        file = file_of(launched.graph, it.text)
-        codes = (*_REFUSED, *LEFT_OUT, *_NO_EFFECT) if it.spawned else _REFUSED
-        settings = Settings(select=codes, distro=launched.release, simulated=it.spawned)
-        for one in lint_data(file or "robot.urdf", it.text.encode(), settings):
-            sure = one.level == ERROR or (one.code in LEFT_OUT and one.level == WARNING)
-            if sure or one.code in _NO_EFFECT:
-                told = one if file else _at_launch(one, it.place)
-                yield told._replace(level=ERROR if sure else WARNING)
+        file, data = file_of(launched.graph, it.text), it.text.encode()
+        settings = Settings(distro=launched.release, simulated=it.spawned)
+        found = lint_data(file or _beside(it.place, "robot.urdf"), data, settings, may_stop)
+        if found:
+            told = in_use(found, read_document(data, file), it.spawned)
+            yield from (one if file else _at_launch(one, it.place) for one in told)
 
 
 def _loaded_again(launched: Launched) -> Iterator[Finding]:
@@ -121,12 +117,16 @@ def _values(launched: Launched) -> Iterator[Finding]:
         given = _given(it) if running else {}
         if running and given:
             text = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
-            # Descriptions of the package of the launch file are beside it.
-            beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
+            beside = _beside(it.place, "launch.yaml")
             for one in lint_data(beside, text.encode(), settings):
                 level = WARNING if one.level == NOTE else one.level
                 own = one._replace(level=level, column=1)
                 yield own._replace(file=it.place.file, line=it.place.line)
+
+
+def _beside(place: Place, name: str) -> str:
+    """A name for what stands in a launch file: descriptions of its package are beside it."""
+    return os.path.join(os.path.dirname(place.file), name)
 
 
 def _given(it: LaunchedNode) -> dict[str, object]:

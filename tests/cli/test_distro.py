@@ -144,7 +144,8 @@ def test_why_a_value_is_renamed_or_not(folder: Path, capsys: pytest.CaptureFixtu
 
 
 CLASSIC = (
-    '<robot name="r"><link name="base"/><gazebo>'
+    '<robot name="r"><link name="base"><inertial><mass value="1"/>'
+    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><gazebo>'
     '<plugin name="p" filename="libgazebo_ros_p3d.so"><body_name>base</body_name></plugin>'
     "</gazebo></robot>"
 )

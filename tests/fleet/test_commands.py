@@ -60,6 +60,12 @@ def test_the_table_of_a_build_says_the_same(tmp_path: Path) -> None:
     assert (controller["way"], controller["remappings"]) == ("spawner", [["/tf", "tf"]])
 
 
+MASS = """\
+<link name="tool">
+  <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+</link>
+<joint name="mount" type="fixed"><parent link="base_link"/><child link="tool"/></joint>
+"""
 HARDWARE = """\
 <ros2_control name="arm" type="system">
   <hardware><plugin>acme_driver/Arm</plugin></hardware>
@@ -70,10 +76,11 @@ HARDWARE = """\
 @pytest.mark.parametrize(
     ("inside", "spawned"),
     [
-        ("", True),
+        ("", False),
+        (MASS, True),
         (HARDWARE, False),
         (f'{HARDWARE}<gazebo reference="base_link"><mu1>1</mu1></gazebo>', False),
-        (f'{HARDWARE}<gazebo><plugin name="p" filename="libacme.so"/></gazebo>', True),
+        (f'{MASS}{HARDWARE}<gazebo><plugin name="p" filename="libacme.so"/></gazebo>', True),
     ],
 )
 def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(

@@ -14,7 +14,12 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.scripts import load_fleet
 
 ARM = """<robot name="arm">
-  <link name="base_link"/>
+  <link name="base_link">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <ros2_control name="arm" type="system">
+    <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+  </ros2_control>
   <gazebo>
     <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
       <parameters>{}</parameters>

@@ -303,7 +303,10 @@ def entry_problems(source: str, text: str, shared: str) -> Iterator[str]:
 
 ROVER = """\
 <robot name="rover">
-  <link name="base"/><link name="lidar"/>
+  <link name="base">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <link name="lidar"/>
   <joint name="mount" type="fixed"><parent link="base"/><child link="lidar"/></joint>
   {}
 </robot>

@@ -22,7 +22,9 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ROVER = """\
 <robot name="rover">
-  <link name="base_link"/>
+  <link name="base_link">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
   <link name="lidar_link"/>
   <joint name="mast" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
   <gazebo reference="lidar_link">

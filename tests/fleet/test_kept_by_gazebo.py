@@ -10,7 +10,10 @@ import pytest
 
 from multibot_rewrite.cli.multibot import main
 
-MASS = "<inertial><mass value='1'/></inertial>"
+MASS = (
+    "<inertial><mass value='1'/>"
+    "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>"
+)
 ROBOT = """\
 <robot name="rover">
   <link name="base_link">{base}</link>
@@ -82,10 +85,8 @@ def test_a_joint_that_is_preserved_is_no_part_of_its_parent(
 
 
 @pytest.mark.more
-@pytest.mark.parametrize(
-    ("simulator", "level"), [("", "warning"), ("none", ""), ("gazebo", "error")]
-)
-def test_the_level_is_that_of_the_chosen_simulator(
+@pytest.mark.parametrize(("simulator", "level"), [("", "error"), ("none", ""), ("gazebo", "error")])
+def test_it_is_one_unless_the_robot_is_real(
     simulator: str, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code = ended(tmp_path, simulator, wheel="", more=DRIVE)

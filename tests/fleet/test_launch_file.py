@@ -125,8 +125,10 @@ def test_the_world_runs_the_sensors_of_the_robots(
     sensors = "".join(
         f'<sensor name="{it}" type="{it}"/>' for it in ("gpu_lidar", "imu", "altimeter")
     )
-    plugin = f'<plugin filename="{library}-altimeter-system" name="a"/>'
-    links = '<link name="base_link"/>'
+    name = f"{library.replace('-', '::')}::systems::Altimeter"
+    plugin = f'<plugin filename="{library}-altimeter-system" name="{name}"/>'
+    inertia = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+    links = f'<link name="base_link"><inertial><mass value="1"/>{inertia}</inertial></link>'
     body = f'{links}<gazebo reference="base_link">{sensors}</gazebo><gazebo>{plugin}</gazebo>'
     (tmp_path / "r.urdf").write_text(f'<robot name="r">{body}</robot>')
     (tmp_path / "fleet.yaml").write_text(f"distro: {release}\ndescription: r.urdf\n{TWO}")

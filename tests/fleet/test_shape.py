@@ -26,8 +26,9 @@ from multibot_rewrite.fleet.file.shape import shapes
 from multibot_rewrite.launch import missing as without_launch
 
 ROBOT = """\
-<robot name="r"><link name="base_link"><inertial><mass value="1"/></inertial></link>
-  <gazebo><plugin name="p" filename="gz-sim-imu-system"/></gazebo></robot>
+<robot name="r"><link name="base_link"><inertial><mass value="1"/>
+  <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <gazebo><plugin name="gz::sim::systems::Imu" filename="gz-sim-imu-system"/></gazebo></robot>
 """
 PARAMS = "{}: {{ros__parameters: {{frame: base_link}}}}\n"
 NODES = (

@@ -82,7 +82,8 @@ def test_the_world_loads_it_once_with_its_settings(
 
 
 def test_a_system_without_a_sensor_is_moved_too(tmp_path: Path) -> None:
-    wind = '<plugin name="w" filename="gz-sim-wind-effects-system"><x>1</x></plugin>'
+    name = "gz::sim::systems::WindEffects"
+    wind = f'<plugin name="{name}" filename="gz-sim-wind-effects-system"><x>1</x></plugin>'
     out = _built(tmp_path, wind, wind, sensor="")
     assert _systems(out)["gz-sim-wind-effects-system"] == 1
     assert etree.parse(out / "world.sdf").findtext("world/plugin/x") == "1"

@@ -18,7 +18,10 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 URDF = """\
 <robot name="rover">
-  <link name="base_link"/><link name="lidar_link"/><link name="wheel"/>
+  <link name="base_link">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <link name="lidar_link"/><link name="wheel"/>
   <joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
   <joint name="mast" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
 </robot>

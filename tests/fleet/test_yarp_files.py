@@ -11,7 +11,12 @@ from multibot_rewrite.cli.multibot import main
 
 URDF = """\
 <robot name="bot">
-  <link name="root"/><link name="head"/>
+  <link name="root">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <link name="head">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
   <joint name="neck" type="revolute">
     <parent link="root"/><child link="head"/><limit effort="1" velocity="1"/>
   </joint>

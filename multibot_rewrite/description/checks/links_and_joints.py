@@ -146,6 +146,12 @@ def _bodies(
     return body
 
 
+def weighs(robot: Robot) -> bool:
+    """Has any of its links a mass? What is no number counts as one."""
+    masses = (it.inertial.mass for it in robot.links if it.inertial)
+    return any(it is None or it > 0 for it in masses)
+
+
 def roots(robot: Robot) -> list[Link]:
     """The links that are no joint's child; of two with one name the first."""
     return [it for name, it in robot.link.items() if name and name not in robot.above]

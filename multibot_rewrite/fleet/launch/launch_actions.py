@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, said
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
@@ -59,7 +60,7 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
     given = _Given(one, robot, names, facts, files, bridged)
     left = dict(_left(given))
-    simulated = spawn.is_simulated(robot)
+    simulated = is_simulated(robot)
     starts = [it for name in names.started if name not in left for it in _started(given, name)]
     bridge = path_for(robot, BRIDGE)
     spawned = []

@@ -18,6 +18,7 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
@@ -47,7 +48,7 @@ def commands_file(
         clock = robot.spec.use_sim_time
         clocks.add(clock)
         rows += [f"{with_clock(shell_line(it.start), clock)}\n" for it in poses.transforms]
-        rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
+        rows += [spawn.either(it, robot) for it in spawned if is_simulated(robot)]
         rows += _controllers(one)
         made = relays(robot.spec.namespace, one.fleet.naming, one.file)
         relayed = (shell_line(it.start) for it in made)

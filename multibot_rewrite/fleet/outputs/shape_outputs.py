@@ -13,13 +13,12 @@ import yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.yaml_text import YamlText, pairs, replaced, spliced
-from multibot_rewrite.fleet.file.robot_spec import REAL as NOT_SIMULATED
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, yaml_of
-from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 
 
 def vendor_commands(plan: FleetPlan) -> Iterator[str]:
@@ -61,7 +60,7 @@ def copied(plan: FleetPlan) -> Iterator[OutputFile]:
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
-    kind = SIMULATED if _in_simulator(robot) else REAL
+    kind = SIMULATED if is_simulated(robot) else REAL
     for it in shapes()[plan.file.shape].launch if plan.file.shape else ():
         if it.robots in ("", kind) and (
             not it.releases or has_release(it.releases, plan.file.distro)
@@ -69,15 +68,9 @@ def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]
             yield it
 
 
-def _in_simulator(robot: RewrittenRobot) -> bool:
-    """As the fleet file says, else by the description."""
-    said = robot.spec.simulator
-    return said != NOT_SIMULATED if said else is_simulated(robot)
-
-
 def _words(robot: RewrittenRobot) -> dict[str, str]:
     spec = robot.spec
-    clock = str(_in_simulator(robot)).lower()
+    clock = str(is_simulated(robot)).lower()
     return {"namespace": spec.namespace, "folder": f"$PWD/{spec.name}", "clock": clock}
 
 

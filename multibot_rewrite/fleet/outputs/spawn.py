@@ -18,11 +18,12 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.steps.document import without_comments
-from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
 from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
@@ -56,7 +57,7 @@ class Spawn(NamedTuple):
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
-    looks for the robot by another name or is of ROS 1."""
+    looks for the robot by another name or is of ROS 1, it has no mass."""
     made: list[Spawn] = []
     findings: list[Finding] = []
     for robot in plan.robots:
@@ -65,19 +66,8 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
         findings += _half(robot)
         findings += _other_models(robot)
         findings += _of_ros_1(robot)
+        findings += without_mass(robot)
     return tuple(made), tuple(findings)
-
-
-def is_simulated(robot: RewrittenRobot) -> bool:
-    """May Gazebo run it? Not if the fleet file says that it is real, nor if its ros2_control drives
-    hardware and nothing in it is for Gazebo."""
-    if robot.spec.simulator == REAL:
-        return False
-    root = robot.member.inventory.document.root
-    gazebo = any(
-        it.find("plugin") is not None or it.find("sensor") is not None for it in root.iter("gazebo")
-    )
-    return gazebo or root.tag == "sdf" or next(root.iter("ros2_control"), None) is None
 
 
 def is_classic(robot: RewrittenRobot) -> bool:

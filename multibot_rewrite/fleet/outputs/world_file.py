@@ -16,8 +16,9 @@ from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.given_world import own_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
-from multibot_rewrite.fleet.outputs.spawn import is_classic, is_simulated
+from multibot_rewrite.fleet.outputs.spawn import is_classic
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.world_systems import systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
 

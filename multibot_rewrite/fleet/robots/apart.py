@@ -11,8 +11,8 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.spawn import is_simulated
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.rules.launch.models import in_each_other
 
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.

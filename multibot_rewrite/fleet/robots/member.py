@@ -13,6 +13,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import RemapRule, bind, resolve_bound
 from multibot_rewrite.description.checks.arguments import UNREAD
+from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.library import Rewrite
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.nodes import rules_of
@@ -28,11 +29,12 @@ from multibot_rewrite.description.steps.document import Document, read_document
 class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
     holds and starts. ``described`` is what robot_state_publisher gets; where the simulator gets another
-    file, all else is of that. ``source`` is the description before, ``tree`` what is known of plugins,
-    ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
-    that its xacro does not know; ``read`` are the files that were read for it, ``plain`` the names that
-    arguments of its xacro make, by what they are without. ``handed_on`` are the remap rules of a
-    plugin with a controller manager, as they are in ``source``.
+    file, all else is of that. ``source`` is the description before, ``sent`` the one that ``described``
+    is made of, ``tree`` what is known of plugins, ``shared`` are findings about names that any two
+    robots of it would have, ``unread`` about arguments that its xacro does not know; ``read`` are the
+    files that were read for it, ``plain`` the names that arguments of its xacro make, by what they are
+    without. ``handed_on`` are the remap rules of a plugin with a controller manager, as they are in
+    ``source``.
     """
 
     robot: str
@@ -41,6 +43,7 @@ class Member(NamedTuple):
     inventory: Inventory
     reading: Reading
     source: Document
+    sent: Document
     tree: Tree
     shared: tuple[Finding, ...]
     unread: tuple[Finding, ...]
@@ -59,10 +62,10 @@ def member(
     data: bytes,
     tag: str,
     real: bool = False,
-    described: Inventory | None = None,
+    described: Member | None = None,
 ) -> Member:
     """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
-    nothing that is for a simulator. ``described`` is what it publishes, if that is another one.
+    nothing that is for a simulator. ``described`` has what it publishes, if that is another one.
 
     Raises InputError where ROS refuses the names of a plugin.
     """
@@ -76,7 +79,9 @@ def member(
     job = source.prepared.job
     handed_on = () if real else tuple(_handed_on(source.template.inventory))
     words = (shared, unread, job.read.files, job.own.plain, handed_on)
-    return Member(source.robot, tag, described or written, written, reading, document, tree, *words)
+    sent = (described.described, described.sent) if described else (written, document)
+    files = (sent[0], written, reading, document, sent[1])
+    return Member(source.robot, tag, *files, tree, *words)
 
 
 def with_text(it: Member, data: bytes) -> Member:
@@ -121,3 +126,19 @@ def _check_names(reading: Reading, document: Document) -> None:
         except UsageError as error:
             place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
             raise InputError(f"{place}: {error}; change it in the description") from None
+
+
+def is_for_simulator(member: Member) -> bool:
+    """May a simulator run it? Not where nothing in its description is for one, and it drives hardware
+    or has no mass: Gazebo spawns nothing of that."""
+    root: etree._Element = member.inventory.document.root
+    if root.tag == "sdf" or has_parts_for_simulator(member):
+        return True
+    return next(root.iter("ros2_control"), None) is None and weighs(read_robot(root))
+
+
+def has_parts_for_simulator(member: Member) -> bool:
+    """Has its description a plugin or sensor of a simulator?"""
+    root: etree._Element = member.inventory.document.root
+    parts = [root] if root.tag == "sdf" else root.findall("gazebo")
+    return any(it.find(f".//{tag}") is not None for it in parts for tag in ("plugin", "sensor"))

@@ -213,7 +213,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             declared = _both(declared, model.template.inventory.declared)
             simulated = _final(model, robot, jobs.simulated.naming)
             found = (*found, *model.findings)
-            made = member(model, simulated, robot.tag, described=made.inventory)
+            made = member(model, simulated, robot.tag, described=made)
         model_claims = (model or text).template.inventory.claims
         names = companion_names(declared, naming, robot.tag, own, words_of(model_claims))
         yield RewrittenRobot(

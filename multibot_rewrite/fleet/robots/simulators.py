@@ -14,6 +14,7 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.checks.unknown import SAY_IT
 from multibot_rewrite.description.readback.active import HARDWARE, PLUGIN, ActivePart, active_parts
 from multibot_rewrite.description.readback.nodes import PUBLISHES
@@ -29,7 +30,7 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.producers.evidence.semantics import FIXED
@@ -56,9 +57,10 @@ SIMULATED_OR_REAL = declare(
     "simulated-or-real",
     NOTE,
     what="A description has plugins or sensors for a simulator, and the robot's launch files start "
-    "neither a simulator nor a bridge to one.",
+    "neither a simulator nor a bridge to one. Or it has none and no mass, and is not spawned.",
     why="They may be real robots, or the simulator is started elsewhere. So nodes of these plugins may "
-    "be missing, and no topic has to be bridged: `check` does not find that a bridge is missing.",
+    "be missing, and no topic has to be bridged: `check` does not find that a bridge is missing. "
+    "Gazebo spawns nothing of a robot without mass.",
     fix="Write `simulator: none` for real robots, `simulator: gazebo` for simulated ones.",
     bad=_FLEET,
     good=f"simulator: gazebo\n{_FLEET}",
@@ -135,12 +137,14 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
     """Has its description something for a simulator, and does nothing say that it runs in one?"""
-    return evidence.unsimulated and not _said(robot) and _for_simulator(robot.member)
+    return evidence.unsimulated and not _said(robot) and has_parts_for_simulator(robot.member)
 
 
-def is_chosen(robot: RewrittenRobot) -> bool:
-    """Does its fleet file say that it runs in a simulator?"""
-    return bool(_said(robot)) and robot.spec.simulator != REAL
+def is_simulated(robot: RewrittenRobot) -> bool:
+    """Does it run in a simulator? As the fleet file says, else by its description."""
+    if _said(robot):
+        return robot.spec.simulator != REAL
+    return bool(robot.spec.simulated) or is_for_simulator(robot.member)
 
 
 def _said(robot: RewrittenRobot) -> object:
@@ -154,6 +158,16 @@ def note(robot: RewrittenRobot) -> Finding:
     )
     hint = "write simulator: none for real robots, simulator: gazebo for simulated ones"
     return at_robot(SIMULATED_OR_REAL, robot, message, hint)
+
+
+def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
+    """That nothing says it of a robot which no simulator can run."""
+    root: etree._Element = robot.member.inventory.document.root
+    if robot.spec.simulator or is_simulated(robot) or weighs(read_robot(root)):
+        return
+    message = f"robot {robot.spec.name!r} has no mass: the launch file does not spawn it"
+    hint = "write simulator: none for a real robot; else add <inertial> to its links"
+    yield at_robot(SIMULATED_OR_REAL, robot, message, hint)
 
 
 UNREAD_DRIVE = declare(
@@ -228,9 +242,3 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
 def _is_state(part: ActivePart) -> bool:
     """Does it tell where joints are, and move none?"""
     return "state" in part.name
-
-
-def _for_simulator(member: Member) -> bool:
-    root: etree._Element = member.inventory.document.root
-    parts = [root] if root.tag == "sdf" else root.findall("gazebo")
-    return any(it.find(f".//{tag}") is not None for it in parts for tag in ("plugin", "sensor"))

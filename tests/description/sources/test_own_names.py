@@ -246,7 +246,7 @@ def test_a_result_can_be_pickled() -> None:
 def test_an_explanation_says_where_the_name_is_from() -> None:
     lines = Path(ARM).read_text().splitlines()
     line = next(at for at, it in enumerate(lines, 1) if 'tool0"' in it and "<link" in it)
-    (found,) = explain(ARM, line, "left", xacro_args=PREFIX)
+    found, *_ = explain(ARM, line, "left", xacro_args=PREFIX)
     assert found.new == found.value == "left_tool0"
     assert "the xacro's arguments have put the robot's name into it" in found.reason
 

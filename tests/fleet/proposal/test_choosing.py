@@ -72,7 +72,8 @@ def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
 
 
 def test_a_robot_of_ignition_is_for_the_release_that_finds_its_systems(tmp_path: Path) -> None:
-    plugin = '<gazebo><plugin filename="ignition-gazebo-imu-system" name="x"/></gazebo>'
+    plugin = '<gazebo><plugin filename="ignition-gazebo-imu-system" name="{}"/></gazebo>'
+    plugin = plugin.format("ignition::gazebo::systems::Imu")
     inertia = "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
     body = f"<inertial><mass value='1'/>{inertia}</inertial>"
     text = f'<robot name="digger"><link name="body">{body}</link>{plugin}</robot>'

@@ -270,7 +270,9 @@ def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: P
     """``a.urdf`` would come first: its path is shorter."""
     text = '<robot name="r"><link name="a"/><link name="a_robot1"/></robot>'
     (tmp_path / "a.urdf").write_text(text)
-    (tmp_path / "other.urdf").write_text(text.replace("a_robot1", "b"))
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>'
+    whole = text.replace("a_robot1", "b").replace("</robot>", joint)
+    (tmp_path / "other.urdf").write_text(whole)
     fleet = made(tmp_path, tmp_path)
     assert fleet["description"] == "other.urdf"
 
@@ -331,7 +333,9 @@ def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     plugin = '<gazebo><plugin name="gazebo_ros2_control" filename="libgazebo_ros2_control.so">'
     plugin += "<ros><namespace></namespace><remapping>/tf:=tf</remapping></ros>"
     plugin += "<parameters>c.yaml</parameters></plugin></gazebo>"
-    (tmp_path / "rover.urdf").write_text(text[:at] + plugin + text[end:])
+    text = text[:at] + plugin + text[end:]
+    text = text.replace("gz_ros2_control/GazeboSimSystem", "gazebo_ros2_control/GazeboSystem")
+    (tmp_path / "rover.urdf").write_text(text)
     fleet = made(tmp_path, tmp_path / "rover.urdf")
     assert fleet["stack"] == ["gazebo_ros2_control"]
     assert fleet["distro"] == "humble"

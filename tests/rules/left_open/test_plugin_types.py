@@ -22,7 +22,9 @@ robots:
 """
 SCOUT = """\
 <robot name="scout">
-  <link name="base_footprint"/>
+  <link name="base_footprint">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
   <link name="lidar_link"/>
   <joint name="lidar_mount" type="fixed">
     <parent link="base_footprint"/><child link="lidar_link"/>

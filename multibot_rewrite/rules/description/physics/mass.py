@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.releases import OF_OLD
-from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached
+from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached, weighs
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.description.examples import a_joint, a_link
@@ -33,7 +33,7 @@ TINY_MASS = 1e-6
     "robot have.",
     why="Gazebo leaves out the link and everything below it, with their sensors. sdformat says 'is "
     "not modeled in sdf', and that its joint and child joints are 'ignored'. MuJoCo rejects the "
-    "file. It is an error where the fleet file says that the robot is simulated and nothing is "
+    "file. It is an error where the robot runs in Gazebo and nothing is "
     "left. So it is if a sensor, a plugin or ros2_control needs what is left out.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
     bad=moving_link(),
@@ -90,10 +90,10 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "no-inertia",
     NOTE,
     what="No link has a mass: the robot cannot be simulated. It is an error where the description has "
-    "plugins or sensors of a simulator, or its fleet file says that it is simulated.",
+    "plugins or sensors of a simulator, or the robot runs in one.",
     why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
     "do not need it.",
-    fix="Add <inertial> to the links, if the robot is to be simulated.",
+    fix="Add <inertial> to the links; for a real robot write `simulator: none` in the fleet file.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
@@ -102,7 +102,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
 def no_inertia(subject: Subject) -> Iterator[Problem]:
     """A robot without mass: with joints that move, or one that runs in Gazebo."""
     robot, chosen = subject.robot, subject.settings.simulated
-    massless = bool(robot.links) and not any(it > 0 for it in _masses(robot).values())
+    massless = bool(robot.links) and not weighs(robot)
     unweighed = not any(it.inertial for it in robot.links)
     moving = any(it.type != "fixed" for it in robot.joints)
     if not (massless and chosen) and not (unweighed and moving):

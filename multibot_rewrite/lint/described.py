@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the lint finds in a description that robots run with -> what of it stops them.
+
+That is every error, and what Gazebo leaves out of a robot that runs in it. Where the description is
+only sent, nothing counts that only a simulator reads. The build and check-launch ask it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.rules.settings import LEFT_OUT
+
+# What has no effect in this simulator and this ROS, and a joint that is not found there.
+_NO_EFFECT = ("MB163", "MB211")
+# Names, inertias and systems that only a simulator refuses.
+_OF_SIMULATOR = ("MB160", "MB305", "MB306", "MB606", "MB624")
+# A robot without a shape runs, and whether its file is there depends on the machine.
+_SHAPES = ("MB701", "MB703")
+
+
+def may_stop(rule: Rule) -> bool:
+    """Can a finding of the rule be one of these?"""
+    return rule.level == ERROR or rule.code in (*LEFT_OUT, *_NO_EFFECT)
+
+
+def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Iterator[Finding]:
+    """The findings of a document that count for a robot which runs with it, with their level there."""
+    for it in found:
+        level = _in_simulator(it) if simulated else _only_sent(it, document)
+        if level:
+            yield it._replace(level=level)
+
+
+def _in_simulator(it: Finding) -> str:
+    if it.level == ERROR:
+        return WARNING if it.code in _SHAPES else ERROR
+    return WARNING if it.level == WARNING and it.code in (*LEFT_OUT, *_NO_EFFECT) else ""
+
+
+def _only_sent(it: Finding, document: Document) -> str:
+    if it.level != ERROR or it.code in LEFT_OUT or _is_below_gazebo(it, document):
+        return ""
+    return WARNING if it.code in (*_SHAPES, *_OF_SIMULATOR) else ERROR
+
+
+def _is_below_gazebo(it: Finding, document: Document) -> bool:
+    starts = zip(document.elements, document.starts, strict=True)
+    before = [
+        top
+        for top, at in starts
+        if top.getparent() is document.root and locate(document.source, at)[0] <= it.line
+    ]
+    return bool(before) and before[-1].tag == "gazebo"
