@@ -60,7 +60,7 @@ def named_findings(launched: Launched) -> list[Finding]:
     """What is wrong with the files that a launch file names, each once."""
     found = (
         *(*_descriptions(launched), *_loaded_again(launched), *_parameters(launched)),
-        *(*_values(launched), *_bridges(launched)),
+        *(*_values(launched), *bridge_findings(launched)),
     )
     return list(dict.fromkeys(found))
 
@@ -147,7 +147,7 @@ class _Told(NamedTuple):
     place: Place
 
 
-def _bridges(launched: Launched) -> Iterator[Finding]:
+def bridge_findings(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the rows of bridges, beside all models that the launch file spawns."""
     models = models_in_simulator(launched)
     known = _topics(models) if models and not launched.models.lost else {}

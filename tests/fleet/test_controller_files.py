@@ -98,7 +98,7 @@ def test_a_linked_install_is_the_same_file(package: Path, tmp_path: Path) -> Non
     [
         "/opt/ws/install/my_arm/share/my_arm/other/arm.yaml",
         "$(find your_arm)/config/arm.yaml",
-        "/etc/arm.yaml",
+        "/nowhere/arm.yaml",
         "arm.yaml",
     ],
 )
@@ -113,7 +113,7 @@ def test_another_file_of_that_name_is_reported(
 def test_a_file_that_is_no_companion_stays(
     package: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert built(package, "/opt/other.yaml") == ["/opt/other.yaml"] * 2
+    assert built(package, "/nowhere/other.yaml") == ["/nowhere/other.yaml"] * 2
     assert "MF708" not in capsys.readouterr().err
 
 

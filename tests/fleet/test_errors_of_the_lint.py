@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -14,12 +15,15 @@ from support.rule_examples import whole
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import URDF, Rule
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.described import may_stop
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
 
+ROBOTS = "robots: [{name: robot1, pose: {y: 0}}, {name: robot2, pose: {y: 3}}]\n"
 ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats and it.bad]
 
 
@@ -35,13 +39,13 @@ def described(rule: Rule, folder: Path) -> Path:
     return file
 
 
-def said(file: Path, simulator: str = "gazebo") -> list[Finding]:
+def said(file: Path, simulator: str = "gazebo", layout: str = "frames-per-robot") -> list[Finding]:
     """What the plan of two such robots says; nothing of one that is refused."""
     robots = [
         {"name": name, "description": str(file), "pose": {"y": 3 * at}}
         for at, name in enumerate(("robot1", "robot2"))
     ]
-    data = {"layout": "frames-per-robot", "distro": "jazzy", "robots": robots}
+    data = {"layout": layout, "distro": "jazzy", "robots": robots}
     found = plan_fleet(read_fleet({**data, "simulator": simulator}, "", os.environ))
     return [*dict.fromkeys((*found.of_rewrites, *found.fleet.table.problems))]
 
@@ -51,7 +55,7 @@ def test_an_error_of_the_lint_is_one_of_the_fleet(code: str, tmp_path: Path) -> 
     file = described(RULES[code], tmp_path)
     wrong = {it.code for it in lint_file(str(file), Settings()) if it.level == ERROR}
     try:
-        told = Counter(it.code for it in said(file) if it.level != NOTE)
+        told = Counter(it.code for it in said(file, layout="tf-per-robot") if it.level != NOTE)
     except MultibotError:
         return
     assert wrong <= told.keys()
@@ -85,6 +89,50 @@ def test_a_plugin_without_its_file_of_controllers(
     block = GAZEBO.format("").replace("  <plugin", f"  {comment}\n  <plugin")
     file.write_text(f'<robot name="r">\n{LINK.format(SOLID)}\n{block}</robot>')
     assert [it.code for it in said(file, simulator) if it.code == "MB234"] == expected
+
+
+MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.formats and it.bad]
+# A system of the world is moved from the description to the world.
+ELSEWHERE = {"MB160"}
+
+
+@pytest.mark.sample(12)
+@pytest.mark.slow
+@pytest.mark.parametrize("simulator", ["gazebo", "", "none"])
+@pytest.mark.parametrize("code", MAY_BE)
+def test_the_built_folder_has_the_errors_of_its_build(
+    code: str, simulator: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Built in spite of what ``build`` calls wrong, ``check-launch`` calls the same wrong."""
+    file, fleet, out = described(RULES[code], tmp_path), tmp_path / "fleet.yaml", tmp_path / "out"
+    said = f"simulator: {simulator}\n" if simulator else ""
+    fleet.write_text(
+        f"{said}layout: frames-per-robot\ndistro: jazzy\ndescription: {file}\n{ROBOTS}"
+    )
+
+    def errors(*words: str) -> tuple[int, set[str]]:
+        ended = main([*words, "-q"])
+        return ended, set(re.findall(r" error: (M\w\d+)", "".join(capsys.readouterr())))
+
+    build = ("build", str(fleet), "-o", str(out))
+    ended, wrong = errors(*build)
+    if ended and errors(*build, *(f"--ignore={it}" for it in wrong))[0]:
+        return  # the rewrite itself refuses it
+    ended, found = errors("check-launch", str(out / "fleet.launch.py"))
+    assert found <= wrong
+    assert {it for it in wrong if it.startswith("MB")} - ELSEWHERE <= found
+    assert bool(found) == (ended == 1)
+
+
+def test_a_name_that_the_rewrite_changes_is_no_error(tmp_path: Path) -> None:
+    """sdformat reserves ``world`` for joints: robot1/world is none of these."""
+    file = tmp_path / "robot.urdf"
+    joint = '<joint name="world" type="fixed"><parent link="base"/><child link="a"/></joint>'
+    file.write_text(f'<robot name="r">{LINK.format(SOLID)}<link name="a"/>{joint}</robot>')
+    named = {"frames-per-robot": [], "tf-per-robot": [("MB306", ERROR)]}
+    for layout, expected in named.items():
+        found = [(it.code, it.level) for it in said(file, layout=layout) if it.code == "MB306"]
+        assert found == expected
 
 
 @pytest.mark.more

@@ -236,8 +236,12 @@ def test_a_manager_in_a_plugin_is_not_started_besides(
 @pytest.mark.slow
 def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None:
     """Brought up twice, the second fails, and the manager gives all of its nodes up."""
-    listed = "lifecycle_manager_navigation:\n  ros__parameters: {node_names: [slam_toolbox]}\n"
-    (tmp_path / "slam.yaml").write_text(listed)
+    of_nav2 = "controller_server, smoother_server, planner_server, behavior_server, bt_navigator, "
+    of_nav2 += "waypoint_follower, velocity_smoother, collision_monitor, docking_server"
+    listed = f"ros__parameters: {{node_names: [{of_nav2}, slam_toolbox]}}"
+    own = "ros__parameters: {use_lifecycle_manager: true}"
+    both = f"lifecycle_manager_navigation:\n  {listed}\nslam_toolbox:\n  {own}\n"
+    (tmp_path / "slam.yaml").write_text(both)
     (tmp_path / "fleet.yaml").write_text(
         "layout: tf-per-robot\ndistro: jazzy\ndescription: hexbase.urdf.xacro\n"
         f"stack: nav2_slam\ncompanions: {{params: slam.yaml}}\n{TWO}"

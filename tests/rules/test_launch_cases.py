@@ -355,6 +355,8 @@ DRIVE, SYSTEM = (
     PLUGIN.format("DiffDrive", "diff-drive", "{}"),
     PLUGIN.format("Sensors", "sensors", ""),
 )
+SENSOR = '<gazebo reference="a"><sensor name="s" type="{}"/></gazebo>'
+SLIDES = '<joint name="j" type="prismatic"><parent link="a"/><child link="b"/></joint>'
 JOINED = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
 
 
@@ -370,6 +372,12 @@ JOINED = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/><
         (LINK + '<link name="b"/>' + JOINED, [], ["MB603 warning"]),
         (LINK + DRIVE.format("<wheel_diameter>1</wheel_diameter>"), [], ["MB163 warning"]),
         (LINK + DRIVE.format("<wheel_radius>1</wheel_radius>"), [], []),
+        (LINK + LINK.replace('"a"', '"b"'), ["MB501 error"], ["MB501 error"]),
+        (LINK + LINK.replace('"a"', '"b"') + SLIDES, ["MB509 error"], ["MB509 error"]),
+        (LINK.replace('ixx="1"', 'ixx="-1"'), ["MB606 warning"], ["MB606 error"]),
+        (LINK.replace('"a"', '"a::b"'), ["MB305 warning"], ["MB305 error"]),
+        (LINK + SENSOR.format("no_lidar"), [], ["MB124 error"]),
+        (LINK + SENSOR.format("gpu_lidar"), [], []),
         # A warning of the lint is no fault of a launch.
         (LINK + '<gazebo><mass value="1"/></gazebo>', [], []),
         (LINK + SYSTEM, [], []),

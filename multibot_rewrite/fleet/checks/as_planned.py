@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
+from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
 from multibot_rewrite.rules.system import (
     clocks,
@@ -98,6 +99,8 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     """Empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
         return ERROR if _is_of_launch(it, planned, seen, started) else ""
+    if it.code in CLAIMS and it.level == WARNING:
+        return ERROR
     if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
     if it.code == tf_pieces.tf_tree_in_pieces.code:

@@ -17,22 +17,31 @@ def wrong_in_descriptions(
 ) -> Iterator[Finding]:
     """What stops robots with these descriptions, each once; the ``simulated`` ones run in Gazebo."""
     in_gazebo = {it.source.file for it in simulated}
-    documents = {one.file: (one, it) for it in members for one in (it.sent, it.source)}
-    for file, (document, it) in documents.items():
+    documents = {
+        source.file: (source, made.document, it)
+        for it in members
+        for source, made in ((it.sent, it.described), (it.source, it.inventory))
+    }
+    for file, (document, made, it) in documents.items():
         distro = it.vocabulary.release
         settings = Settings(vocabulary=vocabulary, distro=distro, simulated=file in in_gazebo)
         told = {(one.code, one.message) for one in it.shared}
-        for one in _linted(document, settings):
+        for one in _linted(document, made, settings):
             if (one.code, one.message) not in told:
                 yield one
 
 
-def _linted(document: Document, settings: Settings) -> Iterator[Finding]:
+def _linted(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
+    """What is wrong with a document, but for what is well in the one that was ``made`` of it."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.described import in_use, may_stop
     from multibot_rewrite.lint.files.subjects import make_subject
+    from multibot_rewrite.rules.description.names.links_and_joints import reserved_name
 
     found = lint_subject(make_subject(document, settings), may_stop)
     asked = unsuppressed(found, {document.file: document.source}, settings)
+    if any(it.code == reserved_name.code for it in asked):
+        left = lint_subject(make_subject(made, settings), lambda it: it is reserved_name)
+        asked = [it for it in asked if left or it.code != reserved_name.code]
     return in_use(asked, document, settings.simulated)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
@@ -27,10 +27,12 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
+from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, would_run
+from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
+from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.system.records import Place, System
 
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
@@ -60,9 +62,22 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
-        seen = would_run(graph, _known(plan))
-        wrong = not_as_planned(made.planned, seen, made.started, made.findings)
+        made_of_it = launched(graph, _known(plan))
+        seen, told = made_of_it.system, (*made.findings, *plan.fleet.table.problems)
+        wrong = [
+            *not_as_planned(made.planned, seen, made.started, made.findings),
+            *_of_launch(made_of_it, {it.code for it in told if it.level == ERROR}),
+        ]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
+
+
+def _of_launch(found: Launched, told: Set[str]) -> Iterator[Finding]:
+    """What ``multibot check-launch`` calls an error and the build has not ``told``. Descriptions and
+    parameters were asked as they are in the sources."""
+    from multibot_rewrite.lint.launched import bridge_findings
+
+    every = (*judge_launch(found), *bridge_findings(found))
+    yield from (it for it in every if it.level == ERROR and it.code not in told)
 
 
 def _known(plan: FleetPlan) -> Knowledge:
@@ -127,4 +142,5 @@ def _fault(message: str, place: Place, home: str) -> Finding:
 
 def _in_folder(it: Finding, home: str) -> Finding:
     """The finding with the file of the folder that it is about."""
-    return it._replace(file=it.file.replace(f"{home}/", ""))
+    file, message, hint = (one.replace(f"{home}/", "") for one in (it.file, it.message, it.hint))
+    return it._replace(file=file, message=message, hint=hint)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -21,6 +22,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.world_systems import systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
+from multibot_rewrite.rules.facts.simulators import DRIVES
 
 FILE = "world.sdf"
 # The release whose Gazebo has libraries of the old name.
@@ -81,7 +83,8 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
     given = plan.file.simulator_world
     if given:
         simulated = [it for it in plan.robots if is_simulated(it)]
-        systems = "".join(_lacking(given, ours, usual).values())
+        spawning = {it: usual[it] for it in _to_spawn(simulated)}
+        systems = "".join(_lacking(given, spawning, ours, usual).values())
         data, findings = own_world(given, simulated, systems, *plan.file.world_place)
         yield OutputFile(FILE, data, (given,))
         yield from findings
@@ -105,17 +108,27 @@ def _of_library(library: str) -> str:
     return library.removeprefix("gz-sim-").removesuffix("-system")
 
 
-def _lacking(path: str, ours: Mapping[str, str], usual: Mapping[str, str]) -> Mapping[str, str]:
+def _to_spawn(robots: Sequence[RewrittenRobot]) -> list[str]:
+    """The systems with which robots are spawned, and move (MG706)."""
+    roots = [it.member.inventory.document.root for it in robots]
+    libraries = {library_key(it.get("filename", "")) for one in roots for it in one.iter("plugin")}
+    return ["user-commands", *(["physics"] if libraries & DRIVES.keys() else [])] if robots else []
+
+
+def _lacking(
+    path: str, spawning: Mapping[str, str], ours: Mapping[str, str], usual: Mapping[str, str]
+) -> Mapping[str, str]:
     """The systems that a world lacks; to one that names none those are added that Gazebo gives it."""
     world = read_document(read_file(path), path).root.find("world")
     plugins = world.iterchildren("plugin") if world is not None else ()
     there = [it.get("filename") or "" for it in plugins]
-    lacking = {
+    if not there:
+        return {**usual, **ours} if ours else {}
+    return {
         library: text
-        for library, text in ours.items()
+        for library, text in {**spawning, **ours}.items()
         if not any(f"-{library}-system" in it for it in there)
     }
-    return lacking if there or not lacking else {**usual, **lacking}
 
 
 def _system(kind: str, library: str, name: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
@@ -153,10 +154,12 @@ def _heard(nodes: Iterable[RunningNode], sensors: Sequence[SensorFrame]) -> Iter
     for it in nodes:
         for end, inside in bridged_by(it):
             sensor = sensor_on(inside, sensors)
-            if end.role == PUBLISHES and sensor:
-                bound = bound_of(it.name, it.namespace, it.rules)
-                name = resolve_bound(end.name, end.kind, bound)
-                yield Heard(name, sensor.frame, link=sensor.link)
+            # A node with a name that ROS refuses does not start.
+            with suppress(UsageError):
+                if end.role == PUBLISHES and sensor:
+                    bound = bound_of(it.name, it.namespace, it.rules)
+                    name = resolve_bound(end.name, end.kind, bound)
+                    yield Heard(name, sensor.frame, link=sensor.link)
 
 
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:

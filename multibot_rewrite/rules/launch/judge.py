@@ -19,7 +19,7 @@ from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
-_CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
+CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
 MODULES = (ending, joints, models, rows, started, words, world)
 
 
@@ -34,7 +34,7 @@ RULES = tuple(sorted(_rules(), key=lambda it: it.code))
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
     """A finding about the system of a launch. A claim that no hardware meets is an error, since all
     that is started is known; a tree in pieces is a warning where more may be started."""
-    if it.code in _CLAIMS and it.level == WARNING:
+    if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
     if it.code == tf_tree_in_pieces.code and it.level == ERROR:
         moved = any(one.spawned and has_plugin(one.text.encode()) for one in launched.models.found)

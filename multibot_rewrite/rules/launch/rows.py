@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
@@ -38,9 +40,12 @@ class _Row(NamedTuple):
 def _rows(launched: Launched) -> Iterator[_Row]:
     for it in launched.nodes:
         for end, inside in bridged_by(it):
-            if end.kind == TOPIC:
-                full = resolve_bound(end.name, end.kind, bound_of(it.name, it.namespace, it.rules))
-                yield _Row(full, inside, end.role == SUBSCRIBES, it)
+            # A node with a name that ROS refuses does not start.
+            with suppress(UsageError):
+                if end.kind == TOPIC:
+                    bound = bound_of(it.name, it.namespace, it.rules)
+                    full = resolve_bound(end.name, end.kind, bound)
+                    yield _Row(full, inside, end.role == SUBSCRIBES, it)
 
 
 def into_gazebo(launched: Launched) -> set[str]:
