@@ -61,12 +61,19 @@ def loads_hardware(root: _Element) -> bool:
 
 def suits_simulator(root: _Element) -> bool:
     """Can a simulator's controller manager load its hardware?"""
+    if _lacks_a_class(root):
+        return False
     return not loads_hardware(root) or all(map(may_be_simulated, hardware_classes(root)))
 
 
 def suits_real(root: _Element) -> bool:
     """Is none of its hardware a simulator's?"""
-    return not any(map(of_simulator, hardware_classes(root)))
+    return not (_lacks_a_class(root) or any(map(of_simulator, hardware_classes(root))))
+
+
+def _lacks_a_class(root: _Element) -> bool:
+    """Is there hardware of which another argument names the class?"""
+    return len(root.findall(".//ros2_control/hardware")) > len(hardware_classes(root))
 
 
 def switch_for(
