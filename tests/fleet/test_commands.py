@@ -79,6 +79,7 @@ HARDWARE = """\
         ("", False),
         (MASS, True),
         (HARDWARE, False),
+        (f"{MASS}{HARDWARE}", False),
         (f'{HARDWARE}<gazebo reference="base_link"><mu1>1</mu1></gazebo>', False),
         (f'{MASS}{HARDWARE}<gazebo><plugin name="p" filename="libacme.so"/></gazebo>', True),
     ],
@@ -92,6 +93,33 @@ def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(
     (tmp_path / "fleet.yaml").write_text("robots: [{name: robot1, description: arm.urdf}]\n")
     made = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode()
     assert ("ros_gz_sim create" in made) == spawned
+
+
+@pytest.mark.parametrize(
+    ("said", "inside", "spawned", "told"),
+    [
+        ("", "", False, True),
+        ("", MASS, True, False),
+        ("", HARDWARE, False, True),
+        ("", f"{MASS}{HARDWARE}", False, False),
+        ("simulator: gazebo\n", f"{MASS}{HARDWARE}", True, False),
+        ("simulator: none\n", "", False, False),
+        ("simulator: none\n", MASS, False, False),
+    ],
+)
+def test_the_fleet_file_says_whether_a_robot_is_spawned_or_its_description_does(
+    said: str, inside: str, spawned: bool, told: bool, tmp_path: Path
+) -> None:
+    """Gazebo spawns nothing of a robot without mass, and one that nobody simulates has a driver."""
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="arm"><link name="base_link"/>{inside}</robot>'
+    )
+    (tmp_path / "fleet.yaml").write_text(f"{said}robots: [{{name: r1, description: arm.urdf}}]\n")
+    made = load_fleet(tmp_path / "fleet.yaml").made
+    text = next(it for it in made.files if it.path == "fleet.launch.py").data.decode()
+    assert ("executable='create'" in text) == spawned
+    notes = [it for it in made.findings if it.code == "MF828"]
+    assert ["'r1' has no mass" in it.message for it in notes] == [True] * told
 
 
 MODEL = """\

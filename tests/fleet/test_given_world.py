@@ -97,6 +97,38 @@ def test_the_sensors_of_the_robots_run_in_it(fleet: Path) -> None:
 
 
 @pytest.mark.more
+@pytest.mark.parametrize(
+    ("named", "drive", "added"),
+    [
+        ("physics", False, ["user-commands"]),
+        ("scene-broadcaster", False, ["user-commands"]),
+        ("scene-broadcaster", True, ["user-commands", "physics"]),
+        ("user-commands", False, []),
+        ("", True, []),
+    ],
+)
+def test_a_world_that_names_systems_spawns_and_moves_the_robots(
+    named: str, drive: bool, added: list[str], fleet: Path
+) -> None:
+    """gz-sim ServerConfig.cc: only a world without any system gets those of server.config."""
+    plugin = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::X"/>'
+    world = plugin.format(named) if named else ""
+    (fleet.parent / "lake.sdf").write_text(
+        f'<sdf version="1.9"><world name="w">{world}</world></sdf>'
+    )
+    model = fleet.parent / "boat" / "model.sdf"
+    text = model.read_text().replace(BOAT.partition("\n")[2], "")
+    body = '<sdf version="1.9"><model name="boat"><link name="hull"/>{}</model></sdf>'
+    wheels = '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>'
+    assert text
+    model.write_text(body.format(wheels if drive else ""))
+    files = [it.get("filename") for it in _built(fleet).iter("plugin")]
+    assert [it for it in files if it != f"gz-sim-{named}-system"] == [
+        f"gz-sim-{it}-system" for it in added
+    ]
+
+
+@pytest.mark.more
 def test_what_stands_before_all_links_is_the_name_that_it_is_spawned_by(fleet: Path) -> None:
     """As in vrx_urdf's wamv_gazebo: wamv/base_link, wamv/gps_link; here with a part of a part."""
     model = fleet.parent / "boat" / "model.sdf"

@@ -155,6 +155,28 @@ def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
     assert all(it.file == "fleet.launch.py" and it.line for it in own)
 
 
+# Faults that a launch file alone shows, and where each is told.
+LAUNCHED: Mapping[str, tuple[Edit, str, str]] = {
+    "a lifecycle node is in no list": (
+        in_launch(lambda it: it.replace('  "smoother_server",', "", 1)),
+        *("MG726", "fleet.launch.py"),
+    ),
+    "a row of the bridge has another type in Gazebo": (
+        in_file("robot1/bridge.yaml", "gz.msgs.LaserScan", "gz.msgs.Image"),
+        *("MB879", "robot1/bridge.yaml"),
+    ),
+}
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("name", LAUNCHED)
+def test_what_check_launch_finds_in_the_folder_is_an_error(name: str) -> None:
+    edit, code, file = LAUNCHED[name]
+    plan, made = fleet()
+    found = [it for it in read_back(plan, edited(made, edit), OUT) if it.code == code]
+    assert {(it.level, it.file, bool(it.line)) for it in found} == {(ERROR, file, True)}
+
+
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["a rule is lost", "a node is lost", "a node has no description"])

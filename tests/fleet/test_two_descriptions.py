@@ -124,6 +124,24 @@ def test_what_does_not_fit_is_said(changed: dict[str, str], said: str, tmp_path:
     assert [(it.line, said in it.message) for it in found] == [(7, True)]
 
 
+@pytest.mark.more
+def test_a_fault_of_either_is_an_error(tmp_path: Path) -> None:
+    """urdfdom takes no second root: robot_state_publisher would not start, whatever Gazebo gets."""
+    path = written(tmp_path, "tf-per-robot", joint="wheel_joint")
+    urdf, sdf = tmp_path / "rover.urdf", tmp_path / "rover.sdf.xacro"
+
+    def wrong() -> set[tuple[str, str]]:
+        problems = plan_fleet(read_fleet(path, "", {})).fleet.table.problems
+        found = (it for it in problems if it.level == "error")
+        return {(it.code, Path(it.file).name.partition(" ")[0]) for it in found}
+
+    assert wrong() == set()
+    urdf.write_text(urdf.read_text().replace("</robot>", '<link name="loose"/></robot>'))
+    assert wrong() == {("MB501", "rover.urdf")}
+    sdf.write_text(sdf.read_text().replace('type="gpu_lidar"', 'type="no_lidar"'))
+    assert wrong() == {("MB501", "rover.urdf"), ("MB124", "rover.sdf.xacro")}
+
+
 def test_a_real_robot_has_no_model(tmp_path: Path) -> None:
     _, text = made(tmp_path, "tf-per-robot", joint="axle", more="simulator: none\n")
     assert "robot1/rover.sdf" not in text

@@ -398,6 +398,22 @@ def test_what_is_wrong_with_a_description_that_is_sent_or_spawned(
     assert told(started(*create, arguments=("-name", "r", "-string", robot))) == spawned
 
 
+def test_a_row_with_a_name_that_ros_refuses_ends_its_node_alone(known: Knowledge) -> None:
+    """rcl expands no {name}; a name begins with no digit (rcl expand_topic_name.c, rmw)."""
+    lidar = f'<robot name="r">{LINK}{SENSOR.format("gpu_lidar")}</robot>'.replace("</sensor>", "")
+    spawn = started("ros_gz_sim", "create", "create", arguments=("-name", "r", "-string", lidar))
+    rows = [
+        started(
+            *("ros_gz_bridge", "parameter_bridge", f"bridge{at}"),
+            arguments=(f"/{name}@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan",),
+        )
+        for at, name in enumerate(("{name}/scan", "1scan", "scan"))
+    ]
+    found = launched(LaunchGraph((spawn, *rows), ()), known)
+    assert [it.name for it in found.system.ends if it.name.endswith("scan")] == ["/scan"]
+    assert judge_launch(found) is not None
+
+
 def test_a_system_of_the_world_is_loaded_again_with_a_second_model(known: Knowledge) -> None:
     robot = f'<robot name="r">{LINK}{SYSTEM}</robot>'
     spawn = [

@@ -82,13 +82,14 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
     owners = {f"/{one.gz.lstrip('/')}": it.name for it in models for one in it.topics}
     names = set(owners.values())
     rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
+    spaces = {word for it in launched.nodes for word in it.namespace.split("/") if word}
     usual = {_plain(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}
     for it in rows:
         own, words = owners[it.gz], set(it.ros.split("/"))
         others = sorted(names & words - {own})
         if others and own not in words:
             message = f"{it.ros} of {others[0]} is bridged to gz topic {it.gz} of {own}"
-        elif own not in words and any(gz == _plain(it, own)[1] for _, gz in usual):
+        elif not words & {own, *spaces} and any(gz == _plain(it, own)[1] for _, gz in usual):
             message = f"{it.ros} is bridged to gz topic {it.gz} of {own}, and has no robot's name"
         else:
             continue

@@ -75,6 +75,22 @@ def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
 
 
 @pytest.mark.more
+@pytest.mark.parametrize(("default", "arguments"), [("false", {"use_sim": "true"}), ("true", None)])
+def test_hardware_without_a_class_is_of_the_other_world(
+    default: str, arguments: dict[str, str] | None, folder: Path
+) -> None:
+    write(folder, "use_sim", default)
+    file = folder / "rover.urdf.xacro"
+    of_real = '<xacro:unless value="$(arg use_sim)"><plugin>acme/Driver</plugin></xacro:unless>'
+    text = file.read_text()
+    assert of_real in text
+    plugin = '<plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>'
+    at, end = text.index("<gazebo>"), text.index("</gazebo>")
+    file.write_text(f"{text[:at]}<gazebo>{plugin}{text[end:]}".replace(of_real, ""))
+    assert fleet_of(folder).get("arguments") == arguments
+
+
+@pytest.mark.more
 def test_the_parameters_that_the_description_loads_go_before_those_called_like_it(
     folder: Path,
 ) -> None:
