@@ -131,7 +131,8 @@ def _with_bridge_and_findings(
 ) -> Fleet:
     """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
     table = with_meetings(fleet.table, members, fleet.naming)
-    found = wrong_in_descriptions(members, vocabulary, filter(is_for_simulator, members))
+    simulated = filter(is_for_simulator, members)
+    found = wrong_in_descriptions(members, vocabulary, simulated, members)
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *wrong, *findings))

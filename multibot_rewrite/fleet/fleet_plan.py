@@ -38,7 +38,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.simulators import is_simulated, may_be_real, note
+from multibot_rewrite.fleet.robots.simulators import is_said, is_simulated, may_be_real, note
 from multibot_rewrite.fleet.robots.world_systems import without_world_systems
 from multibot_rewrite.spelling.table_checks import UNREACHABLE_NAME
 
@@ -145,7 +145,8 @@ def _fleet(
     domains = {it.robot: it.number for it in file.apart.domains}
     table = with_meetings(fleet.table, members, naming, written, domains)
     simulated = [it.member for it in robots if is_simulated(it)]
-    wrong = wrong_in_descriptions(members, file.vocabulary, simulated)
+    said = [it.member for it in robots if is_said(it)]
+    wrong = wrong_in_descriptions(members, file.vocabulary, simulated, said)
     told = (*declared_twice(robots, naming, table), *other_manager(robots, table), *wrong)
     every = (
         it for it in table.problems if it.code != UNREACHABLE_NAME.code or not _never_meet(file)

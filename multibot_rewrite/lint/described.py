@@ -35,6 +35,11 @@ def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Ite
             yield it._replace(level=level)
 
 
+def is_of_simulator(it: Finding, document: Document) -> bool:
+    """Is a finding no error where the description is only sent?"""
+    return _only_sent(it, document) != ERROR
+
+
 def _in_simulator(it: Finding) -> str:
     if it.level == ERROR:
         return WARNING if it.code in _SHAPES else ERROR

@@ -92,6 +92,9 @@ def test_it_is_one_unless_the_robot_is_real(
     code = ended(tmp_path, simulator, wheel="", more=DRIVE)
     said = [it for it in capsys.readouterr().err.splitlines() if "MB603" in it]
     assert [f"{level}: MB603" in it for it in said] == ([True] if level else [])
+    assert ["; for a real robot write simulator: none)" in it for it in said] == (
+        [not simulator] if level else []
+    )
     assert code == (1 if level == "error" else 0)
 
 

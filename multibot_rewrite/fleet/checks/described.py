@@ -6,17 +6,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings
 
+_REAL = "for a real robot write simulator: none"
+
 
 def wrong_in_descriptions(
-    members: Iterable[Member], vocabulary: tuple[str, ...], simulated: Iterable[Member]
+    members: Iterable[Member],
+    vocabulary: tuple[str, ...],
+    simulated: Iterable[Member],
+    said: Iterable[Member] = (),
 ) -> Iterator[Finding]:
-    """What stops robots with these descriptions, each once; the ``simulated`` ones run in Gazebo."""
-    in_gazebo = {it.source.file for it in simulated}
+    """What stops robots with these descriptions, each once; the ``simulated`` ones run in Gazebo. That
+    they do is ``said`` of some; of the others a hint says how to say that they do not."""
+    in_gazebo, sure = ({it.source.file for it in its} for its in (simulated, said))
     documents = {
         source.file: (source, made.document, it)
         for it in members
@@ -26,16 +32,18 @@ def wrong_in_descriptions(
         distro = it.vocabulary.release
         settings = Settings(vocabulary=vocabulary, distro=distro, simulated=file in in_gazebo)
         told = {(one.code, one.message) for one in it.shared}
-        for one in _linted(document, made, settings):
+        for one in _linted(document, made, settings, file in in_gazebo - sure):
             if (one.code, one.message) not in told:
                 yield one
 
 
-def _linted(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
+def _linted(
+    document: Document, made: Document, settings: Settings, may_be_real: bool
+) -> Iterator[Finding]:
     """What is wrong with a document, but for what is well in the one that was ``made`` of it."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
-    from multibot_rewrite.lint.described import in_use, may_stop
+    from multibot_rewrite.lint.described import in_use, is_of_simulator, may_stop
     from multibot_rewrite.lint.files.subjects import make_subject
     from multibot_rewrite.rules.description.names.links_and_joints import reserved_name
 
@@ -44,4 +52,6 @@ def _linted(document: Document, made: Document, settings: Settings) -> Iterator[
     if any(it.code == reserved_name.code for it in asked):
         left = lint_subject(make_subject(made, settings), lambda it: it is reserved_name)
         asked = [it for it in asked if left or it.code != reserved_name.code]
-    return in_use(asked, document, settings.simulated)
+    for it in in_use(asked, document, settings.simulated):
+        told = may_be_real and it.level == ERROR and is_of_simulator(it, document)
+        yield it._replace(hint=f"{it.hint}; {_REAL}" if it.hint else _REAL) if told else it

@@ -137,18 +137,19 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
     """Has its description something for a simulator, and does nothing say that it runs in one?"""
-    return evidence.unsimulated and not _said(robot) and has_parts_for_simulator(robot.member)
+    return evidence.unsimulated and not is_said(robot) and has_parts_for_simulator(robot.member)
 
 
 def is_simulated(robot: RewrittenRobot) -> bool:
     """Does it run in a simulator? As the fleet file says, else by its description."""
-    if _said(robot):
+    if is_said(robot):
         return robot.spec.simulator != REAL
     return bool(robot.spec.simulated) or is_for_simulator(robot.member)
 
 
-def _said(robot: RewrittenRobot) -> object:
-    return robot.spec.simulator or robot.spec.companions.get("bridge")
+def is_said(robot: RewrittenRobot) -> bool:
+    """Does its fleet file say whether it runs in a simulator?"""
+    return bool(robot.spec.simulator or robot.spec.companions.get("bridge"))
 
 
 def note(robot: RewrittenRobot) -> Finding:

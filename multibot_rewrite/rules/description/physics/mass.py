@@ -93,7 +93,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "plugins or sensors of a simulator, or the robot runs in one.",
     why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
     "do not need it.",
-    fix="Add <inertial> to the links; for a real robot write `simulator: none` in the fleet file.",
+    fix="Add <inertial> to the links, if the robot is to be simulated.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
