@@ -32,9 +32,13 @@ from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
+from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.launch.judge import judge_launch
+from multibot_rewrite.rules.launch.started import no_description
 from multibot_rewrite.system.records import Place, System
 
+# What a stack leaves to another launch file: a description that is spawned, a controller manager.
+_OF_OTHERS = frozenset({no_description.code, NO_MANAGER.code})
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
 
 
@@ -77,7 +81,7 @@ def _of_launch(found: Launched, told: Set[str]) -> Iterator[Finding]:
     from multibot_rewrite.lint.launched import bridge_findings
 
     every = (*judge_launch(found), *bridge_findings(found))
-    yield from (it for it in every if it.level == ERROR and it.code not in told)
+    yield from (it for it in every if it.level == ERROR and it.code not in told | _OF_OTHERS)
 
 
 def _known(plan: FleetPlan) -> Knowledge:
