@@ -73,7 +73,7 @@ def suits_real(root: _Element) -> bool:
 
 def _lacks_a_class(root: _Element) -> bool:
     """Is there hardware of which another argument names the class?"""
-    return len(root.findall(".//ros2_control/hardware")) > len(hardware_classes(root))
+    return any(it.find("plugin") is None for it in root.iterfind(".//ros2_control/hardware"))
 
 
 def switch_for(

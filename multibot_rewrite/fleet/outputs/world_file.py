@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -22,7 +21,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.world_systems import systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
-from multibot_rewrite.rules.facts.simulators import DRIVES
+from multibot_rewrite.rules.facts.simulators import needed_systems
 
 FILE = "world.sdf"
 # The release whose Gazebo has libraries of the old name.
@@ -83,7 +82,8 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
     given = plan.file.simulator_world
     if given:
         simulated = [it for it in plan.robots if is_simulated(it)]
-        spawning = {it: usual[it] for it in _to_spawn(simulated)}
+        models = [(it.spec.model, it.member.inventory.document.root) for it in simulated]
+        spawning = {it: usual[it] for it, _ in needed_systems(models) if it in usual}
         systems = "".join(_lacking(given, spawning, ours, usual).values())
         data, findings = own_world(given, simulated, systems, *plan.file.world_place)
         yield OutputFile(FILE, data, (given,))
@@ -106,13 +106,6 @@ def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
 
 def _of_library(library: str) -> str:
     return library.removeprefix("gz-sim-").removesuffix("-system")
-
-
-def _to_spawn(robots: Sequence[RewrittenRobot]) -> list[str]:
-    """The systems with which robots are spawned, and move (MG706)."""
-    roots = [it.member.inventory.document.root for it in robots]
-    libraries = {library_key(it.get("filename", "")) for one in roots for it in one.iter("plugin")}
-    return ["user-commands", *(["physics"] if libraries & DRIVES.keys() else [])] if robots else []
 
 
 def _lacking(

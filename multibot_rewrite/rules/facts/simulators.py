@@ -8,13 +8,14 @@ the plugins the vocabulary.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.knowledge.worlds import SYSTEMS
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -31,6 +32,7 @@ class Simulator(NamedTuple):
     takes: tuple[str, ...]
 
 
+_PHYSICS, _SPAWNS = "physics", "user-commands"
 _TAKES = ("position", "velocity", "effort")
 GAZEBO = Simulator(
     "Gazebo",
@@ -121,3 +123,26 @@ def simulator_of(plugin: _Element) -> Simulator:
 def library_of(plugin: _Element) -> str:
     """The library of a plugin without version and ending."""
     return library_key(plugin.get("filename", "").strip().rpartition("/")[2])
+
+
+def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
+    """The systems that a world of Gazebo needs for models, by name and description: each once, with
+    the reason. Source: user_commands of gz-sim8 spawns entities."""
+    every = list(models)
+    if every:
+        yield _SPAWNS, f"{every[0][0]} is not spawned"
+    libraries = [
+        (name, library_key(one.get("filename", "")))
+        for name, root in every
+        for one in root.iter("plugin")
+    ]
+    moved = next((name for name, it in libraries if it in DRIVES), "")
+    if moved:
+        yield _PHYSICS, f"{moved} does not move"
+    first: dict[str, str] = {}
+    for name, root in every:
+        for sensor in root.iter("sensor"):
+            system, _ = SYSTEMS.get(sensor.get("type", ""), ("", ""))
+            if system:
+                first.setdefault(system, f"{sensor.get('name')} of {name} sends nothing")
+    yield from first.items()

@@ -8,22 +8,20 @@ entities); src/systems/sensors and the systems of other sensors.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.knowledge.worlds import DEFAULTS, SYSTEMS
+from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
     Launched,
     World,
     models_in_simulator,
     worlds,
 )
-from multibot_rewrite.rules.facts.simulators import DRIVES
+from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.launch.declaration import ROVERS, at, create_of, launch_of, launch_rule
 
-_PHYSICS, _SPAWNS = "physics", "user-commands"
 _PLUGIN = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"/>'
 _WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>\n'
 _SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(HERE / "{}.sdf")])'
@@ -57,7 +55,7 @@ def without_system(launched: Launched) -> Iterator[Finding]:
     brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
     for world in worlds(launched):
         there = _systems(world)
-        for system, why in _needed(models):
+        for system, why in needed_systems((it.name, it.root) for it in models):
             if system not in {*there, *brought}:
                 message = f"world {world.file} does not load the system {system}: {why}"
                 hint = f'add <plugin filename="gz-sim-{system}-system" .../> to the world'
@@ -71,24 +69,3 @@ def _systems(world: World) -> set[str]:
 
 def _system(library: str) -> str:
     return library_key(library).removeprefix("gz-sim-").removesuffix("-system")
-
-
-def _needed(models: Sequence[InSimulator]) -> Iterator[tuple[str, str]]:
-    """Each system once, with the reason."""
-    if models:
-        yield _SPAWNS, f"{models[0].name} is not spawned"
-    libraries = [
-        (it.name, library_key(one.get("filename", "")))
-        for it in models
-        for one in it.root.iter("plugin")
-    ]
-    moved = next((name for name, it in libraries if it in DRIVES), "")
-    if moved:
-        yield _PHYSICS, f"{moved} does not move"
-    first: dict[str, str] = {}
-    for model in models:
-        for sensor in model.root.iter("sensor"):
-            system, _ = SYSTEMS.get(sensor.get("type", ""), ("", ""))
-            if system:
-                first.setdefault(system, f"{sensor.get('name')} of {model.name} sends nothing")
-    yield from first.items()
