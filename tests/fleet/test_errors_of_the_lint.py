@@ -46,7 +46,8 @@ def said(file: Path, simulator: str = "gazebo", layout: str = "frames-per-robot"
         for at, name in enumerate(("robot1", "robot2"))
     ]
     data = {"layout": layout, "distro": "jazzy", "robots": robots}
-    found = plan_fleet(read_fleet({**data, "simulator": simulator}, "", os.environ))
+    data = {**data, "simulator": simulator} if simulator else data
+    found = plan_fleet(read_fleet(data, "", os.environ))
     return [*dict.fromkeys((*found.of_rewrites, *found.fleet.table.problems))]
 
 
@@ -122,6 +123,28 @@ def test_the_built_folder_has_the_errors_of_its_build(
     assert found <= wrong
     assert {it for it in wrong if it.startswith("MB")} - ELSEWHERE <= found
     assert bool(found) == (ended == 1)
+
+
+MOVING = '<joint name="j" type="continuous"><parent link="base"/><child link="a"/></joint>'
+
+
+@pytest.mark.parametrize(
+    ("simulator", "text", "code", "told"),
+    [
+        ("", '<link name="a"/>' + GAZEBO.format(""), "MB610", True),
+        ("gazebo", '<link name="a"/>' + GAZEBO.format(""), "MB610", False),
+        ("", LINK.format(SOLID) + LINK.format(SOLID).replace("base", "a"), "MB501", False),
+        ("", LINK.format(SOLID) + '<link name="a"/>' + MOVING, "MB603", False),
+    ],
+)
+def test_an_error_of_a_simulator_says_how_to_say_that_there_is_none(
+    simulator: str, text: str, code: str, told: bool, tmp_path: Path
+) -> None:
+    """Only where the fleet file does not say it, and where it would help."""
+    file = tmp_path / "robot.urdf"
+    file.write_text(f'<robot name="r">{text}</robot>')
+    (found,) = [it for it in said(file, simulator) if it.code == code]
+    assert found.hint.endswith("; for a real robot write simulator: none") == told
 
 
 def test_a_name_that_the_rewrite_changes_is_no_error(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ import pytest
 import yaml
 from graph_examples import read_example
 from launched_nodes import AT, started
+from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -28,6 +29,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
@@ -396,6 +398,33 @@ def test_what_is_wrong_with_a_description_that_is_sent_or_spawned(
     create = ("ros_gz_sim", "create", "create")
     assert told(started(*STATE, parameters=with_values({"robot_description": robot}))) == sent
     assert told(started(*create, arguments=("-name", "r", "-string", robot))) == spawned
+
+
+@pytest.mark.parametrize(
+    ("texts", "expected"),
+    [
+        ([], {}),
+        ([LINK], {"user-commands": "r0 is not spawned"}),
+        ([LINK + SYSTEM], {"user-commands": "r0 is not spawned"}),
+        (
+            [LINK, LINK + DRIVE],
+            {"user-commands": "r0 is not spawned", "physics": "r1 does not move"},
+        ),
+        (
+            [LINK + SENSOR.format("gpu_lidar"), LINK + SENSOR.format("camera")],
+            {"user-commands": "r0 is not spawned", "sensors": "s of r0 sends nothing"},
+        ),
+        (
+            [LINK + SENSOR.format("imu") + SENSOR.format("contact")],
+            {"user-commands": "r0 is not spawned", "imu": "s of r0 sends nothing"},
+        ),
+    ],
+)
+def test_what_a_world_needs_for_its_robots(texts: list[str], expected: dict[str, str]) -> None:
+    """gz-sim8: user_commands spawns, physics moves, a sensor has its system."""
+    roots = [etree.fromstring(f"<robot>{it}</robot>") for it in texts]
+    found = needed_systems((f"r{at}", it) for at, it in enumerate(roots))
+    assert dict(found) == expected
 
 
 def test_a_row_with_a_name_that_ros_refuses_ends_its_node_alone(known: Knowledge) -> None:
