@@ -32,7 +32,6 @@ from multibot_rewrite.producers.launch.launched import (
     InSimulator,
     Launched,
     file_of,
-    models_in_simulator,
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.rules.files.bridges import (
@@ -149,7 +148,7 @@ class _Told(NamedTuple):
 
 def bridge_findings(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the rows of bridges, beside all models that the launch file spawns."""
-    models = models_in_simulator(launched)
+    models = launched.simulated
     known = _topics(models) if models and not launched.models.lost else {}
     for told in dict.fromkeys(it for node in launched.nodes for it in _told(node)):
         # Names below the namespace of a bridge are not those of the file.

@@ -53,12 +53,14 @@ class World(NamedTuple):
 
 class Launched(NamedTuple):
     """All that a launch starts: as it is written (``graph``), its nodes as they run, the controllers
-    that spawners load, the descriptions, and the system that it makes in a release."""
+    that spawners load, the descriptions, those in the simulator, and the system that it makes in a
+    release."""
 
     graph: LaunchGraph
     nodes: tuple[RunningNode, ...]
     spawned: tuple[Spawned, ...]
     models: Models
+    simulated: tuple[InSimulator, ...]
     system: System
     release: str
 
@@ -73,10 +75,10 @@ def file_of(graph: LaunchGraph, text: str) -> str:
     return next((it.source for _, it in graph.files if it.text == text and it.source), "")
 
 
-def models_in_simulator(launched: Launched) -> list[InSimulator]:
-    """The models that the launch spawns, as far as their descriptions are known."""
-    found = (_in_simulator(it, launched.release) for it in launched.models.found if it.spawned)
-    return [it for it in found if it is not None]
+def models_in_simulator(models: Models, release: str) -> tuple[InSimulator, ...]:
+    """The models that a launch spawns, as far as their descriptions are known."""
+    found = (_in_simulator(it, release) for it in models.found if it.spawned)
+    return tuple([it for it in found if it is not None])
 
 
 def _in_simulator(it: Model, release: str) -> InSimulator | None:

@@ -113,8 +113,9 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
-    found = Launched(graph, nodes, spawned, models, system, known.release)
-    heard = [*_heard(nodes, sensors_of(models_in_simulator(found)))]
+    simulated = models_in_simulator(models, known.release)
+    found = Launched(graph, nodes, spawned, models, simulated, system, known.release)
+    heard = [*_heard(nodes, sensors_of(simulated))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 

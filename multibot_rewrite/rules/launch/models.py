@@ -15,7 +15,7 @@ from math import dist
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.footprint import filled_by
-from multibot_rewrite.producers.launch.launched import InSimulator, Launched, models_in_simulator
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched
 from multibot_rewrite.rules.launch.declaration import (
     ROVERS,
     at,
@@ -49,7 +49,7 @@ _ODOM = "/model/{}/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
 def name_twice(launched: Launched) -> Iterator[Finding]:
     """Where nothing renames the second one."""
     first: dict[str, InSimulator] = {}
-    for it in models_in_simulator(launched):
+    for it in launched.simulated:
         other = first.setdefault(it.name, it)
         if other is not it and it.words.get(_RENAMES) not in ("true", "1"):
             message = f"spawns a second model {it.name}"
@@ -76,7 +76,7 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
 )
 def in_each_other(launched: Launched) -> Iterator[Finding]:
     """Of descriptions in URDF: a model in SDF may have a pose of its own."""
-    models = [it for it in models_in_simulator(launched) if it.root.tag == "robot"]
+    models = [it for it in launched.simulated if it.root.tag == "robot"]
     placed = [(it, place, filled_by(it.root)) for it in models for place in _place_of(it)]
     level = ERROR if any(any(place) for _, place, _ in placed) else WARNING
     for (one, here, own), (other, there, reach) in combinations(placed, 2):
@@ -106,7 +106,7 @@ def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
 )
 def shared_topic(launched: Launched) -> Iterator[Finding]:
     """Once for two models; transforms of all robots may have one topic."""
-    models = models_in_simulator(launched)
+    models = launched.simulated
     for one, other in combinations(models, 2):
         if one.name == other.name:
             continue
@@ -151,7 +151,7 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
     from multibot_rewrite.rules.launch.rows import into_gazebo
 
     told = into_gazebo(launched)
-    models = models_in_simulator(launched)
+    models = launched.simulated
     reached = {kind for it in models for kind, gz in _read(it) if gz in told}
     for it in models:
         for kind, gz in _read(it):
@@ -186,7 +186,7 @@ def not_brought(launched: Launched) -> Iterator[Finding]:
     from multibot_rewrite.rules.launch.rows import out_of_gazebo
 
     told = out_of_gazebo(launched)
-    models = models_in_simulator(launched)
+    models = launched.simulated
     brought = {_plain(model, one) for model in models for one in _sent(model) if one[1] in told}
     for it in models:
         for kind, gz in _sent(it):

@@ -11,7 +11,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
-from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator
+from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.launch.declaration import (
@@ -78,7 +78,7 @@ def out_of_gazebo(launched: Launched) -> set[str]:
 )
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
     """By the names of the models, where they are in the names of their topics."""
-    models = models_in_simulator(launched)
+    models = launched.simulated
     owners = {f"/{one.gz.lstrip('/')}": it.name for it in models for one in it.topics}
     names = set(owners.values())
     rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]

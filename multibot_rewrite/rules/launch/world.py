@@ -16,7 +16,6 @@ from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.producers.launch.launched import (
     Launched,
     World,
-    models_in_simulator,
     worlds,
 )
 from multibot_rewrite.rules.facts.simulators import needed_systems
@@ -50,7 +49,7 @@ _SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(H
 )
 def without_system(launched: Launched) -> Iterator[Finding]:
     """A robot may bring a system itself."""
-    models = models_in_simulator(launched)
+    models = launched.simulated
     roots = [it.root for it in models]
     brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
     for world in worlds(launched):
