@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import shorten, unique
@@ -11,7 +12,7 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.records import ACTION, TOPIC, End
 
 # The server of an action sends its status.
@@ -26,7 +27,7 @@ _MISSES = (topic_names_miss, server_names_miss)
     NOTE,
     absence=True,
     what="Nodes read topics, or call services, that no known node sends or serves. It is an error where"
-    " a node of the same system does for another robot.",
+    " a node of the same system does for another robot of its kind.",
     why="If nothing else does, these nodes wait for ever.",
     fix="Nothing, if a driver that the fleet does not name sends them; else name its node or stack.",
     bad="running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan as scan\n",
@@ -46,8 +47,13 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     """That another robot has it from a node of the same system is not for a driver outside of it."""
-    elsewhere = {seen.plain(it): it for it in _given(seen) if seen.robot(it) not in ("", robot)}
-    lacked = tuple(it for it in names if robot and seen.plain(it) in elsewhere)
+    wanted = {seen.plain(it) for it in names} if robot else ()
+    elsewhere = {
+        seen.plain(it): it
+        for it in _given(seen)
+        if seen.plain(it) in wanted and _of_its_kind(seen, seen.robot(it), robot)
+    }
+    lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
     rest = tuple(it for it in names if it not in lacked)
     if lacked:
         others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
@@ -60,6 +66,22 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
         hint = "name a stack or nodes that do, if no driver of its own does"
         message = f"no known node sends {shorten(rest, _LISTED)}"
         yield nothing_known_sends.finding(message, hint, robot=robot, names=tuple(rest))
+
+
+def _of_its_kind(seen: Index, other: str, robot: str) -> bool:
+    """Is it another robot of which the nodes that both have send the same frames?"""
+    theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
+    both = theirs.keys() & own.keys()
+    return other not in ("", robot) and all(theirs[it] == own[it] for it in both)
+
+
+@once
+def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
+    """The frames that each node of each robot sends, without the robot's name."""
+    found: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    for it in seen.sent:
+        found[seen.robot(it.node)][seen.plain(it.node)].add(seen.plain_frame(it.child))
+    return found
 
 
 def _given(seen: Index) -> Iterator[str]:
