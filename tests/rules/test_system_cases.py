@@ -971,3 +971,36 @@ def test_velocities_of_nav2_that_pass_the_drive_by(more: list[str], told: bool) 
         "publishes /robot1/cmd_vel, which no node reads; /robot1/diff_drive reads /robot1/drive_vel"
     )
     assert found == ([f"MG308 error /robot1/velocity_smoother: {text}"] if told else [])
+
+
+def _sent(robot: int, *children: str) -> tuple[str, ...]:
+    links = (f"transform robot{robot}/base -> robot{robot}/{it} on /tf" for it in children)
+    return tuple(f"{it} by /robot{robot}/robot_state_publisher" for it in links)
+
+
+@pytest.mark.parametrize(
+    ("frames", "level"),
+    [
+        (("laser", "laser"), "error"),
+        (("", ""), "error"),
+        (("laser", "tool"), "note"),
+        (("laser", "laser wheel"), "note"),
+        # Only nodes that both have are compared.
+        (("laser", ""), "error"),
+    ],
+)
+def test_only_a_robot_of_its_kind_sends_what_another_lacks(
+    frames: tuple[str, str], level: str
+) -> None:
+    """An arm beside a rover has no drive: its joint states come from its own hardware."""
+    lines = [
+        f"/robot1/amcl subscribes /robot1/scan {SCAN} as scan",
+        f"/robot2/amcl subscribes /robot2/scan {SCAN} as scan",
+        f"/robot2/lidar publishes /robot2/scan {SCAN}",
+        *(it for at, words in enumerate(frames, 1) for it in _sent(at, *words.split())),
+    ]
+    assert [it for it in said(*lines) if it.startswith("MG316")] == [
+        f"MG316 {level} robot1: "
+        + ("no node sends /robot1/scan, and one sends /robot2/scan" if level == "error" else
+           "no known node sends /robot1/scan")
+    ]  # fmt: skip
