@@ -190,7 +190,8 @@ def test_each_command_says_the_same_of_a_parameter_file(
         (tmp_path / name).write_text(text)
     monkeypatch.chdir(tmp_path)
     commands = [
-        ["build", "fleet.yaml", "-o", "out"],
+        # Without the frame of its base the robot's tree is in pieces.
+        ["build", "fleet.yaml", "-o", "out", "--ignore=MG406"],
         ["plan", "fleet.yaml", "-o", "plan.yaml"],
         ["check", "plan.yaml", "--from", "graph.json"],
         ["check", "out/plan.yaml", "--from", "graph.json"],

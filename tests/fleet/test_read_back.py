@@ -327,3 +327,24 @@ def test_a_warning_of_one_is_true_of_its_sort(
         ("MG406", WARNING, ("robot3", "robot4", *others)),
         ("MG406", WARNING, ("robot4", "robot3", *others)),
     ]
+
+
+@pytest.mark.parametrize(("frame", "code"), [("odom", 0), ("odo", 1)])
+def test_what_a_check_says_of_the_folder_alone_is_an_error(
+    frame: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """amcl sends map -> odo, and the drive odom -> base_footprint: no tree has both (amcl_node.cpp)."""
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    amcl = f"amcl: {{ros__parameters: {{odom_frame_id: {frame}, base_frame_id: base_footprint}}}}\n"
+    (tmp_path / "amcl.yaml").write_text(amcl)
+    fleet.write_text(
+        "layout: tf-per-robot\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
+        f"description: {ROOT / 'fixtures' / 'robots' / 'rover.urdf'}\n"
+        "companions: {params: amcl.yaml}\nrobots: [{name: robot1}, {name: robot2, pose: {y: 3}}]\n"
+    )
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == code
+    said = capsys.readouterr().err
+    assert ("error: MG415 " in said) == bool(code)
+    words = () if not code else ("--ignore", "MG415")
+    assert main(["build", str(fleet), "-o", str(out), "-q", *words]) == 0
+    assert main(["check-launch", str(out / "fleet.launch.py")]) in (code, 3)

@@ -26,6 +26,7 @@ from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
@@ -33,12 +34,13 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
-from multibot_rewrite.rules.launch.judge import judge_launch
+from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.launch.started import no_description
-from multibot_rewrite.system.records import Place, System
+from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
 # What a stack leaves to another launch file: a description that is spawned, a controller manager.
 _OF_OTHERS = frozenset({no_description.code, NO_MANAGER.code})
+_GIVES = (PUBLISHES, SERVES)
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
 
 
@@ -66,22 +68,32 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
-        made_of_it = launched(graph, _known(plan))
-        seen, told = made_of_it.system, (*made.findings, *plan.fleet.table.problems)
-        wrong = [
-            *not_as_planned(made.planned, seen, made.started, made.findings),
-            *_of_launch(made_of_it, {it.code for it in told if it.level == ERROR}),
-        ]
+        found = launched(graph, _known(plan))
+        seen = found.system
+        wrong = [*not_as_planned(made.planned, seen, made.started, made.findings)]
+        told = (*wrong, *made.findings, *plan.fleet.table.problems)
+        codes = {it.code for it in told if it.level == ERROR}
+        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
-def _of_launch(found: Launched, told: Set[str]) -> Iterator[Finding]:
-    """What ``multibot check-launch`` calls an error and the build has not ``told``. Descriptions and
-    parameters were asked as they are in the sources."""
+def _of_launch(found: Launched, told: Set[str], elsewhere: Set[str]) -> Iterator[Finding]:
+    """What ``multibot check-launch`` calls an error and the build has not ``told``, but for names that
+    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources."""
     from multibot_rewrite.lint.launched import bridge_findings
 
-    every = (*judge_launch(found), *bridge_findings(found))
+    seen = diagnose(found.system)
+    between = (placed(as_sure(it, found, seen.whose), found) for it in seen.findings)
+    asked = (it for it in between if not elsewhere & {*it.names})
+    every = (*judge_launch(found), *bridge_findings(found), *asked)
     yield from (it for it in every if it.level == ERROR and it.code not in told | _OF_OTHERS)
+
+
+def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:
+    """The topics, services and frames of planned nodes that another launch file starts."""
+    frames = {it.child for it in planned.edges if not {*it.publishers} <= started}
+    gives = (it for it in planned.ends if it.node not in started and it.role in _GIVES)
+    return frames | {it.name for it in gives}
 
 
 def _known(plan: FleetPlan) -> Knowledge:
