@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from support.rule_examples import whole
+from support.rule_examples import DESCRIPTION, whole
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import URDF, Rule
@@ -95,6 +95,25 @@ def test_a_plugin_without_its_file_of_controllers(
 MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.formats and it.bad]
 # A system of the world is moved from the description to the world.
 ELSEWHERE = {"MB160"}
+# The rewrite refuses them, whatever is ignored.
+REFUSED = {"MB101", "MB102", "MB103", "MB109", "MB201", "MB420", "MB424"}
+
+
+def errors(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, set[str]]:
+    """The exit code of a command, and the codes of its errors."""
+    ended = main([*words, "-q"])
+    return ended, set(re.findall(r" error: (M\w\d+)", "".join(capsys.readouterr())))
+
+
+def built_all_the_same(
+    fleet: Path, out: Path, capsys: pytest.CaptureFixture[str]
+) -> set[str] | None:
+    """The errors of a build that is made in spite of them; None where the rewrite refuses it."""
+    build = ("build", str(fleet), "-o", str(out))
+    ended, wrong = errors(capsys, *build)
+    if ended and errors(capsys, *build, *(f"--ignore={it}" for it in wrong))[0]:
+        return None
+    return wrong
 
 
 @pytest.mark.sample(12)
@@ -110,19 +129,61 @@ def test_the_built_folder_has_the_errors_of_its_build(
     fleet.write_text(
         f"{said}layout: frames-per-robot\ndistro: jazzy\ndescription: {file}\n{ROBOTS}"
     )
-
-    def errors(*words: str) -> tuple[int, set[str]]:
-        ended = main([*words, "-q"])
-        return ended, set(re.findall(r" error: (M\w\d+)", "".join(capsys.readouterr())))
-
-    build = ("build", str(fleet), "-o", str(out))
-    ended, wrong = errors(*build)
-    if ended and errors(*build, *(f"--ignore={it}" for it in wrong))[0]:
-        return  # the rewrite itself refuses it
-    ended, found = errors("check-launch", str(out / "fleet.launch.py"))
+    wrong = built_all_the_same(fleet, out, capsys)
+    if wrong is None:
+        assert code in REFUSED
+        return
+    ended, found = errors(capsys, "check-launch", str(out / "fleet.launch.py"))
     assert found <= wrong
     assert {it for it in wrong if it.startswith("MB")} - ELSEWHERE <= found
     assert bool(found) == (ended == 1)
+
+
+_OF_NODE = "{}: {{ros__parameters: {{{}}}}}\n"
+_OF_FILES = [it for it in RULES.values() if "params" in it.formats and "ros__" in it.bad]
+PARAMS = {
+    **{it.code: (it.bad, it.beside) for it in _OF_FILES},
+    # Of one code many values: what rclcpp and the nodes of Nav2 say of them.
+    **{value: (_OF_NODE.format(node, value), {}) for node, value in (
+        ("amcl", "max_beams: 60.5"),
+        ("amcl", 'set_initial_pose: "yes"'),
+        ("amcl", "laser_model_type: liklihood_field"),
+        ("amcl", "odom_frame_id: odo"),
+        ("amcl", "base_frame_id: base_lnk"),
+        ("amcl", "scan_topic: 1scan"),
+        ("amcl", "scan_topic: /robot2/scan"),
+        ("controller_server", "controller_frequency: fast"),
+        ("controller_server", "controller_plugins: [FollowPath]"),
+        ("controller_server", "controller_plugins: [F], F: {plugin: dwb_core::Nope}"),
+        ("bt_navigator", "odom_topic: /odometry/filtered"),
+        ("velocity_smoother", "max_velocity: [0.5, 0.0]"),
+        ("lifecycle_manager_navigation", "node_names: [controller_server]"),
+    )},
+}  # fmt: skip
+
+
+@pytest.mark.sample(4)
+@pytest.mark.slow
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+@pytest.mark.parametrize("code", PARAMS)
+def test_no_error_of_a_parameter_file_is_new_to_the_folder(
+    code: str, layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What ``check-launch`` calls wrong with or without the plan, ``build`` has called wrong."""
+    (own, beside), fleet, out = PARAMS[code], tmp_path / "fleet.yaml", tmp_path / "out"
+    for name, text in {"robot.urdf": DESCRIPTION, **beside, "own.yaml": own}.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    fleet.write_text(
+        f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
+        f"description: robot.urdf\ncompanions: {{params: own.yaml}}\n{ROBOTS}"
+    )
+    wrong = built_all_the_same(fleet, out, capsys)
+    if wrong is None:
+        assert code in REFUSED
+        return
+    for words in ((), ("--plan", str(out / "plan.yaml"))):
+        assert errors(capsys, "check-launch", str(out / "fleet.launch.py"), *words)[1] <= wrong
 
 
 MOVING = '<joint name="j" type="continuous"><parent link="base"/><child link="a"/></joint>'
