@@ -25,11 +25,11 @@ LOOKS = 3
 
 
 class Started(NamedTuple):
-    """What the stub nodes say of themselves: which types are replaced by which, the ends of topics
-    that they have (node, topic), and the frames that they send."""
+    """What the stub nodes say of themselves: which types are replaced by which, the ends that they
+    have (node, role, name), and the frames that they send."""
 
     replaced: dict[str, str]
-    ends: frozenset[tuple[str, str]]
+    ends: frozenset[tuple[str, str, str]]
     frames: frozenset[str]
 
 
@@ -81,7 +81,7 @@ def _nothing_is_late(graph: System) -> System:
 
 
 def _has_all(graph: System, started: Started) -> bool:
-    ends = {(end.node, end.name) for end in graph.ends}
+    ends = {(end.node, end.role, end.name) for end in graph.ends}
     return started.ends <= ends and started.frames <= {edge.child for edge in graph.edges}
 
 
@@ -97,5 +97,5 @@ def _started(
         ]
         said = [json.loads(child.next_message() or b"[{}, [], []]") for child in children]
         replaced = {old: new for own, _, _ in said for old, new in own.items()}
-        ends = frozenset((node, topic) for _, own, _ in said for node, topic in own)
+        ends = frozenset((node, role, name) for _, own, _ in said for node, role, name in own)
         yield Started(replaced, ends, frozenset(it for _, _, own in said for it in own))

@@ -2,7 +2,7 @@
 """The stub nodes of a rehearsal: ``python -m multibot_rewrite.live.stub_nodes``, a child.
 
 Its order is a list of stub nodes. Once all are in the graph it sends which types replace others, the
-ends of topics that the nodes have, and the frames that they send.
+ends that the nodes have, and the frames that they send.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from multibot_rewrite.live.rehearsal import (
     substitute_type,
 )
 from multibot_rewrite.producers.ros import ros
+from multibot_rewrite.producers.ros.look import own_ends
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system.records import (
     ACTION,
@@ -61,7 +62,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
             for number, stub in enumerate(from_order(json.loads(order)))
             for publish in _create_node(stubs, stub, number)
         ]
-        send(json.dumps((stubs.replaced, ros.topic_ends(session), sorted(stubs.frames))).encode())
+        send(json.dumps((stubs.replaced, own_ends(session), sorted(stubs.frames))).encode())
         while not stop.wait(PUBLISH_SECONDS):
             for publish in publishers:
                 publish()

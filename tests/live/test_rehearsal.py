@@ -318,6 +318,8 @@ def _without_endpoints(graph: System) -> System:
         (lambda full: full._replace(edges=full.edges[1:]), 2),
         # One end of many, of which no rule would speak.
         (lambda full: full._replace(ends=full.ends[:-1]), 2),
+        # The client of a service is there, its server is not.
+        (lambda full: full._replace(ends=(*full.ends[:-1], full.ends[-1]._replace(role=CALLS))), 2),
         # What a node has besides is no reason to doubt a look.
         (lambda full: full._replace(ends=(*full.ends, full.ends[0]._replace(name="/other"))), 1),
     ],
@@ -326,7 +328,7 @@ def test_a_look_without_all_that_the_stubs_have_is_taken_again(
     first: Callable[[System], System], looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = _graph("healthy.json")
-    ends = frozenset((end.node, end.name) for end in full.ends)
+    ends = frozenset((end.node, end.role, end.name) for end in full.ends)
     started = staged.Started({"a": "b"}, ends, frozenset(edge.child for edge in full.edges))
     seen = [full, first(full)]
     monkeypatch.setattr(staged, "observe", lambda *_: seen.pop())

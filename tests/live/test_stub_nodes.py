@@ -81,9 +81,9 @@ class Ros:
         sent = lambda message: self.rows.append(("sent", topic, str(message)))  # noqa: E731
         return SimpleNamespace(publish=sent)
 
-    def topic_ends(self, session: str) -> list[Row]:
-        topics = ("publishes", "subscribes")
-        return [(it[0], it[2]) for it in self.rows if it[1] in topics and session == "session"]
+    def own_ends(self, session: str) -> list[Row]:
+        made = [it for it in self.rows if it[0] not in ("node", "sent")]
+        return [it[:3] for it in made if session == "session"]
 
     def kept(self, kind: str) -> Any:
         return lambda node, type_, name: self.rows.append((node.name, kind, name, type_))
@@ -92,6 +92,7 @@ class Ros:
 def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int = 0) -> list[Row]:
     """What is done until so many turns of the loop are over; first of all what is told back."""
     monkeypatch.setattr(stub_nodes, "ros", ros)
+    monkeypatch.setattr(stub_nodes, "own_ends", ros.own_ends)
     usual = stub_nodes._CREATORS
     own = {
         (False, SUBSCRIBES): ros.kept("subscribes"),
@@ -225,6 +226,6 @@ def test_transforms_are_sent_once_or_again_and_again(
     ros = Ros(absent)
     found = rows(monkeypatch, ros, node, turns=2)
     assert found[2][-1] is static
-    assert ros.ends == [["a", topic]]
+    assert ros.ends == [["a", "publishes", topic]]
     assert ros.frames == (["scan"] if static else ["base_link", "wheel"])
     assert [it[2] for it in found if it[0] == "sent"] == (sent if static else sent * 2)

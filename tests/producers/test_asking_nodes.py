@@ -29,7 +29,16 @@ from multibot_rewrite.system.questions import (
     LIST_PARAMETERS,
     Question,
 )
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, Controller, End, Parameter, Qos
+from multibot_rewrite.system.records import (
+    ACTION,
+    PUBLISHES,
+    SERVES,
+    TOPIC,
+    Controller,
+    End,
+    Parameter,
+    Qos,
+)
 
 STATE = Question("/a", "/a/get_state", GET_STATE)
 RATES = Question("/a", "/a/get_parameters", GET_PARAMETERS, ("rate", "use_sim_time"))
@@ -308,3 +317,48 @@ def test_a_view_with_a_node_without_ends_is_taken_again(monkeypatch: pytest.Monk
     assert complete_view(session, {}) == views[2]
     late = SimpleNamespace(request=Request(9.0), now=lambda: 9.5, stop=stop)
     assert complete_view(late, {}) == views[3]  # type: ignore[arg-type]
+
+
+def test_the_ends_of_a_process_are_those_of_all_its_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first node is asked for all of them; one that leaves the graph meanwhile has none."""
+    from multibot_rewrite.producers.ros import look
+
+    class Gone(Exception):
+        pass
+
+    def there(it: str, name: str, space: str) -> list[tuple[str, list[str]]]:
+        if name == "gone":
+            raise Gone
+        return [(f"{space}/{name}/{it}", ["t"])]
+
+    def nothing(*_: object) -> list[tuple[str, list[str]]]:
+        return []
+
+    queries = {
+        f"get_{it}_names_and_types_by_node": nothing for it in ("publisher", "subscriber", "client")
+    }
+    first = SimpleNamespace(
+        get_fully_qualified_name=lambda: "/r/a",
+        get_service_names_and_types_by_node=lambda *who: there("s", *who),
+        **queries,
+    )
+    others = [
+        SimpleNamespace(get_fully_qualified_name=lambda it=it: it) for it in ("/r/b", "/r/gone")
+    ]
+    monkeypatch.setattr(look.ros, "node_gone_error", lambda: Gone)
+    monkeypatch.setattr(look.ros, "action_servers", lambda node, *who: there("act", *who))
+    monkeypatch.setattr(look.ros, "action_clients", nothing)
+    monkeypatch.setattr(
+        look,
+        "_ALL_QUERIES",
+        (*look.queries.NODE_QUERIES, (ACTION, SERVES, look.ros.action_servers)),
+    )
+    session: Any = SimpleNamespace(executor=SimpleNamespace(get_nodes=lambda: [first, *others]))
+    assert look.own_ends(session) == [
+        ("/r/a", "serves", "/r/a/act"),
+        ("/r/a", "serves", "/r/a/s"),
+        ("/r/b", "serves", "/r/b/act"),
+        ("/r/b", "serves", "/r/b/s"),
+    ]
+    none: Any = SimpleNamespace(executor=SimpleNamespace(get_nodes=list))
+    assert look.own_ends(none) == []

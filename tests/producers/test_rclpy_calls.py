@@ -121,20 +121,6 @@ def test_a_node_has_no_services_and_no_arguments_but_its_own(install: Install) -
     assert added == [made, other]
 
 
-def test_the_ends_of_a_session_are_those_of_its_nodes() -> None:
-    def node(name: str, publishes: str, reads: str) -> Any:
-        return SimpleNamespace(
-            get_fully_qualified_name=lambda: name,
-            publishers=[SimpleNamespace(topic_name=publishes)],
-            subscriptions=[SimpleNamespace(topic_name=reads)],
-        )
-
-    nodes = [node("/a", "/x", "/y"), node("/b", "/y", "/z")]
-    session: Any = SimpleNamespace(executor=SimpleNamespace(get_nodes=lambda: nodes))
-    ends = [("/a", "/x"), ("/a", "/y"), ("/b", "/y"), ("/b", "/z")]
-    assert ros.topic_ends(session) == ends
-
-
 def test_callbacks_run_until_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
     now, waited = [10.0], []
 

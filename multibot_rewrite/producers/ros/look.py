@@ -75,17 +75,29 @@ def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[lis
             return names, endpoints
 
 
+def own_ends(session: ros.Session) -> list[tuple[str, str, str]]:
+    """Node, role and name of each end that the nodes of this process have, as a look gives them."""
+    nodes = list(session.executor.get_nodes())
+    names = [it.get_fully_qualified_name() for it in nodes]
+    found = [
+        end
+        for node in nodes[:1]
+        for end in queries.endpoints_by_node(node, names, _ALL_QUERIES, ros.node_gone_error())
+    ]
+    return sorted({(it.node, it.role, it.name) for it in found})
+
+
 def view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
     """Names and endpoints, with QoS and process for the topics that are worth a query."""
     node = session.node
     names = queries.node_names(node)
-    all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
-    found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
+    found = list(queries.endpoints_by_node(node, names, _ALL_QUERIES, ros.node_gone_error()))
     details = queries.TopicQueries(session.request.expected, cache, session.over)
     return names, queries.with_topic_details(node, names, found, details)
 
 
-_ACTION_QUERIES: tuple[queries.NodeQuery, ...] = (
+_ALL_QUERIES: tuple[queries.NodeQuery, ...] = (
+    *queries.NODE_QUERIES,
     (ACTION, SERVES, ros.action_servers),
     (ACTION, CALLS, ros.action_clients),
 )

@@ -94,15 +94,6 @@ def add_node(
     return node
 
 
-def topic_ends(session: Session) -> list[tuple[str, str]]:
-    """Node and topic of each publisher and subscription that the session's nodes have."""
-    return [
-        (node.get_fully_qualified_name(), end.topic_name)
-        for node in session.executor.get_nodes()
-        for end in (*node.publishers, *node.subscriptions)
-    ]
-
-
 def spin(session: Session, seconds: float) -> None:
     """Run callbacks for ``seconds``."""
     end = time.monotonic() + seconds
