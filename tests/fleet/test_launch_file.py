@@ -152,9 +152,11 @@ def test_no_sensor_needs_no_world(tmp_path: Path) -> None:
 
 @pytest.mark.more
 def test_an_sdf_is_spawned_from_its_file(tmp_path: Path) -> None:
-    text = (built(tmp_path, "sdf", "both") / "fleet.launch.py").read_text()
+    folder = built(tmp_path, "sdf", "both")
+    text, commands = ((folder / it).read_text() for it in ("fleet.launch.py", "commands.md"))
     assert "'-file', file(f'{name}/rover.sdf')" in text
-    assert "-topic" not in text
+    assert " -file robot1/rover.sdf " in commands
+    assert "-topic" not in text + commands
 
 
 @pytest.mark.more

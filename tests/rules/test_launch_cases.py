@@ -256,22 +256,84 @@ def test_a_controller_of_two_spawners(known: Knowledge) -> None:
     assert judged(known, "MG722", manager, one, apart) == []
 
 
+def described(text: str = "<robot name='r'><link name='a'/></robot>") -> LaunchedNode:
+    return started(*STATE, parameters=with_values({"robot_description": text}))
+
+
+CREATE = ("ros_gz_sim", "create", "create")
+BESIDE = "name the launch file that does beside this one, if there is one"
+UNSURE = "a node that is not known may; see what is incomplete"
+
+
 def test_a_spawner_without_its_manager(known: Knowledge) -> None:
     spawner = started(*SPAWNER, arguments=("arm", "leg", "-c", "/b/controller_manager"))
     manager = started(*MANAGER, namespace="/b")
     assert judged(known, "MG723", spawner, manager) == []
     (alone,) = judged(known, "MG723", spawner)
     assert alone.message == "nothing starts /b/controller_manager: arm, leg will not be loaded"
-    assert (alone.level, alone.hint) == ("error", START)
+    # The launch file may be one of several: it starts no robot.
+    assert (alone.level, alone.hint) == ("inconclusive", BESIDE)
+    (robot,) = judged(known, "MG723", spawner, described())
+    assert (robot.level, robot.hint) == ("error", START)
     (near,) = judged(known, "MG723", spawner, started(*MANAGER), UNKNOWN)
     assert (near.level, near.hint) == ("error", "did you mean /controller_manager?")
-    # A node that is not known may have it.
-    (open_,) = judged(known, "MG723", spawner, UNKNOWN)
-    assert open_.level == "inconclusive"
-    (unread,) = judged(known, "MG723", spawner, notes=[LaunchNote(AT, "not read")])
-    assert unread.level == "inconclusive"
-    (failed,) = judged(known, "MG723", spawner, notes=[LaunchNote(AT, "x", fails=True)])
-    assert failed.level == "error"
+
+
+@pytest.mark.parametrize(
+    ("more", "notes", "level", "hint"),
+    [
+        # A node that is not known may have it.
+        ((UNKNOWN,), (), "inconclusive", UNSURE),
+        ((), (LaunchNote(AT, "not read"),), "inconclusive", UNSURE),
+        ((), (LaunchNote(AT, "x", fails=True),), "error", START),
+        # A plugin of a model that cannot be read may have it.
+        ((started(*CREATE, arguments=("-topic", "/other")),), (), "inconclusive", BESIDE),
+    ],
+)
+def test_a_manager_may_be_where_nobody_can_see(
+    more: tuple[LaunchedNode, ...],
+    notes: tuple[LaunchNote, ...],
+    level: str,
+    hint: str,
+    known: Knowledge,
+) -> None:
+    spawner = started(*SPAWNER, arguments=("arm", "-c", "/b/controller_manager"))
+    (found,) = judged(known, "MG723", spawner, described(), *more, notes=notes)
+    assert (found.level, found.hint) == (level, hint)
+
+
+@pytest.mark.parametrize(
+    ("nodes", "said"),
+    [
+        ((described(),), []),
+        # It is sent by none of them: another launch file may.
+        ((), [("inconclusive", BESIDE)]),
+        ((UNKNOWN,), []),
+        (
+            (described()._replace(namespace="/r"),),
+            [("error", "did you mean /r/robot_description?")],
+        ),
+        (
+            (described()._replace(namespace="/r"), UNKNOWN),
+            [("error", "did you mean /r/robot_description?")],
+        ),
+    ],
+)
+def test_a_model_without_a_description(
+    nodes: tuple[LaunchedNode, ...], said: list[tuple[str, str]], known: Knowledge
+) -> None:
+    create = started(*CREATE, arguments=("-name", "r", "-topic", "/robot_description"))
+    found = judged(known, "MG724", create, *nodes)
+    assert [(it.level, it.hint) for it in found] == said
+
+
+def test_joints_without_a_description(known: Knowledge) -> None:
+    joints = started("joint_state_publisher", "joint_state_publisher", "joints")
+    (found,) = judged(known, "MG724", joints)
+    assert (found.level, found.hint) == ("inconclusive", BESIDE)
+    (other,) = judged(known, "MG724", joints, described()._replace(namespace="/r"))
+    assert other.level == "error" and other.hint.startswith("start a robot_state_publisher there")
+    assert judged(known, "MG724", joints, described()) == []
 
 
 def managed(*names: str, **values: object) -> LaunchedNode:

@@ -80,6 +80,8 @@ planned: frames of robot1 on /robot1/tf: robot1/base_link, {}robot1/odom
 as planned: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage
 as planned: transform map -> robot1/odom on /robot1/tf by /robot1/amcl
 """
+# robot_state_publisher by another name.
+DESCRIBED = "as planned: /robot1/driver publishes /robot1/robot_description std_msgs/msg/String\n"
 FRAMES = (
     "planned: frames of robot1 on /robot1/tf: robot1/base_link, robot1/laser\n"
     "as planned: /robot1/robot_state_publisher publishes /robot1/tf_static tf2_msgs/msg/TFMessage\n"
@@ -120,6 +122,11 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (ALONE.format(""), []),
         (
             ALONE.format("robot1/laser, "),
+            ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
+             " no planned node sends its description: is what sends it started?"],
+        ),
+        (
+            ALONE.format("robot1/laser, ") + DESCRIBED,
             ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
              " has robot_state_publisher the description of robot1, or that of another robot?"],
         ),
@@ -306,6 +313,31 @@ def test_a_topic_of_no_robot_where_no_nodes_are_known(name: str, meant: str) -> 
     cause = "start its node in its robot's namespace, with the rules of multibot plan"
     said = [f"{it.message}; {it.hint}" for it in found if "is of no robot" in it.message]
     assert said == [f"{name} is of no robot; planned: {meant}; {cause}"] * bool(meant)
+
+
+@pytest.mark.parametrize(
+    ("lines", "level"),
+    [
+        (ALONE.format("robot1/laser, "), "inconclusive"),
+        (ALONE.format("robot1/laser, ") + DESCRIBED, "error"),
+        # It has a topic of that name and reads it: the transforms come from another one.
+        (
+            ALONE.format("robot1/laser, ") + DESCRIBED.replace("publishes", "subscribes"),
+            "inconclusive",
+        ),
+        (ALONE.format("robot1/laser, ") + DESCRIBED.replace("robot1", "robot2"), "inconclusive"),
+        # Something sends its description, and one frame of it is missing.
+        (FRAMES.format("robot1/base_link", "robot1/lasr"), "error"),
+        (
+            ALONE.format("robot1/laser, ")
+            + "running: transform robot1/odom -> robot1/laser on /robot1/tf by /robot1/amcl\n",
+            "error",
+        ),
+    ],
+)
+def test_frames_of_a_description_that_no_planned_node_sends(lines: str, level: str) -> None:
+    found = check(*read_example(lines))
+    assert {it.level for it in found if it.code == "MG208"} == {level}
 
 
 def test_how_many_robots_use_a_name_of_none() -> None:

@@ -33,13 +33,10 @@ from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
-from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
-from multibot_rewrite.rules.launch.started import no_description
 from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
 # What a stack leaves to another launch file: a description that is spawned, a controller manager.
-_OF_OTHERS = frozenset({no_description.code, NO_MANAGER.code})
 _GIVES = (PUBLISHES, SERVES)
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
 
@@ -84,9 +81,9 @@ def _of_launch(found: Launched, told: Set[str], elsewhere: Set[str]) -> Iterator
 
     seen = diagnose(found.system)
     between = (placed(as_sure(it, found, seen.whose), found) for it in seen.findings)
-    asked = (it for it in between if not elsewhere & {*it.names})
-    every = (*judge_launch(found), *bridge_findings(found), *asked)
-    yield from (it for it in every if it.level == ERROR and it.code not in told | _OF_OTHERS)
+    every = (*judge_launch(found), *bridge_findings(found), *between)
+    asked = (it for it in every if not elsewhere & {*it.names})
+    yield from (it for it in asked if it.level == ERROR and it.code not in told)
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:

@@ -252,16 +252,10 @@ def as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
 
 
 def _spawner(given: _Given) -> Start:
-    """What puts the robot into its simulator; an SDF is read from its file, no node publishes it."""
-    (it,), _ = spawn.spawns(given.plan)
+    """What puts the robot into its simulator."""
+    (it,) = spawn.in_folder(given.plan)
     start = spawn.spawner(it, spawn.is_classic(given.robot))
-    words = list(start.arguments)
-    own_file = it.file
-    if given.robot.member.inventory.document.root.tag == "sdf":
-        own_file = it.file or _description(given.robot)
-    if own_file:
-        at = words.index(it.source[0])
-        words[at : at + 2] = ["-file", File(own_file)]
+    words = (File(word) if word == it.file else word for word in start.arguments)
     return start._replace(arguments=tuple(words))
 
 

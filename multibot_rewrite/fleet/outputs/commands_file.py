@@ -40,7 +40,7 @@ def commands_file(
     for one in each:
         (robot,) = one.robots
         poses = start_poses(one)
-        spawned, findings = spawn.spawns(one)
+        _, findings = spawn.spawns(one)
         yield from (*poses.findings, *findings)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
         numbers = {it.robot: it.number for it in plan.file.apart.domains}
@@ -48,7 +48,7 @@ def commands_file(
         clock = robot.spec.use_sim_time
         clocks.add(clock)
         rows += [f"{with_clock(shell_line(it.start), clock)}\n" for it in poses.transforms]
-        rows += [spawn.either(it, robot) for it in spawned if is_simulated(robot)]
+        rows += [spawn.either(it, robot) for it in spawn.in_folder(one) if is_simulated(robot)]
         rows += _controllers(one)
         made = relays(robot.spec.namespace, one.fleet.naming, one.file)
         relayed = (shell_line(it.start) for it in made)

@@ -7,7 +7,7 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from lxml import etree
 
@@ -25,6 +25,7 @@ from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
 from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
+from multibot_rewrite.system.records import PUBLISHES
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
@@ -68,6 +69,22 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
         findings += _of_ros_1(robot)
         findings += without_mass(robot)
     return tuple(made), tuple(findings)
+
+
+def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
+    """How the robots are spawned where their files are beside: from the file of a description that no
+    planned node publishes; of an SDF none does."""
+    names = (it for it in plan.fleet.table.names if it.endpoint.role == PUBLISHES)
+    sent = {it.name for it in names}
+    made, _ = spawns(plan)
+    return tuple(_from_file(*it, sent) for it in zip(made, plan.robots, strict=True))
+
+
+def _from_file(it: Spawn, robot: RewrittenRobot, sent: Set[str]) -> Spawn:
+    is_sdf = robot.member.inventory.document.root.tag == "sdf"
+    if it.file or (it.topic in sent and not is_sdf):
+        return it
+    return it._replace(file=path_for(robot, expanded_name(robot.spec.description)))
 
 
 def is_classic(robot: RewrittenRobot) -> bool:

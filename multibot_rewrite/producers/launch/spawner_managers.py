@@ -37,7 +37,8 @@ NO_MANAGER = declare(
     why="The spawner waits for the manager and gives up: its controllers are never loaded. A relative "
     "name is below the spawner's namespace, so a namespace in both is there twice.",
     fix="Name the manager that runs (`-c`), without the namespace that the spawner has already, or "
-    "with a slash before the whole name. Or start it in that namespace.",
+    "with a slash before the whole name. Or start it in that namespace. Where another launch file "
+    "starts it, check both together.",
     bad=f"launch: system_model.yaml\n{_ROBOTS}",
     good=f"launch: right.yaml\n{_ROBOTS}",
     line=5,

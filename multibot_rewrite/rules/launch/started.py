@@ -58,11 +58,13 @@ _STATE = node_of(
     parameters='[{"robot_description": (HERE / "robot1.urdf").read_text()}]',
 )
 _ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
+_START = "start ros2_control_node there, or load gz_ros2_control in the description"
 _OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
 _LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
 _AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
 _CHANGE, _BOND = "/change_state", "bond"
 _UNSURE = "a node that is not known may; see what is incomplete"
+_ELSEWHERE = "name the launch file that does beside this one, if there is one"
 
 
 def _managed(names: str, autostart: bool = True) -> str:
@@ -114,23 +116,23 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
-    """An error where all nodes are known, or a manager of another namespace is there."""
+    """An error where another manager is there, or all is known: the nodes and the description. A launch
+    file without a description may be one of several."""
     there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
+    described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
         if manager in there:
             continue
         mine = [it for it in launched.spawned if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))
         message = f"nothing starts {manager}: {names} will not be loaded"
-        near = nearest(manager, there) or next(iter(there), "")
-        hint = (
-            f"did you mean {near}?"
-            if near
-            else "start ros2_control_node there, or load gz_ros2_control in the description"
-        )
-        certain = bool(near) or _is_known(launched)
-        level = {} if certain else {"level": INCONCLUSIVE}
-        yield at(no_manager, mine[0].place, message, hint if certain else _UNSURE, **level)
+        if near := nearest(manager, there) or next(iter(there), ""):
+            yield at(no_manager, mine[0].place, message, f"did you mean {near}?")
+        elif described and _is_known(launched):
+            yield at(no_manager, mine[0].place, message, _START)
+        else:
+            hint = _ELSEWHERE if _is_known(launched) else _UNSURE
+            yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
 
 
 no_manager = spawner_managers.NO_MANAGER._replace(
@@ -161,36 +163,38 @@ def _is_known(launched: Launched) -> bool:
     what="A launch file spawns a model from a topic on which no node of it sends a description, or "
     "starts a joint_state_publisher that waits there.",
     why="It waits for ever: the robot is not in the simulator, or its joints are not sent.",
-    fix="Name the topic of its robot_state_publisher, with the namespace.",
+    fix="Name the topic of its robot_state_publisher, with the namespace. Where another launch file "
+    "sends the description, check both together.",
     bad=launch_of(_STATE, _CREATE.format("/robot1/robot_description")),
     good=launch_of(_STATE, _CREATE.format("/robot_description")),
     line=1,
     beside=_ROBOT,
 )
 def no_description(launched: Launched) -> Iterator[Finding]:
-    """Where all nodes are known, or a description has another topic."""
+    """An error where a description has another topic; without any, another launch file may send it."""
     sent = [
         e.name for e in launched.system.ends
         if e.role == "publishes" and e.name.endswith("robot_description")
     ]  # fmt: skip
+    level = {} if sent else {"level": INCONCLUSIVE}
     for it in launched.models.lost:
         words = dict(zip(it.arguments, it.arguments[1:], strict=False))
         topic = expand(words["-topic"], it.namespace, "") if "-topic" in words else ""
-        if not topic or topic in sent:
-            continue
-        if sent or _is_known(launched):
+        if topic and topic not in sent and (sent or _is_known(launched)):
             near = nearest(topic, sent)
-            hint = f"did you mean {near}?" if near else "name the topic that has it"
+            other = f"did you mean {near}?" if near else "name the topic that has it"
             message = f"waits for a description on {topic}, where nothing sends one"
-            yield at(no_description, it.place, message, hint, names=(topic,))
+            hint = other if sent else _ELSEWHERE
+            yield at(no_description, it.place, message, hint, names=(topic,), **level)
     waiting = read_by_joints(launched) if launched.whole else ()
     for node, topic in waiting:
         if topic.endswith("robot_description") and topic not in sent:
             message = (
                 f"{node.full_name} waits for a description on {topic}, where nothing sends one"
             )
-            hint = "start a robot_state_publisher there: no parameter tells it"
-            yield at(no_description, node.place, message, hint, names=(topic,))
+            other = "start a robot_state_publisher there: no parameter tells it"
+            hint = other if sent else _ELSEWHERE
+            yield at(no_description, node.place, message, hint, names=(topic,), **level)
 
 
 @launch_rule(

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import pair_rule
 from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
@@ -19,6 +19,8 @@ from multibot_rewrite.rules.pair.tf_trees import frames_in, tf_trees
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
+
+_DESCRIPTION = "robot_description"
 
 
 @pair_rule(
@@ -32,7 +34,8 @@ from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
     why="RViz shows a robot without wheels, and every look-up of the frame fails. Where no frame comes"
     " at all, robot_state_publisher may have the description of another robot.",
     fix="Start what sends it: joint_state_publisher or joint_state_broadcaster for moving joints, the"
-    " odometry for `odom`, robot_state_publisher with the robot's own description for the others.",
+    " odometry for `odom`, robot_state_publisher with the robot's own description for the others. It is"
+    " inconclusive where the plan leaves robot_state_publisher out.",
     bad="""\
 planned: frames of robot1 on /tf: base_link/robot1, wheel/robot1
 as planned: /robot1/robot_state_publisher publishes /tf
@@ -136,7 +139,25 @@ def _not_received(plan: Index, seen: Index, robot: Robot, missing: Sequence[str]
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
     message = f"{what} in no transform: {shorten(missing)}"
     hint = _why_not_received(plan, seen, robot, missing)
-    return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
+    left = _is_without_description(plan, robot, missing) and not _is_described(plan, robot)
+    level = INCONCLUSIVE if left else ERROR
+    return frame_not_received.finding(
+        message, hint, level=level, robot=robot.name, names=tuple(missing)
+    )
+
+
+def _is_without_description(plan: Index, robot: Robot, missing: Sequence[str]) -> bool:
+    """Does nothing of its description come? The root comes with the odometry, too."""
+    described = set(robot.frames).difference(*(it[1:] for it in sent_by_robot(plan, robot)))
+    described = {it for it in described if _plain(plan, robot, it) not in USUAL_FRAMES}
+    return bool(described) and described.issubset(missing)
+
+
+def _is_described(plan: Index, robot: Robot) -> bool:
+    """Has the plan a node that sends the transforms of its description?"""
+    own = plan.own[robot.name]
+    told = (it for it in plan.by_key if it[1:3] == (TOPIC, PUBLISHES) and it[0] in own)
+    return bool(state_publisher(plan, robot)) or any(it[3].endswith(_DESCRIPTION) for it in told)
 
 
 def _plain(plan: Index, robot: Robot, frame: str) -> str:
@@ -149,14 +170,13 @@ def _why_not_received(plan: Index, seen: Index, robot: Robot, missing: Sequence[
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
         return f"nothing publishes {silent}: is {source} started for {robot.name}?"
     sent = sent_by_robot(plan, robot)
-    described = set(robot.frames).difference(*(it[1:] for it in sent))
-    # The root of a description comes with the odometry, too.
-    described = {it for it in described if _plain(plan, robot, it) not in USUAL_FRAMES}
-    if described and described.issubset(missing):
+    if _is_without_description(plan, robot, missing):
         publisher = state_publisher(plan, robot) or STATE_PUBLISHER
         whose = next(described_robots(plan, seen, robot), "")
         if whose:
             return f"{publisher} has the description of {whose}, whose transforms it sends"
+        if not _is_described(plan, robot):
+            return "no planned node sends its description: is what sends it started?"
         return f"has {publisher} the description of {robot.name}, or that of another robot?"
     unsent = [it for it in sent if not set(it[1:]).isdisjoint(missing)]
     if unsent:
