@@ -105,6 +105,15 @@ def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
     return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
 
 
+def names_below(node: yaml.Node) -> yaml.MappingNode | None:
+    """The mapping whose keys are parts of names: the value, or what rcl reads in the same way, a list
+    of one mapping with one key (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
+    if isinstance(node, yaml.MappingNode):
+        return node
+    only = node.value[0] if isinstance(node, yaml.SequenceNode) and len(node.value) == 1 else None
+    return only if isinstance(only, yaml.MappingNode) and len(only.value) == 1 else None
+
+
 def items(node: yaml.Node | None) -> list[yaml.Node]:
     """The items of a list; a scalar is a list of itself, anything else has none."""
     if isinstance(node, yaml.SequenceNode):

@@ -17,9 +17,11 @@ from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
 from multibot_rewrite.producers.launch.stand_in import (
     frontend,
+    loops,
     packages,
     parameters,
     parse,
+    paths,
     ros,
     standing_in,
     values,
@@ -50,12 +52,22 @@ N, YES, WORD = LaunchConfiguration("n"), LaunchConfiguration("yes"), LaunchConfi
         (LaunchConfiguration("no", default=["a", N]), "a5"),
         (values.EnvironmentVariable("HERE"), "home"),
         (values.EnvironmentVariable("NOT_HERE", default_value=""), ""),
-        (values.PathJoinSubstitution(["/a", N, "b"]), "/a/5/b"),
+        (paths.PathJoinSubstitution(["/a", N, "b"]), "/a/5/b"),
+        (paths.PathJoinSubstitution(["/a", ["b", N, ".yaml"]]), "/a/b5.yaml"),
+        (paths.PathJoinSubstitution([Path("/a")]) / "b" / ["c", N], "/a/b/c5"),
+        (paths.PathSubstitution("/a") / paths.PathJoinSubstitution(["b", "c"]), "/a/b/c"),
+        # Those of a list are parts (path_join_substitution.py).
+        (paths.PathSubstitution(["/a", N]) / Path("b"), "/a/5/b"),
+        (paths.ThisLaunchFileDir() / ".." / "config", "/launch/../config"),
+        (paths.StringJoinSubstitution([["a", N], "b"]), "a5b"),
+        (paths.StringJoinSubstitution([["a", N], "b"], "."), "a5.b"),
+        (paths.StringJoinSubstitution(["a", "b", "c"], delimiter=WORD), "awbwc"),
+        (values.ForEachVar("x", default_value=["d", N]), "d5"),
         (values.PythonExpression([N, " + 1"]), "6"),
         (values.PythonExpression("pi > 3 and math.pi > 3"), "True"),
         (values.PythonExpression("os.sep", ["os"]), "/"),
-        (values.ThisLaunchFile(), "/launch/bringup.launch.py"),
-        (values.ThisLaunchFileDir(), "/launch"),
+        (paths.ThisLaunchFile(), "/launch/bringup.launch.py"),
+        (paths.ThisLaunchFileDir(), "/launch"),
         (values.EqualsSubstitution(N, "5.0"), "true"),
         (values.EqualsSubstitution(N, 6), "false"),
         (values.EqualsSubstitution(YES, "1"), "true"),
@@ -92,7 +104,7 @@ def test_what_a_substitution_is(made: Any, text: str, context: LaunchContext) ->
         (LaunchConfiguration("no"), "launch configuration 'no' does not exist"),
         (values.EnvironmentVariable("NOT_HERE"), "environment variable 'NOT_HERE' does not exist"),
         (values.NotSubstitution(N), "Cannot convert value '5'"),
-        (values.FileContent("/no/such"), "File not found: /no/such"),
+        (paths.FileContent("/no/such"), "File not found: /no/such"),
     ],
 )
 def test_a_substitution_without_a_value(made: Any, message: str, context: LaunchContext) -> None:
@@ -102,7 +114,7 @@ def test_a_substitution_without_a_value(made: Any, message: str, context: Launch
 
 def test_the_content_of_a_file(context: LaunchContext, tmp_path: Path) -> None:
     (tmp_path / "a").write_text("text\n")
-    assert values.FileContent(str(tmp_path / "a")).perform(context) == "text\n"
+    assert paths.FileContent(str(tmp_path / "a")).perform(context) == "text\n"
 
 
 @pytest.mark.parametrize(
@@ -347,6 +359,10 @@ WRITTEN = {
     "$(dirname)/x.yaml": "/launch/x.yaml",
     "$(not $(var yes))": "false",
     "$(if $(var yes) a b)": "a",
+    # launch rolling, path_join_substitution.py and string_join_substitution.py.
+    "$(path-join $(env HERE) 'cfg 2' config_$(var n).yml)": "home/cfg 2/config_5.yml",
+    "$(string-join . https://$(var word) ros org)": "https://w.ros.org",
+    "$(for-var x $(var n))": "5",
 }
 
 
@@ -384,7 +400,11 @@ ELEMENTS = {
     "include": "IncludeLaunchDescription: !file=launch_description_source <arg>=launch_arguments",
     "let": "SetLaunchConfiguration: !name !value",
     "load_composable_node": f"ros LoadComposableNodes: !target=target_container {INSIDE}",
-    "log": "LogInfo: !message=msg",
+    # launch rolling, actions/log.py and for_loop.py.
+    "log": "Log: !message=msg level",
+    **{f"log_{it}": "LogInfo: !message=msg" for it in ("debug", "error", "info", "warning")},
+    "for": "loops loop_of: !len=length !name <*>=actions",
+    "for_each": "loops each_of: !values <*>=actions",
     "node": f"ros Node: {NODE}",
     "node_container": f"ros ComposableNodeContainer: {NODE} {INSIDE}",
     "push-ros-namespace": "ros PushROSNamespace: !namespace",
@@ -420,9 +440,10 @@ def test_every_element_of_launch_files_in_xml_and_its_attributes() -> None:
     assert frontend._FORMS.keys() == ELEMENTS.keys()
     for tag, text in ELEMENTS.items():
         name, _, words = text.partition(":")
-        form, ros = frontend._FORMS[tag], name.startswith("ros ")
-        assert form.module == ("launch_ros.actions" if ros else "launch.actions"), tag
-        assert (form.name, read_of(form)) == (name.removeprefix("ros "), meant(words)), tag
+        form, (own, _, class_) = frontend._FORMS[tag], name.rpartition(" ")
+        module = {"ros": "launch_ros.actions", "loops": loops.__name__}.get(own, "launch.actions")
+        assert form.module == module, tag
+        assert (form.name, read_of(form)) == (class_, meant(words)), tag
     component = frontend._COMPONENT
     assert (component.module, component.name) == ("launch_ros.descriptions", "ComposableNode")
     assert read_of(component) == meant(COMPONENT)
@@ -464,11 +485,14 @@ def test_every_substitution_of_launch_files_in_xml() -> None:
         "find-pkg-share": "FindPackageShare", "if": "IfElse", "launch_log_dir": "LaunchLogDir",
         "log_dir": "LaunchLogDir", "not": "Not", "not-equals": "NotEquals", "or": "Or",
         "param": "Parameter", "var": "LaunchConfiguration",
+        # launch rolling, substitutions/for_loop_var.py.
+        "for-var": "ForEachVar", "index": "ForLoopIndex",
     }  # fmt: skip
-    known = {**vars(packages), **vars(values)}
+    of_several = {"command", "eval", "path-join", "string-join"}
+    known = {**vars(packages), **vars(paths), **vars(values)}
     classes = {it: known.get(f"{name}Substitution") or known[name] for it, name in words.items()}
-    made = {it: kind for it, kind in parse._KNOWN.items() if it not in ("command", "eval")}
-    assert (made, parse._KNOWN.keys() - made.keys()) == (classes, {"command", "eval"})
+    made = {it: kind for it, kind in parse._KNOWN.items() if it not in of_several}
+    assert (made, parse._KNOWN.keys() - made.keys()) == (classes, of_several)
     for word in ("arg", "find", "optenv"):
         with pytest.raises(ValueError, match=word):
             parse_substitution(f"$({word} a)")
@@ -482,13 +506,15 @@ def test_every_action_of_launch_is_visited() -> None:
     named = {*visit._HANDLERS}
     assert names - named == {"LifecycleNode", "OpaqueCoroutine", "ROSTimer", "RosTimer"}
     others = {"LaunchDescription", "ForEach", "ForLoop", "ReplaceEnvironmentVariables"}
+    others |= {"Log", "LogInterface"}
     assert named - names == others
     starts = {
         "IncludeLaunchDescription", "ComposableNodeContainer", "LoadComposableNodes", "Node",
         "ExecuteLocal", "ExecuteProcess", "RegisterEventHandler", "TimerAction",
     }  # fmt: skip
     passed = {
-        "SetUseSimTime", "LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition",
+        "SetUseSimTime", "Log", "LogInfo", "LogInterface", "EmitEvent", "Shutdown", "SetROSLogDir",
+        "LifecycleTransition",
         "UnregisterEventHandler",
     }  # fmt: skip
     assert {it for it, how in visit._HANDLERS.items() if how is visit._pass} == passed
@@ -540,3 +566,60 @@ def test_only_the_blanks_of_a_command_line_separate(line: str, words: list[list[
     context.launch_configurations.update({"x": "x", "y": "y"})
     found = frontend._words(line)
     assert [[it.perform(context) for it in word] for word in found] == words
+
+
+def visited(actions: list[Any], context: LaunchContext) -> list[str]:
+    """What the nodes of these actions are called, each with its namespace."""
+    seen = []
+    for it in actions:
+        below = it.visit(context)
+        if isinstance(it, ros.Node):
+            known = vars(it)
+            seen.append(
+                "/".join(values.text_of(context, known[key]) for key in ("namespace", "name"))
+            )
+        seen += visited(below if isinstance(below, list) else [], context)
+    return seen
+
+
+ROBOTS = "{name: a, number: 1};{name: b};"
+
+
+def test_what_is_repeated(context: LaunchContext) -> None:
+    """launch rolling, actions/for_loop.py: a set of values in YAML each, or a number below a length."""
+
+    def each(name: str, number: int = 7) -> list[Any]:
+        return [ros.Node(executable="x", name=f"n{number + 1}", namespace=name)]
+
+    made = [loops.ForEach(ROBOTS, function=each), loops.ForEach("", function=each)]
+    made += [loops.ForEach("{}", function=lambda: None)]
+    made += [loops.ForLoop(["1", "0"], function=lambda i: each("c", i) if i < 2 else None)]
+    assert visited(made, context) == ["a/n2", "b/n8", "c/n1", "c/n2"]
+    with pytest.raises(ValueError, match="many"):
+        loops.ForLoop("many", function=each).visit(context)
+    with pytest.raises(TypeError, match="other"):
+        loops.ForEach("{other: 1}", function=each).visit(context)
+
+
+XML = """\
+<launch>
+  <for_each values="{name: a, number: 1};{name: b}">
+    <node pkg="p" exec="x" name="n$(for-var number 9)" namespace="$(for-var name)"/>
+    <for len="2" name="i">
+      <node pkg="p" exec="x" name="$(for-var name)$(index i)" namespace="s"/>
+    </for>
+  </for_each>
+  <log_warning message="$(for-var name none)"/>
+</launch>
+"""
+
+
+def test_what_is_repeated_in_xml(context: LaunchContext, tmp_path: Path) -> None:
+    (tmp_path / "loops.launch.xml").write_text(XML)
+    with standing_in():
+        description = frontend.description_in(str(tmp_path / "loops.launch.xml"))
+        found = visited(description.visit(context), context)
+        assert found == ["a/n1", "s/a0", "s/a1", "b/n9", "s/b0", "s/b1"]
+        # What is at hand in a loop is not known after it.
+        with pytest.raises(RuntimeError, match="'name' does not exist"):
+            values.ForEachVar("name").perform(context)

@@ -32,6 +32,18 @@ _MADE = {"self", "cmd", "process_description", "matcher", "action_matcher", "on_
 _MADE |= {"target_action_cls", "target_event_cls"}
 # Newer releases have it.
 _LATER = {"autostart"}
+# Newer classes (launch rolling: actions/for_loop.py, actions/log.py, substitutions/for_loop_var.py,
+# path_join_substitution.py, string_join_substitution.py).
+NEWER = {
+    "launch.actions.ForEach": ["condition", "function", "input_values"],
+    "launch.actions.ForLoop": ["condition", "function", "length", "name"],
+    "launch.actions.Log": ["condition", "level", "msg"],
+    **{f"launch.actions.Log{it}": ["condition", "msg"] for it in ("Debug", "Error", "Warning")},
+    "launch.substitutions.ForEachVar": ["default_value", "name"],
+    "launch.substitutions.ForLoopIndex": ["default_value", "name"],
+    "launch.substitutions.PathSubstitution": ["path"],
+    "launch.substitutions.StringJoinSubstitution": ["delimiter", "substitutions"],
+}
 # Classes that others extend, or that are made for a launch file, and types.
 _NONE = {"Condition", "LaunchDescriptionSource", "StateTransition", "Substitution"}
 _NONE |= {"SomeEntitiesType", "SomeSubstitutionsType"}
@@ -83,7 +95,7 @@ def _taken(kind: Any) -> set[str]:
 def table() -> dict[str, Any]:
     """Options by the name of each class of launch_ros; below ``launch`` those that the stand-in has."""
     real = {name: options(module, name) for module, names in CLASSES.items() for name in names}
-    names = (name.rpartition(".") for name, _ in _classes())
+    names = (name.rpartition(".") for name, _ in _classes() if name not in NEWER)
     made = {".".join((it[0], it[2])): options(it[0], it[2]) for it in names}
     return {**real, "launch": made, "names": public_names()}
 

@@ -12,7 +12,7 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, names_below
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import (
     Branch,
@@ -109,8 +109,8 @@ def _walk(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
         below = _below(states, key.value, key) if states else states
         if not below:
             job.names.keys.append(key)
-        if isinstance(value, yaml.MappingNode):
-            _walk(job, value, below)
+        if inner := names_below(value):
+            _walk(job, inner, below)
         # Most parameters are numbers that hold no name.
         elif below or value.tag not in _NO_NAMES:
             _claim(job, key, value, below, body)

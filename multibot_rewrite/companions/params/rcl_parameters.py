@@ -16,7 +16,7 @@ import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.params.sections import is_for, raw_sections
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
 
 Scalar = bool | int | float | str
 Value = Scalar | list[Scalar]
@@ -73,8 +73,8 @@ def exact_nodes(document: YamlText) -> list[str]:
 def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Value]]:
     for key, node in pairs(body):
         name = f"{above}{key.value}"
-        if isinstance(node, yaml.MappingNode):
-            yield from _flat(document, node, f"{name}.")
+        if below := names_below(node):
+            yield from _flat(document, below, f"{name}.")
         else:
             yield name, value_of(document, node)
 

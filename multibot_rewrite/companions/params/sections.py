@@ -23,6 +23,7 @@ from multibot_rewrite.companions.yaml_text import (
     YamlText,
     anchors,
     line_of,
+    names_below,
     pairs,
 )
 from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes
@@ -276,8 +277,8 @@ def flattened(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.Scal
     """Every parameter by its dotted name, with its key; nested and dotted keys are the same."""
     for key, value in pairs(node):
         name = f"{above}.{key.value}" if above else key.value
-        if isinstance(value, yaml.MappingNode):
-            yield from flattened(value, name)
+        if below := names_below(value):
+            yield from flattened(below, name)
         else:
             yield name, key
 

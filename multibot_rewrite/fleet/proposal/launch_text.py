@@ -32,7 +32,7 @@ _INCLUDE, _DECLARE = "IncludeLaunchDescription", "DeclareLaunchArgument"
 _SAME = {
     "ParameterFile": "param_file", "RewrittenYaml": "source_file", "ParameterValue": "value",
     "TextSubstitution": "text", "PythonLaunchDescriptionSource": "", "str": "", "Path": "",
-    "AnyLaunchDescriptionSource": "", "ReplaceString": "source_file",
+    "AnyLaunchDescriptionSource": "", "ReplaceString": "source_file", "PathSubstitution": "path",
 }  # fmt: skip
 _PACKAGES = ("get_package_share_directory", "FindPackageShare", "get_package_share_path")
 _JOINS = ("join", "PathJoinSubstitution")
@@ -130,9 +130,8 @@ class Reading(NamedTuple):
 
     def path(self, it: ast.expr | None) -> str:
         """The plain text of an expression, of its pieces one after the other; empty for none."""
-        found = self.value(it)
-        pieces = found if isinstance(found, list) else [found]
-        return "".join(pieces) if all(isinstance(one, str) for one in pieces) else ""
+        found = _joined(self.value(it))
+        return "" if found is UNKNOWN else str(found)
 
 
 def _constant(_: Reading, it: Any, __: int) -> Any:
@@ -155,10 +154,16 @@ def _list(reading: Reading, it: Any, depth: int) -> Any:
 
 
 def _sum(reading: Reading, it: Any, depth: int) -> Any:
-    both = reading.value(it.left, depth), reading.value(it.right, depth)
-    if not all(isinstance(one, str) for one in both) or not isinstance(it.op, ast.Add | ast.Div):
+    both = [_joined(reading.value(one, depth)) for one in (it.left, it.right)]
+    if UNKNOWN in both or not isinstance(it.op, ast.Add | ast.Div):
         return UNKNOWN
     return os.path.join(*both) if isinstance(it.op, ast.Div) else "".join(both)
+
+
+def _joined(found: Any) -> Any:
+    """A text, or the pieces of one; UNKNOWN for all else."""
+    pieces = found if isinstance(found, list) and found else [found]
+    return "".join(pieces) if all(isinstance(one, str) for one in pieces) else UNKNOWN
 
 
 def _call(reading: Reading, it: Any, depth: int) -> Any:
@@ -171,9 +176,8 @@ def _call(reading: Reading, it: Any, depth: int) -> Any:
         pieces = (
             it.args if name == "join" else getattr(argument(it, "substitutions", 0), "elts", [])
         )
-        found = [reading.value(one, depth) for one in pieces]
-        texts = found and all(isinstance(one, str) for one in found)
-        return os.path.join(*found) if texts else UNKNOWN
+        found = [_joined(reading.value(one, depth)) for one in pieces]
+        return os.path.join(*found) if found and UNKNOWN not in found else UNKNOWN
     return reading.value(argument(it, _SAME[name], 0), depth) if name in _SAME else UNKNOWN
 
 

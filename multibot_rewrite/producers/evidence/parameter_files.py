@@ -30,7 +30,7 @@ from multibot_rewrite.companions.params.sections import (
     is_for,
     raw_sections,
 )
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.system.records import Place
@@ -127,8 +127,8 @@ def _sections(document: YamlText) -> tuple[_Section, ...]:
 def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
     for key, node in pairs(body):
         name = f"{above}{without_robot(str(key.value))}"
-        if isinstance(node, yaml.MappingNode):
-            yield from _flat(document, node, f"{name}.")
+        if below := names_below(node):
+            yield from _flat(document, below, f"{name}.")
             continue
         # What rcl rejects is reported where the file is rewritten.
         with suppress(InputError):

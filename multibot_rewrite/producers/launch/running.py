@@ -27,7 +27,7 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes, values_for
+from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
@@ -284,8 +284,12 @@ def _controllers(
 
 
 def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
-    """What the files set for a controller; a manager of any namespace may have its type."""
+    """What the files set for a controller; a manager of any namespace may have its type. A type in its
+    own section counts, though nobody knows it."""
     mine = next(it for it in given if f"/{it.name}" == controller.full_name)
+    own = mine.values.get(OWN_TYPE)
+    if not mine.type and own and isinstance(own.value, str):
+        mine = mine._replace(type=own.value)
     typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
     declared = mine if mine.type else next(typed, mine)
     return declared._replace(name=mine.name, values={**declared.values, **mine.values})

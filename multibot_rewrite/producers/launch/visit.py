@@ -42,7 +42,15 @@ _EXECUTED = (
 # They start no node; SetUseSimTime is for the node that launch itself would have.
 _PASSED = (
     "SetUseSimTime",
-    *("LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition"),
+    *(
+        "Log",
+        "LogInfo",
+        "LogInterface",
+        "EmitEvent",
+        "Shutdown",
+        "SetROSLogDir",
+        "LifecycleTransition",
+    ),
     "UnregisterEventHandler",
 )
 

@@ -21,7 +21,7 @@ from multibot_rewrite.companions.params.sections import (
     RawSection,
     controller_types,
 )
-from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.companions.yaml_text import YamlText, names_below, pairs
 from multibot_rewrite.description.sources.packages import is_for_ros_1
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
 from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
@@ -181,8 +181,8 @@ def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -
 def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
     for key, value in pairs(body):
         name = f"{above}{key.value}"
-        if isinstance(value, yaml.MappingNode):
-            yield from _given(document, value, f"{name}.")
+        if below := names_below(value):
+            yield from _given(document, below, f"{name}.")
         else:
             yield Given(name, key, value, _value(document, value))
 

@@ -16,10 +16,12 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in import (
     actions,
+    loops,
     nav2,
     packages,
     parameters,
     parse,
+    paths,
     processes,
     ros,
     values,
@@ -27,7 +29,7 @@ from multibot_rewrite.producers.launch.stand_in import (
 from multibot_rewrite.producers.launch.stand_in.actions import not_read
 from multibot_rewrite.producers.launch.stand_in.names import INSIDE, NOT_READ, READ
 
-_ROOMS = (values, packages, parse, actions, processes, parameters, ros, nav2)
+_ROOMS = (values, paths, packages, parse, actions, loops, processes, parameters, ros, nav2)
 # A name that two modules have for two things.
 _OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubstitution}
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")

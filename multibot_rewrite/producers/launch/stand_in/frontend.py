@@ -189,6 +189,7 @@ def _shut_down(_: Any) -> list[Any]:
 
 
 _ROS = "launch_ros.actions"
+_LOOPS = "multibot_rewrite.producers.launch.stand_in.loops"
 _OF_PROCESS: Mapping[str, tuple[str, Reader]] = {
     **{it: (it, _parts) for it in ("cwd", "output", "respawn", "respawn_max_retries")},
     **{it: (it, _parts) for it in ("respawn_delay", "sigkill_timeout", "sigterm_timeout")},
@@ -252,6 +253,13 @@ _FORMS: Mapping[str, Form] = MappingProxyType(
             _ENVIRONMENT,
             ("cmd",),
         ),
+        "for": Form(
+            *(_LOOPS, "loop_of"),
+            {"len": ("length", _parts), "name": ("name", str)},
+            needs=("len", "name"),
+            actions="actions",
+        ),
+        "for_each": _form("each_of", "values", module=_LOOPS, actions="actions"),
         "group": Form(
             *("launch.actions", "GroupAction"),
             {it: (it, _truth) for it in ("scoped", "forwarding")},
@@ -271,7 +279,15 @@ _FORMS: Mapping[str, Form] = MappingProxyType(
             _COMPONENTS,
             ("target",),
         ),
-        "log": Form("launch.actions", "LogInfo", {"message": ("msg", _parts)}, needs=("message",)),
+        "log": Form(
+            *("launch.actions", "Log"),
+            {"message": ("msg", _parts), "level": ("level", _parts)},
+            needs=("message",),
+        ),
+        **dict.fromkeys(
+            ("log_debug", "log_error", "log_info", "log_warning"),
+            Form("launch.actions", "LogInfo", {"message": ("msg", _parts)}, needs=("message",)),
+        ),
         "node": _NODE,
         "node_container": _NODE._replace(
             name="ComposableNodeContainer", below={**_NODE.below, **_COMPONENTS}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What can be imported of launch and launch_ros, by module.
 
-Source: launch and launch_ros jazzy, ``__all__`` of each package.
+Source: launch and launch_ros jazzy, and launch rolling, ``__all__`` of each package.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ READ: Mapping[str, str] = {
     "LaunchDescriptionSource SomeEntitiesType SomeEntitiesType_types_tuple SomeSubstitutionsType "
     "SomeSubstitutionsType_types_tuple Substitution",
     "launch.actions": "AppendEnvironmentVariable DeclareLaunchArgument EmitEvent ExecuteLocal "
-    "ExecuteProcess GroupAction IncludeLaunchDescription LogInfo OpaqueFunction PopEnvironment "
-    "PopLaunchConfigurations PushEnvironment PushLaunchConfigurations RegisterEventHandler "
-    "ResetEnvironment ResetLaunchConfigurations SetEnvironmentVariable SetLaunchConfiguration "
-    "Shutdown TimerAction UnregisterEventHandler UnsetEnvironmentVariable UnsetLaunchConfiguration",
+    "ExecuteProcess ForEach ForLoop GroupAction IncludeLaunchDescription Log LogDebug LogError LogInfo "
+    "LogWarning OpaqueFunction PopEnvironment PopLaunchConfigurations PushEnvironment "
+    "PushLaunchConfigurations "
+    "RegisterEventHandler ResetEnvironment ResetLaunchConfigurations SetEnvironmentVariable "
+    "SetLaunchConfiguration Shutdown TimerAction UnregisterEventHandler UnsetEnvironmentVariable "
+    "UnsetLaunchConfiguration",
     "launch.conditions": "IfCondition InvalidConditionExpressionError LaunchConfigurationEquals "
     "LaunchConfigurationNotEquals UnlessCondition evaluate_condition_expression",
     "launch.descriptions": "Executable",
@@ -35,10 +37,11 @@ READ: Mapping[str, str] = {
     f"PythonLaunchDescriptionSource {_SOURCES}",
     "launch.logging": "get_logger",
     "launch.substitutions": "AllSubstitution AndSubstitution AnonName AnySubstitution Command "
-    "EnvironmentVariable EqualsSubstitution FileContent FindExecutable IfElseSubstitution "
-    "LaunchConfiguration LaunchLogDir LocalSubstitution NotEqualsSubstitution NotSubstitution "
-    "OrSubstitution PathJoinSubstitution PythonExpression SubstitutionFailure TextSubstitution "
-    "ThisLaunchFile ThisLaunchFileDir",
+    "EnvironmentVariable EqualsSubstitution FileContent FindExecutable ForEachVar "
+    "ForLoopIndex IfElseSubstitution LaunchConfiguration LaunchLogDir LocalSubstitution "
+    "NotEqualsSubstitution NotSubstitution OrSubstitution PathJoinSubstitution PathSubstitution "
+    "PythonExpression StringJoinSubstitution SubstitutionFailure TextSubstitution ThisLaunchFile "
+    "ThisLaunchFileDir",
     "launch.utilities": "normalize_to_list_of_substitutions perform_substitutions",
     "launch_ros": "",
     "launch_ros.actions": "ComposableNodeContainer LifecycleNode LifecycleTransition "

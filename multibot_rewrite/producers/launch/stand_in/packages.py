@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from multibot_rewrite.producers.launch.stand_in.paths import Joined
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
@@ -27,7 +28,7 @@ class PackageNotFoundError(KeyError):
     """A package is not installed."""
 
 
-class FindPackage(Kept, Substitution):
+class FindPackage(Kept, Joined):
     """A folder of a package."""
 
     names: tuple[str, ...] = ("package",)

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.producers.launch.stand_in import packages, values
+from multibot_rewrite.producers.launch.stand_in import packages, paths, values
 
 Parts = list[Any]
 _NAME = lazy_compile(r"[A-Za-z][\w-]*")
@@ -34,23 +34,27 @@ _KNOWN: Mapping[str, Callable[..., Any]] = MappingProxyType(
         "anon": values.AnonName,
         "any": values.AnySubstitution,
         "command": lambda line, *_: values.Command(line),
-        "dirname": values.ThisLaunchFileDir,
+        "dirname": paths.ThisLaunchFileDir,
         "env": values.EnvironmentVariable,
         "equals": values.EqualsSubstitution,
         "eval": lambda *words: values.PythonExpression([it for word in words for it in word]),
         "exec-in-pkg": packages.ExecutableInPackage,
-        "file-content": values.FileContent,
-        "filename": values.ThisLaunchFile,
+        "file-content": paths.FileContent,
+        "filename": paths.ThisLaunchFile,
         "find-exec": values.FindExecutable,
         "find-pkg-prefix": packages.FindPackagePrefix,
         "find-pkg-share": packages.FindPackageShare,
+        "for-var": values.ForEachVar,
         "if": values.IfElseSubstitution,
-        "launch_log_dir": values.LaunchLogDir,
-        "log_dir": values.LaunchLogDir,
+        "index": values.ForLoopIndex,
+        "launch_log_dir": paths.LaunchLogDir,
+        "log_dir": paths.LaunchLogDir,
         "not": values.NotSubstitution,
         "not-equals": values.NotEqualsSubstitution,
         "or": values.OrSubstitution,
         "param": packages.ParameterSubstitution,
+        "path-join": lambda *words: paths.PathJoinSubstitution(words),
+        "string-join": lambda delimiter, *words: paths.StringJoinSubstitution(words, delimiter),
         "var": values.LaunchConfiguration,
     }
 )

@@ -128,10 +128,19 @@ class ExecuteProcess(ExecuteLocal):
     )
 
 
+class Log(Action):
+    """A line of the log, at a level (launch rolling, actions/log.py)."""
+
+    names = ("msg", "level")
+
+
 class LogInfo(Action):
     """A line of the log."""
 
     names = ("msg",)
+
+
+LogDebug = LogWarning = LogError = LogInfo
 
 
 class EmitEvent(Action):

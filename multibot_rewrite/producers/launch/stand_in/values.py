@@ -18,6 +18,8 @@ from multibot_rewrite.base.bounded import load_yaml
 
 Text = Any
 SomeEntitiesType = SomeSubstitutionsType = Any
+# How the values of a loop are called among the locals of a context.
+ITERATED = "ForEachVar__"
 _TRUTHS: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -111,7 +113,7 @@ class LaunchContext:
 
 
 def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
-    if isinstance(subs, str):
+    if isinstance(subs, str | os.PathLike):
         return [TextSubstitution(text=subs)]
     if hasattr(subs, "perform"):
         return [subs]
@@ -119,7 +121,7 @@ def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
 
 
 def _normal(it: Any) -> Any:
-    if isinstance(it, str):
+    if isinstance(it, str | os.PathLike):
         return TextSubstitution(text=it)
     if hasattr(it, "perform"):
         return it
@@ -178,12 +180,10 @@ def _expression(it: Any, context: LaunchContext) -> str:
     return str(eval(text_of(context, it.expression), {}, known))
 
 
-def _path(it: Any, context: LaunchContext) -> str:
-    return os.path.join(*(text_of(context, one) for one in it.substitutions))
-
-
-def _file(context: LaunchContext) -> str:
-    return str(context.get_locals_as_dict()["current_launch_file_path"])
+def _iterated(it: Any, context: LaunchContext) -> str:
+    known = context.get_locals_as_dict()
+    own = {key.removeprefix(ITERATED): known[key] for key in known if key.startswith(ITERATED)}
+    return _found(context, own, text_of(context, it.name), it.default_value, "value of a loop")
 
 
 def _is(value: bool) -> str:
@@ -230,14 +230,6 @@ def _anonymous(it: Any, context: LaunchContext) -> str:
     return str(context.launch_configurations.setdefault(f"anon{name}", f"{name}_anonymous"))
 
 
-def _content(it: Any, context: LaunchContext) -> str:
-    path = text_of(context, it.path)
-    if not os.path.isfile(path):
-        raise SubstitutionFailure(f"File not found: {path}")
-    with open(path, encoding="utf-8") as file:
-        return file.read()
-
-
 class AllSubstitution(Substitution):
     """Are all of them true?"""
 
@@ -261,10 +253,7 @@ class AnySubstitution(AllSubstitution):
 TextSubstitution = _substitution(lambda it, context: str(it.text), "text")
 LaunchConfiguration = _substitution(_configuration, "variable_name", "default")
 EnvironmentVariable = _substitution(_variable, "name", "default_value")
-PathJoinSubstitution = _substitution(_path, "substitutions")
 PythonExpression = _substitution(_expression, "expression", "python_modules")
-ThisLaunchFile = _substitution(lambda it, context: _file(context))
-ThisLaunchFileDir = _substitution(lambda it, context: os.path.dirname(_file(context)))
 _SIDES = ("left", "right")
 EqualsSubstitution = _substitution(lambda it, context: _is(_equal(it, context)), *_SIDES)
 NotEqualsSubstitution = _substitution(lambda it, context: _is(not _equal(it, context)), *_SIDES)
@@ -274,14 +263,15 @@ NotSubstitution = _substitution(
     lambda it, context: _is(not _performed_truth(context, it.value)), "value"
 )
 IfElseSubstitution = _substitution(_chosen, "condition", "if_value", "else_value")
+# launch/substitutions/for_loop_var.py (rolling).
+ForEachVar = _substitution(_iterated, "name", "default_value")
+ForLoopIndex = _substitution(_iterated, "name", "default_value")
 AnonName = _substitution(_anonymous, "name")
-FileContent = _substitution(_content, "path")
 LocalSubstitution = _substitution(
     # The file is a program in Python, too.
     lambda it, context: eval(f"context.locals.{it.expression}", {}, {"context": context}),
     *("expression", "description"),
 )
-LaunchLogDir = _substitution(lambda it, context: os.environ.get("ROS_LOG_DIR", ""))
 # What they print is known to ``commands``.
 Command = _substitution(Substitution.perform, "command", others=("on_stderr",))
 FindExecutable = _substitution(Substitution.perform, "name")
