@@ -107,11 +107,13 @@ def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
 
 def names_below(node: yaml.Node) -> yaml.MappingNode | None:
     """The mapping whose keys are parts of names: the value, or what rcl reads in the same way, a list
-    of one mapping with one key (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
+    of one mapping with one key that has a list (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
     if isinstance(node, yaml.MappingNode):
         return node
     only = node.value[0] if isinstance(node, yaml.SequenceNode) and len(node.value) == 1 else None
-    return only if isinstance(only, yaml.MappingNode) and len(only.value) == 1 else None
+    if not isinstance(only, yaml.MappingNode) or len(only.value) != 1:
+        return None
+    return only if isinstance(only.value[0][1], yaml.SequenceNode) else None
 
 
 def items(node: yaml.Node | None) -> list[yaml.Node]:

@@ -16,6 +16,7 @@ from multibot_rewrite.companions.params.rcl_parameters import (
     parameters_text,
     typed,
 )
+from multibot_rewrite.companions.params.sections import flattened, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 
 TRUE = ["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"]
@@ -52,6 +53,9 @@ def test_what_is_no_number_is_one(text: str) -> None:
     assert isinstance(found, float) and math.isnan(found)
 
 
+OF_SINGLE = "p.yaml:3: a list holds a list or a map; rcl takes single values only"
+
+
 def read(text: str) -> YamlText:
     return read_yaml(text.encode(), "p.yaml")
 
@@ -72,10 +76,22 @@ def test_a_later_section_wins() -> None:
     assert exact_nodes(read(FILE)) == ["/r/node", "/other"]
 
 
+def test_a_list_of_one_mapping_is_that_mapping() -> None:
+    """As a node of rclpy jazzy has them, given such a file with --params-file."""
+    text = read("a: {ros__parameters: {x: {y: [{only: [b, c]}], z: [{w: [{v: [1]}]}]}}}\n")
+    assert node_parameters(text, "/a") == {"x.y.only": ["b", "c"], "x.z.w.v": [1]}
+    assert [name for name, _ in flattened(raw_sections(text)[0].body)] == ["x.y.only", "x.z.w.v"]
+
+
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ("[1, [2]]", "p.yaml:3: a list holds a list or a map; rcl takes single values only"),
+        ("[{a: [1], b: [2]}]", OF_SINGLE),
+        ("[{a: [1]}, {b: [2]}]", OF_SINGLE),
+        # A single value becomes a list there.
+        ("[{a: 1}]", OF_SINGLE),
+        ("[{}]", OF_SINGLE),
+        ("[1, [2]]", OF_SINGLE),
         (
             "[1, 2.0]",
             "p.yaml:3: the list mixes types, which rcl rejects; write all as floats, or quote all",

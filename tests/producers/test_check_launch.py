@@ -636,3 +636,48 @@ def test_one_vehicle_has_one_mavros(run: Graph) -> None:
     assert "MB412" not in codes(
         run(*of_vehicles(mavros("/uav1", **urls[0]), mavros("/uav2", **other)))
     )
+
+
+GPIO = """\
+controller_manager: {ros__parameters: {update_rate: 10}}
+gpios:
+  ros__parameters:
+    type: gpio_controllers/GpioCommandController
+    gpios: [lamps]
+    command_interfaces:
+      lamps:
+        - interfaces: [red]
+own: {ros__parameters: {type: acme/Own}}
+bare: {ros__parameters: {type: 5}}
+"""
+SPAWNED = """\
+from pathlib import Path
+from launch import LaunchDescription
+from launch.substitutions import PathSubstitution, ThisLaunchFileDir
+from launch_ros.actions import Node
+
+FILE = PathSubstitution(ThisLaunchFileDir()) / "control.yaml"
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="controller_manager", executable="ros2_control_node", parameters=[FILE]),
+        Node(package="controller_manager", executable="spawner",
+             arguments=["gpios", "own", "bare", "--param-file", FILE]),
+    ])
+"""
+
+
+def test_a_controller_has_the_type_of_its_own_section(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its spawner hands the file on (controller_manager jazzy spawner.py): any class may be there, and
+    it moves what a list of one mapping names, too."""
+    (tmp_path / "control.yaml").write_text(GPIO)
+    (tmp_path / "bringup.launch.py").write_text(SPAWNED)
+    assert main(["check-launch", str(tmp_path / "bringup.launch.py")]) == 1
+    said = capsys.readouterr()
+    told = [line.partition("error: ")[2] for line in said.out.splitlines() if "error: " in line]
+    assert [it.partition(" (")[0] for it in told] == [
+        "MG728 no parameter of /controller_manager says the type of bare"
+    ]
+    assert "/own (acme/Own)" in said.err
