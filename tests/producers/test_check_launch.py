@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_nodes import AT
+from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -33,6 +34,7 @@ from multibot_rewrite.system.records import System, clocks
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
 <parent link="base_link"/><child link="laser"/></joint></robot>'
+MANAGER = "/controller_manager"
 Graph = Callable[..., System]
 
 
@@ -370,6 +372,21 @@ def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: 
     timed = clocks(made)
     assert timed["/robot1/drive"] is timed["/robot1/controller_manager"] is True
     assert timed["/robot1/rsp"] is False
+
+
+def test_a_description_that_is_published_and_spawned_from_its_file_has_one_manager(
+    known: Knowledge, tmp_path: Path
+) -> None:
+    """It runs in the simulator once; where another launch file spawns it, there it is as well."""
+    text = (ROBOTS / "rover_gz.urdf").read_text()
+    (tmp_path / "rover.urdf").write_text(text)
+    create = node("ros_gz_sim/create", "create", arguments=("-file", str(tmp_path / "rover.urdf")))
+    spawner = node("controller_manager/spawner", "s", arguments=("drive", "-c", MANAGER))
+    every = (publisher("/", robot_description=text), create, spawner)
+    for nodes in (every, (every[0], spawner)):
+        made = would_run(LaunchGraph(nodes, ()), known)
+        assert [it.name for it in made.nodes].count(MANAGER) == 1
+        assert "MG301" not in codes(made)
 
 
 def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:

@@ -494,8 +494,10 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         *("MG721", False, _LATE),
         ('DeclareLaunchArgument("robot", default_value="r1")', _INCLUDE.format("")),
     ),
-    # launch jazzy normalize_to_list_of_substitutions_impl.py: a path is no text.
-    "a path": ("MG721", True, "", (_GZ.format('("gz_args", ["-r ", HERE])'),)),
+    # launch rolling normalize_to_list_of_substitutions_impl.py: a path is a text since humble 1.0.14,
+    # jazzy 3.4.10 and kilted 3.8.7; a number is none.
+    "a path": ("MG721", False, "", (_GZ.format('("gz_args", ["-r ", HERE])'),)),
+    "a number": ("MG721", True, "", (_GZ.format('("gz_args", ["-r ", 5])'),)),
     "its text": ("MG721", False, "", (_GZ.format('("gz_args", ["-r ", str(HERE)])'),)),
     # ros_gz jazzy gz_sim.launch.py.in has six arguments.
     "no argument": ("MG715", True, "", (_GZ.format('("render_engine", "ogre2")'),)),

@@ -96,21 +96,23 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     found = [*_apart(found, {full_name(it, None) for it in unsure})]
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
-    asked = {it.manager for it in spawned} - {it.full_name for it in found}
+    asked = {it.manager for it in spawned}
     first: dict[str, Rules] = {}
     for model in models.found:
         made = managers(model, dict(graph.files))
         if model.spawned and controller_way(known.release).process_wide:
             made = iter([_of_process(it, first) for it in made])
-        wanted = [it for it in made if model.spawned or full_name(it, None) in asked]
+        # A description may be published, and spawned from its file.
+        lost = asked if model.spawned else asked - {it.full_name for it in found}
+        wanted = [it for it in made if model.spawned or full_name(it, None) in lost]
         found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
         found += (*_plugins(model), *_helpers(model, known)) if model.spawned else ()
         started += wanted
     found += _clock(graph)
     by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
     controllers = _controllers(spawned, by_name, started, known)
-    lost = [it for it in spawned if it.manager not in by_name]
-    nodes, more = (*found, *controllers), (*notes, *_without_manager(lost))
+    alone = [it for it in spawned if it.manager not in by_name]
+    nodes, more = (*found, *controllers), (*notes, *_without_manager(alone))
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
 
 

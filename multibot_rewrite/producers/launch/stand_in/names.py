@@ -12,19 +12,22 @@ _AMENT = (
     "PackageNotFoundError get_package_prefix get_package_share_directory get_package_share_path "
     "get_packages_with_prefixes"
 )
+# launch rolling: actions/for_loop.py, log.py; substitutions/for_loop_var.py,
+# path_join_substitution.py, string_join_substitution.py.
+_NEWER_ACTIONS = "ForEach ForLoop Log LogDebug LogError LogWarning"
+_NEWER = "ForEachVar ForLoopIndex PathSubstitution StringJoinSubstitution"
 _SOURCES = "get_launch_description_from_python_launch_file load_python_launch_file_as_module"
 # What a launch file says by it is read.
 READ: Mapping[str, str] = {
     "launch": "Action Condition EventHandler LaunchContext LaunchDescription "
     "LaunchDescriptionSource SomeEntitiesType SomeEntitiesType_types_tuple SomeSubstitutionsType "
     "SomeSubstitutionsType_types_tuple Substitution",
-    "launch.actions": "AppendEnvironmentVariable DeclareLaunchArgument EmitEvent ExecuteLocal "
-    "ExecuteProcess ForEach ForLoop GroupAction IncludeLaunchDescription Log LogDebug LogError LogInfo "
-    "LogWarning OpaqueFunction PopEnvironment PopLaunchConfigurations PushEnvironment "
-    "PushLaunchConfigurations "
-    "RegisterEventHandler ResetEnvironment ResetLaunchConfigurations SetEnvironmentVariable "
-    "SetLaunchConfiguration Shutdown TimerAction UnregisterEventHandler UnsetEnvironmentVariable "
-    "UnsetLaunchConfiguration",
+    "launch.actions": f"{_NEWER_ACTIONS} "
+    "AppendEnvironmentVariable DeclareLaunchArgument EmitEvent ExecuteLocal "
+    "ExecuteProcess GroupAction IncludeLaunchDescription LogInfo OpaqueFunction PopEnvironment "
+    "PopLaunchConfigurations PushEnvironment PushLaunchConfigurations RegisterEventHandler "
+    "ResetEnvironment ResetLaunchConfigurations SetEnvironmentVariable SetLaunchConfiguration "
+    "Shutdown TimerAction UnregisterEventHandler UnsetEnvironmentVariable UnsetLaunchConfiguration",
     "launch.conditions": "IfCondition InvalidConditionExpressionError LaunchConfigurationEquals "
     "LaunchConfigurationNotEquals UnlessCondition evaluate_condition_expression",
     "launch.descriptions": "Executable",
@@ -36,12 +39,12 @@ READ: Mapping[str, str] = {
     "launch.launch_description_sources": f"AnyLaunchDescriptionSource "
     f"PythonLaunchDescriptionSource {_SOURCES}",
     "launch.logging": "get_logger",
-    "launch.substitutions": "AllSubstitution AndSubstitution AnonName AnySubstitution Command "
-    "EnvironmentVariable EqualsSubstitution FileContent FindExecutable ForEachVar "
-    "ForLoopIndex IfElseSubstitution LaunchConfiguration LaunchLogDir LocalSubstitution "
-    "NotEqualsSubstitution NotSubstitution OrSubstitution PathJoinSubstitution PathSubstitution "
-    "PythonExpression StringJoinSubstitution SubstitutionFailure TextSubstitution ThisLaunchFile "
-    "ThisLaunchFileDir",
+    "launch.substitutions": f"{_NEWER} "
+    "AllSubstitution AndSubstitution AnonName AnySubstitution Command "
+    "EnvironmentVariable EqualsSubstitution FileContent FindExecutable IfElseSubstitution "
+    "LaunchConfiguration LaunchLogDir LocalSubstitution NotEqualsSubstitution NotSubstitution "
+    "OrSubstitution PathJoinSubstitution PythonExpression SubstitutionFailure TextSubstitution "
+    "ThisLaunchFile ThisLaunchFileDir",
     "launch.utilities": "normalize_to_list_of_substitutions perform_substitutions",
     "launch_ros": "",
     "launch_ros.actions": "ComposableNodeContainer LifecycleNode LifecycleTransition "

@@ -11,6 +11,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -113,7 +114,7 @@ class LaunchContext:
 
 
 def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
-    if isinstance(subs, str | os.PathLike):
+    if isinstance(subs, str | Path):
         return [TextSubstitution(text=subs)]
     if hasattr(subs, "perform"):
         return [subs]
@@ -121,7 +122,7 @@ def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
 
 
 def _normal(it: Any) -> Any:
-    if isinstance(it, str | os.PathLike):
+    if isinstance(it, str | Path):
         return TextSubstitution(text=it)
     if hasattr(it, "perform"):
         return it
