@@ -36,7 +36,6 @@ from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launche
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
-# What a stack leaves to another launch file: a description that is spawned, a controller manager.
 _GIVES = (PUBLISHES, SERVES)
 _HINT = "the fleet would not start as planned; please report it, with the fleet file"
 

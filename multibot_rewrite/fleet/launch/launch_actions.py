@@ -255,7 +255,7 @@ def _spawner(given: _Given) -> Start:
     """What puts the robot into its simulator."""
     (it,) = spawn.in_folder(given.plan)
     start = spawn.spawner(it, spawn.is_classic(given.robot))
-    words = (File(word) if word == it.file else word for word in start.arguments)
+    words = (File(it.file) if it.file and word == it.file else word for word in start.arguments)
     return start._replace(arguments=tuple(words))
 
 

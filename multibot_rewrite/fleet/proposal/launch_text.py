@@ -154,10 +154,17 @@ def _list(reading: Reading, it: Any, depth: int) -> Any:
 
 
 def _sum(reading: Reading, it: Any, depth: int) -> Any:
-    both = [_joined(reading.value(one, depth)) for one in (it.left, it.right)]
-    if UNKNOWN in both or not isinstance(it.op, ast.Add | ast.Div):
-        return UNKNOWN
-    return os.path.join(*both) if isinstance(it.op, ast.Div) else "".join(both)
+    both = [reading.value(one, depth) for one in (it.left, it.right)]
+    if isinstance(it.op, ast.Div):
+        return _path(both)
+    texts = isinstance(it.op, ast.Add) and all(isinstance(one, str) for one in both)
+    return "".join(both) if texts else UNKNOWN
+
+
+def _path(parts: Sequence[Any]) -> Any:
+    """The path of these parts; UNKNOWN for none, and where one of them is unknown."""
+    found = [_joined(it) for it in parts]
+    return os.path.join(*found) if found and UNKNOWN not in found else UNKNOWN
 
 
 def _joined(found: Any) -> Any:
@@ -176,8 +183,7 @@ def _call(reading: Reading, it: Any, depth: int) -> Any:
         pieces = (
             it.args if name == "join" else getattr(argument(it, "substitutions", 0), "elts", [])
         )
-        found = [_joined(reading.value(one, depth)) for one in pieces]
-        return os.path.join(*found) if found and UNKNOWN not in found else UNKNOWN
+        return _path([reading.value(one, depth) for one in pieces])
     return reading.value(argument(it, _SAME[name], 0), depth) if name in _SAME else UNKNOWN
 
 

@@ -31,6 +31,7 @@ VALUES: dict[str, Any] = {
     "PathJoinSubstitution(['a', ['b', f()]])": UNKNOWN, "PathSubstitution('a') / 'b'": "a/b",
     "PathSubstitution(path=FindPackageShare('own')) / 'a' / ['b', '.c']": "own/a/b.c",
     "FindPackageShare('own') / 'a'": "own/a", "'a' / ['b', f()]": UNKNOWN, "'a' / []": UNKNOWN,
+    "['a'] + ['b']": UNKNOWN, "'a' + ['b']": UNKNOWN, "'a' / 5": UNKNOWN,
     "LaunchConfiguration('rate')": 5, "LaunchConfiguration(variable_name='flag')": True,
     "LaunchConfiguration('bad')": "[", "LaunchConfiguration('number')": 3,
     "LaunchConfiguration('empty')": "", "LaunchConfiguration('unknown')": UNKNOWN,
