@@ -138,10 +138,11 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
 no_manager = spawner_managers.NO_MANAGER._replace(
     check=_no_manager,
     bad=launch_of(
-        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager"))
+        _WITH_TYPE,
+        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager")),
     ),
     good=launch_of(_WITH_TYPE, _SPAWNER),
-    line=FIRST,
+    line=FIRST + 1,
     formats=(LAUNCH,),
     beside=NOTHING,
 )
