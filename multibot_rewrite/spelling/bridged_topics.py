@@ -11,7 +11,7 @@ from lxml import etree
 
 from multibot_rewrite import knowledge
 from multibot_rewrite.base.bounded import load_yaml, own_text
-from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
 from multibot_rewrite.description.rewriters.model_namespaces import is_model_namespace
@@ -73,6 +73,12 @@ def bridged_topics(
         for item in _robot_topics(inventory, robot, naming):
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
     return list(dict.fromkeys(bridged)), left
+
+
+def is_bridged(inventory: Inventory) -> bool:
+    """Has a description a topic that is bridged?"""
+    found = _robot_topics(inventory, "robot", make_naming("tf-per-robot"))
+    return any(isinstance(it, BridgedTopic) for it in found)
 
 
 def plugin_libraries(inventory: Inventory) -> list[str]:

@@ -47,9 +47,6 @@ REFUSED = {
     # reaches a costmap whose names have the robot at the end.
     *(("lyrical", "", it) for it in STACKS if it.startswith(("nav2", "navigation"))),
 }
-# What the rover's launch file does not start: a bridge without rows, a plugin that the rover has not,
-# and the windows of RViz, which stand in no robot's namespace.
-LEFT_TO_OTHERS = {"gz_ros2_control", "bridge_per_robot", "rviz_nav2", "rviz_moveit"}
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"
 
 
@@ -139,6 +136,25 @@ def test_what_sends_the_description_may_be_elsewhere(simulator: str, tmp_path: P
     assert main(["check-launch", str(launch), "--plan", str(out / "plan.yaml")]) == 3
 
 
+@pytest.mark.parametrize("robot", ["rover.urdf", "rover_gz.urdf"])
+@pytest.mark.parametrize("simulator", ["gazebo", "none"])
+def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_path: Path) -> None:
+    """The node of a plugin that it does not load, a bridge with nothing to bridge; RViz is optional."""
+    stacks = "distro: jazzy\nstack: [gz_ros2_control, bridge_per_robot, rviz_nav2]"
+    command = rovers(tmp_path, f"{stacks}\nsimulator: {simulator}")
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(fleet.read_text().replace("rover.urdf", robot))
+    assert main(command) == 0
+    out = tmp_path / "out"
+    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot2"]
+    runs = robot == "rover_gz.urdf" and simulator == "gazebo"
+    names = {f"/robot2/{it}" for it in ("gz_ros_control", "ros_gz_bridge")}
+    assert names & plan["nodes"].keys() == (names if runs else set())
+    assert "/robot2/rviz2" in plan["optional"]
+    launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
+    assert main(launched) in (0, 3)
+
+
 @pytest.mark.parametrize("stack", ["controllers", "gazebo_ros2_control"])
 def test_controllers_without_a_manager_are_not_built(
     stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -173,7 +189,7 @@ def test_every_stack_starts_without_an_error(layout: str, release: str, tmp_path
             continue
         launched = ["check-launch", str(out / "fleet.launch.py")]
         code = main(launched)
-        if code in (0, 3) and stack not in LEFT_TO_OTHERS:
+        if code in (0, 3):
             code = main([*launched, "--plan", str(out / "plan.yaml")])
         if code not in (0, 3):
             wrong[stack] = ("check-launch", code)

@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
@@ -44,8 +45,9 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
+from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
 
-WORLD = "world"
+WORLD, BRIDGE = "world", "ros_gz_bridge"
 # The stack of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
 # What decides the nodes of a robot.
@@ -82,7 +84,8 @@ def robot_nodes(
     parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
-    known, stack = _known(own, file), stack_nodes(spec, file)
+    known = _known(own, file)
+    stack = tuple(it for it in stack_nodes(spec, file) if _is_needed(it, spec, member))
     stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
@@ -137,6 +140,15 @@ def _is_mounted(root: _Element) -> bool:
     """Does a joint hold the robot on its link world?"""
     joints = root.iterfind("joint[@type='fixed']/parent")
     return any(it.get("link") == WORLD for it in joints)
+
+
+def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
+    """A plugin's node runs where the description loads the plugin, the robot's own bridge where there
+    is something to bridge."""
+    if it.plugin:
+        return library_key(it.plugin) in plugin_libraries(member.inventory)
+    of_one = it.name == BRIDGE and not it.shared
+    return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 
 
 def _standing(nodes: Iterable[NodeFacts], given: Iterable[GivenNode]) -> tuple[NodeFacts, ...]:
