@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
+from multibot_rewrite.rules.pair.nodes import missing_node
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
@@ -20,6 +21,7 @@ from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
 CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
+_LEFT = "no node of its stack is started here: name the launch file that does beside this one"
 MODULES = (ending, joints, models, rows, started, words, world)
 
 
@@ -40,6 +42,17 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
         moved = any(one.spawned and has_plugin(one.text.encode()) for one in launched.models.found)
         return it if is_sure(seen, it, moved) else it._replace(level=WARNING)
     return it
+
+
+def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
+    """What is missing by a plan: a stack of which the launch file starts no node for any robot is left
+    to another one, as a vendor's bringup starts its own nodes."""
+    there = {it.name for it in seen.nodes}
+    begun = {it.stack for it in plan.nodes if it.name in there}
+    left = {it.name for it in plan.nodes if it.stack and it.stack not in begun}
+    for it in found:
+        is_left = it.code == missing_node.code and it.node in left
+        yield it._replace(level=INCONCLUSIVE, hint=_LEFT) if is_left else it
 
 
 def has_plugin(description: bytes) -> bool:
