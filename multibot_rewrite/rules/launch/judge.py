@@ -21,7 +21,7 @@ from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
 CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
-_LEFT = "no node of its stack is started here: name the launch file that does beside this one"
+_LEFT = "no node of its stack or file is started here: name the launch file that does, too"
 MODULES = (ending, joints, models, rows, started, words, world)
 
 
@@ -45,11 +45,11 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
-    """What is missing by a plan: a stack of which the launch file starts no node for any robot is left
-    to another one, as a vendor's bringup starts its own nodes."""
+    """What is missing by a plan: a stack or parameter file of which the launch file starts no node for
+    any robot is left to another one, as a vendor's bringup starts its own nodes."""
     there = {it.name for it in seen.nodes}
-    begun = {it.stack for it in plan.nodes if it.name in there}
-    left = {it.name for it in plan.nodes if it.stack and it.stack not in begun}
+    begun = {it.stack or it.place.file for it in plan.nodes if it.name in there}
+    left = {it.name for it in plan.nodes if (it.stack or it.place.file) not in {*begun, ""}}
     for it in found:
         is_left = it.code == missing_node.code and it.node in left
         yield it._replace(level=INCONCLUSIVE, hint=_LEFT) if is_left else it
