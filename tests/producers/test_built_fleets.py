@@ -155,6 +155,20 @@ def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_pat
     assert main(launched) in (0, 3)
 
 
+def test_what_a_vendors_launch_files_start_is_left_to_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With ``params_style: bringup`` they start Nav2: of its nodes the folder alone proves nothing."""
+    example = ROOT / "examples" / "two_robots_nav2" / "fleet.yaml"
+    text = example.read_text().replace("../", f"{example.parent.parent}/")
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(f"params_style: bringup\n{text}")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
+    assert main(launched) == 3
+    assert "error: MG101" not in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("stack", ["controllers", "gazebo_ros2_control"])
 def test_controllers_without_a_manager_are_not_built(
     stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

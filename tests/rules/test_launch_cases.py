@@ -30,13 +30,15 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch
+from multibot_rewrite.rules.pair.nodes import missing_node, unplanned_node
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
 )
 from multibot_rewrite.system.guess import guess_robots, whose_by_guess
 from multibot_rewrite.system.index import index
+from multibot_rewrite.system.records import Node, Place, System
 
 START = "start ros2_control_node there, or load gz_ros2_control in the description"
 TF = ("tf2_ros", "static_transform_publisher", "s")
@@ -334,6 +336,35 @@ def test_joints_without_a_description(known: Knowledge) -> None:
     (other,) = judged(known, "MG724", joints, described()._replace(namespace="/r"))
     assert other.level == "error" and other.hint.startswith("start a robot_state_publisher there")
     assert judged(known, "MG724", joints, described()) == []
+
+
+LEFT = "no node of its stack or file is started here: name the launch file that does, too"
+
+
+@pytest.mark.parametrize(
+    ("running", "levels"),
+    [
+        ((), {"amcl": "inconclusive", "map": "inconclusive", "own": "error"}),
+        # It is started for another robot.
+        (("/r2/amcl",), {"amcl": "error", "map": "inconclusive", "own": "error"}),
+        (("/r2/map",), {"amcl": "inconclusive", "map": "error", "own": "error"}),
+    ],
+)
+def test_a_stack_may_be_in_another_launch_file(
+    running: tuple[str, ...], levels: dict[str, str]
+) -> None:
+    origins = {"amcl": {"stack": "nav2"}, "map": {"place": Place("nav2.yaml", 3)}, "own": {}}
+    plan = System(
+        tuple(Node(f"/{at}/{it}", **of) for it, of in origins.items() for at in ("r1", "r2"))  # type: ignore[arg-type]
+    )
+    seen = System(tuple(map(Node, running)))
+    found = [missing_node.finding("x", "y", node=f"/r1/{it}") for it in origins]
+    told = as_one_of_several(found, plan, seen)
+    assert {it.node.removeprefix("/r1/"): it.level for it in told} == levels
+    hints = {it.hint for it in as_one_of_several(found, plan, seen) if it.level == "inconclusive"}
+    assert hints == {LEFT}
+    other = unplanned_node.finding("x", "y", node="/r1/amcl")
+    assert [*as_one_of_several([other], plan, seen)] == [other]
 
 
 def managed(*names: str, **values: object) -> LaunchedNode:
