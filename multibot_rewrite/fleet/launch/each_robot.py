@@ -125,12 +125,19 @@ def _of_any(text: str, robot: str, word: str) -> str:
 
 
 def _parameters(group: Sequence[Written]) -> dict[tuple[int, int], Parameter]:
-    """What differs in texts, by line and number of the text in it."""
+    """Return the texts that differ besides the robot's name, by line and number of the text in it.
+
+    The values of a parameter are the texts that each robot has, not their templates.
+    """
     found: dict[tuple[int, int], Parameter] = {}
-    for at, lines in enumerate(zip(*map(_templates, group), strict=True)):
-        for number, texts in enumerate(zip(*(_TEXT.findall(it) for it in lines), strict=True)):
+    templates = zip(*map(_templates, group), strict=True)
+    for at, (lines, own) in enumerate(
+        zip(templates, zip(*(it.lines for it in group), strict=True), strict=True)
+    ):
+        for number, texts in enumerate(zip(*map(_TEXT.findall, lines), strict=True)):
             if len(set(texts)) > 1:
-                found[at, number] = _parameter(lines[0], number, texts, found.values())
+                values = tuple(_TEXT.findall(it)[number] for it in own)
+                found[at, number] = _parameter(lines[0], number, values, found.values())
     return found
 
 
