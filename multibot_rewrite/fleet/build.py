@@ -48,7 +48,6 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import (
 )
 from multibot_rewrite.fleet.outputs.shape_outputs import copied
 from multibot_rewrite.fleet.outputs.world_file import world_file
-from multibot_rewrite.fleet.outputs.yarp_files import yarp_files
 from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
 from multibot_rewrite.fleet.robots.apart import too_near
 from multibot_rewrite.fleet.robots.devices import one_device_each
@@ -111,7 +110,6 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             [
                 *in_style(plan, files),
                 *cell_outputs(plan, files),
-                *yarp_files(plan.robots),
                 *world_file(plan),
                 *rviz_files([] if configs else opened),
                 *commands_file(plan, each, rviz_commands(plan, opened)),

@@ -56,7 +56,6 @@ HOMES: tuple[Home, ...] = (
             "producers.launch.findings",
             "fleet.launch.launched_files",
             "fleet.outputs.controller_files",
-            "fleet.outputs.yarp_files",
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",

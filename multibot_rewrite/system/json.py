@@ -60,7 +60,6 @@ from multibot_rewrite.system.records import (
     Sure,
     System,
 )
-from multibot_rewrite.system.schema_1 import OldSnapshot, OldState, system_of
 
 _REMEDY = "use the file that multibot snapshot -o wrote"
 SCHEMA = 2
@@ -79,7 +78,6 @@ FULL_NAMES = {
     (End, "name"),
     (End, "node"),
     (Heard, "topic"),
-    (OldState, "node"),
     (Lookup, "node"),
     (Address, "node"),
     (Parameter, "node"),
@@ -208,8 +206,6 @@ def from_value(value: object, file: str) -> System:
     if not isinstance(value, dict):
         raise InputError(f"{file}: not a snapshot, but {shown(value)}")
     schema = value.pop("schema", None)
-    if schema == 1 and not isinstance(schema, bool):
-        return system_of(cast(OldSnapshot, record_from(OldSnapshot, value, file)))
     if schema != SCHEMA:
         hint = "take the snapshot again with this version"
         raise InputError(f"{file}: schema: expected {SCHEMA}, not {shown(schema)}; {hint}")

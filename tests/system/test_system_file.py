@@ -27,8 +27,6 @@ from multibot_rewrite.system.records import (
     Parameter,
     Robot,
     System,
-    answering,
-    clocks,
 )
 from multibot_rewrite.system.schema import schema
 
@@ -132,34 +130,3 @@ def test_what_is_wrong_is_said_with_its_keys(key: str, value: Any, said: str) ->
 @pytest.mark.parametrize("largest", [1e300, -1e300])
 def test_a_time_may_be_large_or_without_a_limit(largest: float) -> None:
     assert (read_seconds(largest), read_seconds(None)) == (largest, math.inf)
-
-
-def test_a_snapshot_of_schema_1_is_read() -> None:
-    old, new = "fixtures/snapshot_schema_1.json", "fixtures/graphs/both/healthy.json"
-    found = from_json((ROOT / old).read_bytes(), old)
-    assert found.ends and found.edges
-    assert found == from_json((ROOT / new).read_bytes(), new)
-
-
-def test_answers_of_schema_1_are_read() -> None:
-    states = [
-        {"node": "/a", "lifecycle": "active", "parameters": [{"name": "rate", "value": "5"}]},
-        {"node": "/m", "sim_time": True, "controllers": [{"name": "arm", "state": "active"}]},
-        {"node": "/silent"},
-    ]
-    old = json.loads((ROOT / "fixtures/snapshot_schema_1.json").read_bytes())
-    old |= {"nodes": [{"name": "/a", "process": ""}], "states": states}
-    found = from_json(json.dumps(old).encode(), "old")
-    assert found.nodes == (Node("/a", lifecycle="active"),)
-    assert (clocks(found), answering(found)) == ({"/m": True}, {"/a", "/m"})
-    assert found.controllers == (Controller("/m", "arm", "active"),)
-    assert Parameter("/a", "rate", "5") in found.parameters
-
-
-def test_what_is_wrong_in_schema_1_is_said_by_its_keys() -> None:
-    old = json.loads((ROOT / "fixtures/snapshot_schema_1.json").read_bytes())
-    with pytest.raises(InputError, match=r"old: states\[0\].sim_time: expected true or false"):
-        from_json(json.dumps({**old, "states": [{"node": "/a", "sim_time": 1}]}).encode(), "old")
-    del old["nodes"]
-    with pytest.raises(InputError, match="old: nodes: missing"):
-        from_json(json.dumps(old).encode(), "old")

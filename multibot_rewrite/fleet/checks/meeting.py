@@ -24,7 +24,7 @@ from multibot_rewrite.description.readback.reading import NODE, RuntimeName
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.fleet.robots.member import Member, line_of
-from multibot_rewrite.fleet.robots.own_values import YARP_FILES, Written, own_value, sources_of
+from multibot_rewrite.fleet.robots.own_values import Written, own_value, sources_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.system.records import KINDS
 
@@ -70,9 +70,6 @@ def _meetings(
     by_robot = {it.robot: it for it in members}
     for it in meetings(_named(table, members), naming):
         if it.name.kind in _OF_ROS and domains.get(it.robot) != domains.get(it.other):
-            continue
-        # Each robot gets its own of these, or it is told that it does not.
-        if it.name.path in YARP_FILES:
             continue
         yield _finding(it, by_robot.get(it.robot), written.get(it.robot))
 

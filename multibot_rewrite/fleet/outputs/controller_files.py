@@ -23,7 +23,6 @@ from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import text_slot
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.outputs.output_file import path_for
-from multibot_rewrite.fleet.outputs.yarp_files import own_yarp_paths
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 
 PARAMETERS = "parameters"
@@ -85,7 +84,8 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
     source = robot.member.inventory.document.source
     file = robot.spec.simulated or robot.spec.description
     params = robot.spec.companions.get("params", ())
-    edits, findings = list(own_yarp_paths(robot, folder)), []
+    edits: list[Edit] = []
+    findings: list[Finding] = []
     for path, slot in loaded_files(robot) if params else ():
         same = [it for it in params if is_same(path, it, file)]
         if same and folder:

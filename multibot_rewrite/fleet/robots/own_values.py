@@ -18,9 +18,6 @@ from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.document import attribute_slots
 from multibot_rewrite.fleet.robots.member import Member
 
-# Elements with a file of which a build writes one for each robot (``outputs/yarp_files.py``).
-YARP_FILES = ("yarpConfigurationFile", "yarpRobotInterfaceConfigurationFile")
-
 
 class Written(NamedTuple):
     """The file that a robot's description, or its model for the simulator, is made of, and the
