@@ -23,7 +23,7 @@ MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
 _PARTS = 1000
 # Of Python 3.11 and later; for 3.10 what pip installs, or Ubuntu 22.04 by the key that rosdep has.
 _PARSERS = ("tomllib", "tomli", "toml")
-_PLACE = lazy_compile(r" \((?:at )?line (\d+),? column (\d+)[^)]*\)$")
+_PLACE = lazy_compile(r" \((?:at )?line (\d+),? column (\d+)(?!\d)[^()]*\)$")
 
 
 def configured_vocabulary(near: str) -> tuple[str, ...]:

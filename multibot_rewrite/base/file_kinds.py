@@ -8,6 +8,7 @@ from codecs import BOM_UTF8
 from collections.abc import Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import COMMENT, without_comments
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 
@@ -60,32 +61,36 @@ KINDS: Mapping[str, FileKind] = {
     BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
     RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
 }
-_ROOT = rb"\A(?:<[?!].*?>\s*)*<"
+# Of XML: how the root begins; comments and declarations are left out before.
+_ROOT = rb"\A\s*(?:<!DOCTYPE[^<>]*>\s*)?<"
+_TREE = rb"<BehaviorTree\b|<root\b[^<>]*\b(?:BTCPP_format|main_tree_to_execute)\b"
 _XML = (
-    (CONFIG, lazy_compile(_ROOT + rb"model>", re.DOTALL)),
-    (LAUNCH, lazy_compile(rb"<launch[\s>]")),
+    (CONFIG, lazy_compile(_ROOT + rb"model>")),
+    (LAUNCH, lazy_compile(_ROOT + rb"launch[\s>]")),
+    (TREE, lazy_compile(_TREE)),
+    (WORLD, lazy_compile(_ROOT + rb"sdf\b[^<>]*>\s*<world\b")),
+    (SDF, lazy_compile(_ROOT + rb"sdf\b")),
+    (XACRO, lazy_compile(_ROOT + rb"robot\b[^<>]*\sxmlns:xacro")),
     (
-        TREE,
-        lazy_compile(rb"<BehaviorTree\b|<root\b[^>]*\b(?:BTCPP_format|main_tree_to_execute)\b"),
+        SRDF,
+        lazy_compile(
+            _ROOT + rb"robot\b(?s:.*?)<(?:group|group_state|disable_collisions|virtual_joint)\s"
+        ),
     ),
-    (WORLD, lazy_compile(rb"<sdf\b[^>]*>\s*(?:<!--.*?-->\s*)*<world\b", re.DOTALL)),
-    (SDF, lazy_compile(rb"<sdf\b")),
-    (XACRO, lazy_compile(rb"<robot\b[^>]*xmlns:xacro")),
-    (SRDF, lazy_compile(rb"<(?:group|group_state|disable_collisions|virtual_joint)\s")),
-    (URDF, lazy_compile(rb"<robot\b")),
-    (MUJOCO, lazy_compile(_ROOT + rb"mujoco\b", re.DOTALL)),
-    (MESH, lazy_compile(_ROOT + rb"COLLADA\b", re.DOTALL)),
-    (MANIFEST, lazy_compile(_ROOT + rb"package\b", re.DOTALL)),
+    (URDF, lazy_compile(_ROOT + rb"robot\b")),
+    (MUJOCO, lazy_compile(_ROOT + rb"mujoco\b")),
+    (MESH, lazy_compile(_ROOT + rb"COLLADA\b")),
+    (MANIFEST, lazy_compile(_ROOT + rb"package\b")),
 )
 # Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
 # one node's sections may be MoveIt's as well: that is a parameter file for its reader.
 BESIDE = (
-    (PARAMS, lazy_compile(rb"^\s+[\"']?ros_+parameters?[\"']?\s*:", re.MULTILINE)),
+    (PARAMS, lazy_compile(rb"^[^\S\n]+[\"']?ros_+parameters?[\"']?\s*:", re.MULTILINE)),
     (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),
     (
         BRIDGE,
         lazy_compile(
-            rb"^(?:-\s*\{?\s*[\"']?(?:topic_name|service_name|(?:ros|gz)_topic_name)"
+            rb"^(?:-\s*(?:\{\s*)?[\"']?(?:topic_name|service_name|(?:ros|gz)_topic_name)"
             rb"|(?:ros|gz)_(?:topic|type)_name)[\"']?\s*:",
             re.MULTILINE,
         ),
@@ -95,23 +100,26 @@ BESIDE = (
         lazy_compile(
             rb"^(?:joint_limits|moveit_simple_controller_manager|controller_names|controller_list"
             rb"|planner_configs|planning_plugins?|request_adapters"
-            rb"|\w+:\s*\n\s+(?:kinematics_solver|planner_configs|default_planner_config))\b",
+            rb"|\w+:[^\S\n]*\n\s+(?:kinematics_solver|planner_configs|default_planner_config))\b",
             re.MULTILINE,
         ),
     ),
-    (TREE, dict(_XML)[TREE]),
-    (LUA, lazy_compile(rb"^\s*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE)),
+    (TREE, lazy_compile(_TREE)),
+    (
+        LUA,
+        lazy_compile(rb"^[^\S\n]*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE),
+    ),
 )
 # What follows ``robots:`` in a fleet file is a list; a plan has keys of its own besides, and rules
 # alone have no more than a layout and a release.
-_ROBOTS = rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*"
+ROBOTS = rb"^robots:(?:\s|#[^\n]*\n)*"
 _OTHERS = (
-    (FLEET, lazy_compile(_ROBOTS + rb"[-\[]", re.MULTILINE)),
+    (FLEET, lazy_compile(ROBOTS + rb"[-\[]", re.MULTILINE)),
     (PLAN, lazy_compile(rb"^(?:ignored_nodes|ways):", re.MULTILINE)),
     (RULES, lazy_compile(rb"^layout:[^\n]*\n(?:distro:[^\n]*\n)?robots:", re.MULTILINE)),
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
-    (MAP, lazy_compile(rb"^image:[^\n]*\n(?:.*\n)*?resolution:", re.MULTILINE)),
+    (MAP, lazy_compile(rb"^image:(?:[^\n]*\n(?!image:))+?resolution:", re.MULTILINE)),
     (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
 )
 _ENDS = rb'"(?:nodes|ends|endpoints)"\s*:'
@@ -124,7 +132,7 @@ _JSON = (
 )
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
-    rb"<!--.*?-->|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
+    COMMENT + rb"|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
     rb"|\{%[-+]?[ \t]*(?:if|for|set|macro|include|block|extends)\b[^{}\n]*%\})",
     re.DOTALL | re.MULTILINE,
 )
@@ -146,7 +154,7 @@ def recognised(data: bytes) -> str:
     if started:
         return started
     if text.startswith(b"<"):
-        return _first(_XML, text)
+        return _first(_XML, without_comments(data.removeprefix(BOM_UTF8))[:_LOOKED_AT])
     return _first(_JSON if text.startswith(b"{") else (*BESIDE, *_OTHERS), text)
 
 

@@ -15,6 +15,7 @@ import re
 from collections.abc import Iterator
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
 from multibot_rewrite.base.record import NamedTuple
 
 _STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
@@ -38,12 +39,7 @@ ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 _BOM = b"\xef\xbb\xbf"
 # Who writes one of these without its declaration meant another program, which refuses it.
 _KEPT = {b"xacro", b"xml", b"xmlns"}
-# What has no end goes to the end of the text: no search starts twice.
-_PART = lazy_compile(
-    rb"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)"
-    rb"|<[^\s/>!?<](?:[^<>\"']|\"[^\"]*\"|'[^']*')*>",
-    re.DOTALL,
-)
+_PART = lazy_compile(SILENT + rb"|<[^\s/>!?<]" + ATTRIBUTES + rb">")
 _BEFORE_ALL = lazy_compile(rb"(?:\xef\xbb\xbf)?(?:\s|<\?xml\s.*?\?>)*", re.DOTALL)
 _DEFAULT = lazy_compile(rb"xmlns\s*=")
 _SPACED = lazy_compile(rb"\sxmlns\s*=\s*(?:\"[^\"]*\"|'[^']*')")

@@ -73,7 +73,7 @@ def _check_together(options: argparse.Namespace) -> None:
 
 
 def _check_path(path: str | None, known: str) -> None:
-    unknown = [word for word in re.findall(r"\{.*?\}", path or "") if word != known]
+    unknown = [word for word in re.findall(r"\{[^{}]*\}", path or "") if word != known]
     if unknown:
         hint = f"only {known} is filled in" if known else "one file serves all robots"
         raise UsageError(f"--output {path}: unknown placeholder {unknown[0]}, {hint}")

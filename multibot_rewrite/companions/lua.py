@@ -44,7 +44,7 @@ _TOKEN = lazy_compile(
     |(?P<comment>--\[(?P<c>=*)\[.*?\](?P=c)\]|--(?!\[=*\[)[^\n]*)
     |(?P<long>\[(?P<l>=*)\[.*?\](?P=l)\])
     |(?P<string>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')
-    |(?P<open>--\[=*\[|\[=*\[|["'])
+    |(?P<open>(?P<opening>--\[=*\[|\[=*\[|["']).*)
     |(?P<name>[A-Za-z_]\w*)
     |(?P<number>\.?\d(?:[eEpP][-+]|[\w.])*)
     |(?P<mark>\.{2,3}|[=~<>]=|.)""",
@@ -99,7 +99,7 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
         kind = found.lastgroup or "mark"
         if kind == "open":
             place = f"{file}:{text.count(chr(10), 0, found.start()) + 1}"
-            raise InputError(f"{place}: not valid Lua: {found[0]} is not closed; close it")
+            raise InputError(f"{place}: not valid Lua: {found['opening']} is not closed; close it")
         if kind not in _SILENT:
             yield Token(kind, found[0], found.start())
 

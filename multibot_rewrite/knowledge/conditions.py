@@ -74,7 +74,7 @@ _SAID = {
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"
-    r"(?:\s*(?P<how>!=|=|\b(?:has|lacks|names)\b)\s*(?P<value>.+?)|\s+(?P<state>set|unset))?"
+    r"(?:\s*(?P<how>!=|=|\b(?:has|lacks|names)\b)\s*(?P<value>\S.*)|\s+(?P<state>set|unset))?"
 )
 
 

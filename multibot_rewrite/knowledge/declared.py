@@ -23,10 +23,10 @@ _DEMANDS = os.path.join(os.path.dirname(__file__), "demanded.schema")
 YAML, DECLARED, READ, DEMANDED = "yaml", "declared", "read", "demanded"
 EVERY_NODE = "*"
 ANY, CHECKS, RELEASES = "any", " ! ", "releases="
-_WILD = re.compile(r"<[^>]*>")
+_WILD = re.compile(r"<[^<>]*>")
 # A name that is put together at run time says nothing.
-_EVERY = re.compile(r"(?:<[^>]*>\.?)*")
-_CHECK = re.compile(r"([\w:]+?)\((.*?)\)(?=\s[\w:]+\(|$)")
+_EVERY = re.compile(r"(?:<[^<>]*>\.?)*")
+_BETWEEN_CHECKS = re.compile(r"(?<=\))\s(?=[\w:]+\()")
 
 
 class Declared(NamedTuple):
@@ -46,7 +46,7 @@ class Declared(NamedTuple):
             return name == self.path
         # A pattern takes longer to compile than most paths to refuse.
         one = len(_pieces(self.path)) == 2
-        return _may_be(self.path, name) if one else _match(self.path, name) is not None
+        return _may_be(self.path, name) if one else _fillings(self.path, name) is not None
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
@@ -56,17 +56,13 @@ class Declared(NamedTuple):
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
     """Each check in a text with its arguments."""
-    return tuple((it[1], it[2]) for it in _CHECK.finditer(bounds))
+    checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
+    return tuple((name, arguments[:-1]) for name, _, arguments in checks)
 
 
 @lru_cache(maxsize=8192)
 def _pieces(path: str) -> list[str]:
     return _WILD.split(path)
-
-
-@lru_cache(maxsize=8192)
-def _pattern(path: str) -> re.Pattern[str]:
-    return re.compile("(.+)".join(map(re.escape, _pieces(path))))
 
 
 def _may_be(path: str, name: str) -> bool:
@@ -76,8 +72,21 @@ def _may_be(path: str, name: str) -> bool:
     return name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
 
 
-def _match(path: str, name: str) -> re.Match[str] | None:
-    return _pattern(path).fullmatch(name) if _may_be(path, name) else None
+def _fillings(path: str, name: str) -> list[str] | None:
+    """Return what stands in a name for each word in brackets of a path, the first as long as it can be;
+    None for a name that is not of the path."""
+    if not _may_be(path, name):
+        return None
+    first, *middle, last = _pieces(path)
+    end, found = len(name) - len(last), []
+    # From the end on, each piece where it comes last, with a character at least behind it.
+    for piece in reversed(middle):
+        at = name.rfind(piece, len(first) + 1, end - 1)
+        if at < 0:
+            return None
+        found.append(name[at + len(piece) : end])
+        end = at
+    return [name[len(first) : end], *reversed(found)] if end > len(first) else None
 
 
 @lru_cache(maxsize=512)
@@ -95,8 +104,7 @@ def is_known(owner: str) -> bool:
 
 def stands_for(path: str, name: str) -> dict[str, str]:
     """What the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
-    found = _match(path, name)
-    return dict(zip(_WILD.findall(path), found.groups(), strict=True)) if found else {}
+    return dict(zip(_WILD.findall(path), _fillings(path, name) or (), strict=False))
 
 
 def says_something(path: str) -> bool:

@@ -26,8 +26,11 @@ _TEMPLATE = lazy_compile("a template, in which another program")
 # What a reader's message says -> the rule that reports it.
 _CODES = (
     (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),
-    (lazy_compile("xacro failed[^:]*: package '[^']*' is not found"), "MB119"),
-    (lazy_compile("xacro failed[^:]*: Undefined substitution argument"), "MB145"),
+    (lazy_compile("xacro failed(?:(?!xacro failed)[^:])*: package '[^']*' is not found"), "MB119"),
+    (
+        lazy_compile("xacro failed(?:(?!xacro failed)[^:])*: Undefined substitution argument"),
+        "MB145",
+    ),
     (lazy_compile("xacro failed"), "MB103"),
     (_TEMPLATE, "MB105"),
 )
@@ -87,7 +90,9 @@ def _is_made_beside(path: str, name: str) -> bool:
     """Does another file of the package make a macro, property or argument of that name?"""
     own = package_of(path)
     folder = own[1] if own else os.path.dirname(os.path.abspath(path))
-    made = re.compile(rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % name.encode())
+    made = re.compile(
+        rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % re.escape(name).encode()
+    )
     others = (it for it in descriptions_below(folder) if it != os.path.abspath(path))
     return any(made.search(_text(it)) for it in others)
 

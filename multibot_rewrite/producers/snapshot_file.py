@@ -15,7 +15,7 @@ from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.records import System
 
 # A message in YAML starts with its only field; JSON has the name in quotes.
-_MESSAGE = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---\s*\n)*nodes:")
+_MESSAGE = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---[^\S\n]*\n)*nodes:")
 
 
 def read_snapshot(path: str) -> System:

@@ -24,7 +24,7 @@ _TURNED = {"true": "false", "false": "true", "True": "False", "False": "True", "
 # What an attribute has under another name: an argument or property alone.
 _ALONE = re.compile(r"\s*(?:\$\(arg ([\w-]+)\)|\$\{\s*(\w+)\s*\})\s*")
 # A name, as it is or in its argument, beside the words that it is compared with.
-_NAME = r"(?:\$\(arg\s+)?([\w-]+)\)?['\"]?\s*"
+_NAME = r"(?:\$\(arg\s+)?(?<![\w-])([\w-]+)\)?['\"]?\s*"
 _COMPARED = re.compile(_NAME + r"(?:[!=]=\s*(['\"][^'\"$]*['\"])|in\s*[\[(]([^\])]*))")
 _BEHIND = re.compile(r"(['\"][^'\"$]*['\"])\s*[!=]=\s*['\"]?" + _NAME)
 _WORD = re.compile(r"['\"]([^'\"]*)['\"]")

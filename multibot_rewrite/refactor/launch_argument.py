@@ -20,7 +20,7 @@ from multibot_rewrite.refactor.placing import Left
 from multibot_rewrite.refactor.source_edits import SourceEdit, edited
 
 _COMMAND = re.compile(rb"\$\(command\s+(['\"])(?=[^'\"]*xacro\s)[^'\"]*()\1")
-_ROOT = re.compile(rb"<launch\b[^>]*>")
+_ROOT = re.compile(rb"<launch\b[^<>]*>")
 _XACRO = re.compile(r"\bxacro\b")
 _FROM = rb"<param\s+from=\"[^\"]*%s\""
 _IMPORTS = {
@@ -35,7 +35,7 @@ OF_ROBOT = (
     *("robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui"),
     "controller_manager",
 )
-_NODE = rb"<node\b[^>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
+_NODE = rb"<node\b[^<>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
 _Placed = ast.expr | ast.stmt | ast.keyword
 # Spawners of simulators read the topic that follows: in the namespace, if it is relative.
 _TOPIC = "robot_description"

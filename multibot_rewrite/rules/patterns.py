@@ -31,9 +31,9 @@ def _check_pattern(pattern: str, where: str) -> None:
         raise UsageError(f"{where}: a pattern is empty")
     if pattern.startswith("!"):
         raise UsageError(f"{where}: {pattern!r}: a pattern cannot take files back in with '!'")
-    if re.search(r"\{.*\}", pattern):
+    if "}" in pattern.partition("{")[2]:
         raise UsageError(f"{where}: {pattern!r}: write one pattern each instead of {{a,b}}")
-    if "[" in re.sub(r"\[!?\]?[^\]]*\]", "", pattern):
+    if not all(it[1] for it in re.finditer(r"\[!?\]?[^\]]*(\]?)", pattern)):
         raise UsageError(f"{where}: {pattern!r}: a bracket is not closed")
     if ".." in pattern.split("/"):
         raise UsageError(f"{where}: {pattern!r} leads out of the folder, write the whole path")

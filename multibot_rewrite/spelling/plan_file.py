@@ -15,7 +15,7 @@ from functools import cache
 from math import inf
 
 from multibot_rewrite.base.bounded import QUOTED, load_json, load_yaml
-from multibot_rewrite.base.file_kinds import PLAN, refuse_others
+from multibot_rewrite.base.file_kinds import PLAN, ROBOTS, refuse_others
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
@@ -142,7 +142,7 @@ def from_yaml(data: bytes, file: str) -> System:
 
 
 # What follows ``robots:``, empty lines and comments aside.
-_ROBOTS = lazy_compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
+_ROBOTS = lazy_compile(ROBOTS + rb"([^\s#])", re.MULTILINE)
 _INCLUDE = lazy_compile(rb"^include:", re.MULTILINE)
 
 

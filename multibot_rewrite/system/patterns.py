@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.system.records import End, System
 
 ANY = "*"
@@ -63,4 +64,4 @@ def _there(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:
-    return re.compile(re.escape(pattern).replace(r"\*", "[^/]+"))
+    return re.compile(with_gaps(pattern.split(ANY), "[^/]"))

@@ -29,7 +29,6 @@ NULL = "tag:yaml.org,2002:null"
 # Booleans for rcl, but not for PyYAML.
 _BOOLEANS = frozenset("yYnN")
 _NUMBER = lazy_compile(r"[-+.\d]")
-_STEM = lazy_compile(r"(.*?)\d+")
 # Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
 # An empty prefix is replaced as well.
@@ -126,8 +125,9 @@ def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -
         child = branch.exact.get(word)
         if child:
             found.append((child, marks))
-        if branch.numbered and (stem := _STEM.fullmatch(word)) and stem[1] in branch.numbered:
-            found.append((branch.numbered[stem[1]], marks))
+        stem = word.rstrip("0123456789")
+        if stem != word and stem in branch.numbered:
+            found.append((branch.numbered[stem], marks))
         for kind, child in branch.wild.items():
             found.append((child, marks if kind in _IDS else (*marks, (key, at, kind))))
     return found

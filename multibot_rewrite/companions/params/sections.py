@@ -8,7 +8,7 @@ As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import yaml
 
@@ -264,13 +264,21 @@ def is_for(section: str, full: str) -> bool:
     """Is a section of this name for the node with this full name? Raises nothing."""
     if "*" not in section:
         return section.strip("/") == full.strip("/")
-    return re.fullmatch(_pattern_of(section), full) is not None
+    parts = section.strip("/").split("/")
+    # The numbers of parts that the words up to here fill; all ways are followed at once.
+    filled = _skipped({0}, parts)
+    for word in full.strip("/").split("/"):
+        fit = [at for at, part in enumerate(parts) if at in filled and part in ("**", "*", word)]
+        filled = _skipped({at + (parts[at] != "**") for at in fit}, parts)
+    return len(parts) in filled
 
 
-def _pattern_of(full: str) -> str:
-    """A wildcard section as a regular expression for full node names."""
-    parts = {"**": "(?:/[^/]+)*", "*": "/[^/]+"}
-    return "".join(parts.get(it, "/" + re.escape(it)) for it in full.strip("/").split("/"))
+def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
+    """The same, and those behind each ``**``, which may stand for nothing."""
+    for at, part in enumerate(parts):
+        if at in filled and part == "**":
+            filled.add(at + 1)
+    return filled
 
 
 def flattened(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode]]:

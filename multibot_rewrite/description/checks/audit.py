@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards
@@ -29,7 +30,7 @@ from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.description.steps.document import Document, without_comments
+from multibot_rewrite.description.steps.document import Document
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap

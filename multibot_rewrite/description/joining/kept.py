@@ -30,16 +30,18 @@ from multibot_rewrite.description.steps.document import read_document, silenced
 from multibot_rewrite.description.steps.spans import Spans
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
+# No comment holds two dashes.
+_INSIDE = rb"(?:[^-]|-(?!-))*?"
 _PART = lazy_compile(
-    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (.*?) -->", re.DOTALL
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (" + _INSIDE + rb") -->"
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
-_WAS = lazy_compile(rb"<!-- multibot was ([01]) (.*?) -->", re.DOTALL)
+_WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
 _OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
 _MARKS = lazy_compile(
-    rb"  <!-- multibot (?:base .*?-->\n|part .*?-->)|<!-- multibot (?:was .*?-->|end .*?-->\n)",
-    re.DOTALL,
+    rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
+    % ((_INSIDE,) * 4)
 )
 _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 

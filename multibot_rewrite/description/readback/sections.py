@@ -13,7 +13,7 @@ from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, Vocabu
 
 # gz-sim's loader takes a library with or without lib and .so, versions, and the old name
 # (gazebosim/gz-sim src/SystemLoader.cc).
-_LIBRARY = lazy_compile(r"(?:.*/)?(?:lib)?(.*?)(?:\.so|\.dylib|\.dll)?")
+_ENDING = lazy_compile(r"\.(?:so|dylib|dll)\Z")
 _SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
 ROS_1, ROS_2 = "1", "2"
 # Every plugin that is not known and has a <ros> is a node.
@@ -45,8 +45,8 @@ def _is_another(plugin: _Element, key: str, section: VocabularySection) -> bool:
 
 
 def _keys(plugin: _Element) -> Iterator[str]:
-    library = _LIBRARY.fullmatch(plugin.get("filename", "").strip())
-    name = library[1] if library else ""
+    library = plugin.get("filename", "").strip().rpartition("/")[2].removeprefix("lib")
+    name = _ENDING.sub("", library)
     system = _SYSTEM.fullmatch(name)
     yield f"gz-sim-{system[1]}" if system else name
     class_ = plugin.get("name", "").strip()

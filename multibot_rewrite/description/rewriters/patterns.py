@@ -15,11 +15,13 @@ from typing import TypeAlias
 
 from multibot_rewrite.base.lazy import lazy_compile
 
-# What a top-level "|" must not be looked for in, is one piece.
+# What a top-level "|" must not be looked for in, is one piece; a class without an end goes to the end.
+_CLASS = r"\[(?:\\.|\[:\w+:\]|[^\]\\[]|\[(?!:\w+:\]))*"
 _PIECES = lazy_compile(
-    r"\\(?:x[0-9a-fA-F]{2}|u00[0-9a-fA-F]{2}|.)|\[(?:\\.|\[:\w+:\]|[^\]])*\]|\{\d+(?:,\d*)?\}|\(\?:|.",
+    rf"\\(?:x[0-9a-fA-F]{{2}}|u00[0-9a-fA-F]{{2}}|.)|{_CLASS}\]?|\{{\d+(?:,\d*)?\}}|\(\?:|.",
     re.DOTALL,
 )
+_WHOLE_CLASS = lazy_compile(rf"{_CLASS}\]", re.DOTALL)
 _IN_CLASS = lazy_compile(r"\\(?:x[0-9a-fA-F]{2}|u00[0-9a-fA-F]{2}|.)|\[:\w+:\]|.", re.DOTALL)
 _LENGTH, _STATES, _DEPTH = 500, 2_000, 30
 _ALL = frozenset(map(chr, range(256)))
@@ -148,7 +150,7 @@ def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
         if pieces and _is_count(pieces[0]):
             raise PatternError(f"{piece} cannot be repeated")
         return lambda states, after: _add(states, piece, after)
-    if _is_count(piece) or piece == "[":
+    if _is_count(piece) or (piece[0] == "[" and not _WHOLE_CLASS.fullmatch(piece)):
         raise PatternError(f"{piece} repeats nothing, or is not closed")
     return _one(_characters(piece))
 

@@ -10,15 +10,17 @@ from contextlib import suppress
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import IN_EXPRESSION, IN_SUBSTITUTION
 from multibot_rewrite.base.outside import outside
+from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import XACRO, has_xacro
 
 # Files that are looked at; of a larger one nothing is read.
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
-_INCLUDED = lazy_compile(rb"""<(?:\w+:)?include\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
-_FILLED = lazy_compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+_INCLUDED = lazy_compile(rb"""<(?:\w+:)?include\b[^<>]*\bfilename\s*=\s*["']([^"'<]+)["']""")
+_FILLED = lazy_compile(rf"\$\{{{IN_EXPRESSION}\}}|\$\({IN_SUBSTITUTION}\)")
 _MACRO = lazy_compile(rb"<\w+:macro\b")
 _FIND = lazy_compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 
@@ -70,7 +72,7 @@ def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> 
 
 def _like(name: str) -> re.Pattern[str]:
     """What a name may be that has expressions of xacro in it."""
-    return re.compile(".+".join(map(re.escape, _FILLED.split(name))))
+    return re.compile(with_gaps(_FILLED.split(name), "."))
 
 
 def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:

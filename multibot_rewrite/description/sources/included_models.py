@@ -21,6 +21,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import COMMENT
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, outside, real_path, variable
 from multibot_rewrite.description.rewriters.text import text_at
@@ -33,8 +34,8 @@ _OWN = "__model__"
 _MERGED = frozenset({"link", "model", "joint", "frame", "gripper", "plugin"})
 # Before 1.7 a pose had a frame, and an axis that of the model above: not the same text in a new file.
 _OLD = lazy_compile(rb"\bframe\s*=|use_parent_model_frame")
-_SPACES = lazy_compile(rb"\s*\n\s*")
-_END = lazy_compile(rb"<!--.*?-->|</include\s*>|<include\b[^>]*/>", 16)
+_SPACES = lazy_compile(rb"(?<!\s)\s*\n\s*")
+_END = lazy_compile(COMMENT + rb"|</include\s*>|<include\b[^<>]*/>")
 
 
 def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ROBOT = "{robot}"
 # Stand for the words of a robot.
 MARKS = (TWIN, "qznamespacezq", "qztagzq")
-_TWICE = lazy_compile(r"(qz\w+?zq)[/_]*\1")
+_TWICE = lazy_compile(rf"({'|'.join(MARKS)})[/_]*\1")
 _PLACEHOLDER = lazy_compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]
 # Kind and text of a name -> another text of it.

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 
@@ -22,7 +22,6 @@ XACRO = ".xacro"
 # A list of parts, as YAML.
 JOIN = ".join"
 _MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
-COMMENT = lazy_compile(rb"<!--.*?-->", re.DOTALL)
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
@@ -61,7 +60,7 @@ def has_xacro(data: bytes) -> bool:
     """Does a text have elements of xacro, under whatever prefix?"""
     if b"xacro" not in data:
         return False
-    text = COMMENT.sub(b"", data)
+    text = without_comments(data)
     return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 

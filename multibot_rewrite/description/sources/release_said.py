@@ -22,7 +22,7 @@ HIGHEST = 6
 # What a build writes into its folder says for which release it did; a robot's files are one below.
 MANIFEST, BUILD = "manifest.json", "multibot build 1"
 _CI = (".github/workflows", ".gitlab-ci.yml")
-_LINE = lazy_compile(rb"(?i)[^\n]*(?:ros|distro)[^\n]*")
+_LINE = lazy_compile(rb"(?im)^[^\n]*?(?:ros|distro)[^\n]*")
 _RELEASE = lazy_compile(rb"(?i)\b(?:" + "|".join((*RELEASES, *ENDED)).encode() + rb")\b")
 _OLD_PACKAGE = r"(gazebo_(?:ros|plugins|ros_pkgs|ros2_control)|ign_ros2_control|ros_ign\w*)"
 _STARTED = lazy_compile(_OLD_PACKAGE)

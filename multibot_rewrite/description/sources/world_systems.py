@@ -22,7 +22,7 @@ from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.description.steps.spans import Spans
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
-_ASIDE = re.compile(_OPEN + rb"(<plugin\b.*?>)" + _CLOSE, re.DOTALL)
+_ASIDE = re.compile(_OPEN + rb"(<plugin\b(?:[^-]|-(?!-))*?>)" + _CLOSE)
 _TAGS = re.compile(rb"<plugin\b[^<]*")
 _SAID = re.compile(rb"""\b(filename|name)\s*=\s*(["'])(.*?)\2""", re.DOTALL)
 # A comment cannot hold two dashes, as the begin of another one.

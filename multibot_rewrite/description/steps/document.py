@@ -20,6 +20,7 @@ from multibot_rewrite.base.bounded import MAX_BYTES
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
+from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 
@@ -32,8 +33,8 @@ _PARSER = etree.XMLParser(
     resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
 )
 _OPENING = lazy_compile(rb"<[A-Za-z_:\x80-\xff]")
-_SILENT = lazy_compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
-_TAG = lazy_compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_SILENT = lazy_compile(SILENT)
+_TAG = lazy_compile(rb"<[^\s/<>]" + ATTRIBUTES + rb">")
 _COMMENTS = lazy_compile(rb"\s*(?:<!--.*?-->\s*)*", re.DOTALL)
 _ATTRIBUTE = lazy_compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
@@ -178,11 +179,6 @@ def silenced(source: bytes) -> bytes:
     if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
         return _SILENT.sub(lambda found: b" " * len(found[0]), source)
     return source
-
-
-def without_comments(source: bytes) -> bytes:
-    """A well-formed text without its comments and processing instructions."""
-    return _SILENT.sub(lambda found: found[0] if found[0].startswith(b"<![") else b"", source)
 
 
 def slot_values(root: etree._Element) -> list[str]:

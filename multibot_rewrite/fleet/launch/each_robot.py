@@ -11,9 +11,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.markup import STRING
 from multibot_rewrite.base.record import NamedTuple
 
-_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_TEXT = re.compile(STRING)
 # What these say is no robot's.
 _OF_PROGRAMS = ("package=", "executable=", "plugin=", "#")
 _POSE = {
@@ -190,4 +191,4 @@ def _with(line: str, at: int, given: dict[tuple[int, int], Parameter]) -> str:
             return found[0]
         return f"str({parameter.name})" if parameter.is_number else parameter.name
 
-    return re.sub(rf"f?{_TEXT.pattern}", one, line).replace(f'f"{{{_NAME}}}"', _NAME)
+    return re.sub(rf"f?{STRING}", one, line).replace(f'f"{{{_NAME}}}"', _NAME)

@@ -24,7 +24,9 @@ BRIDGES = "ros_gz_bridge"
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
 # A docstring, a comment, a string: whichever begins first.
-_TOKEN = re.compile(r'"""[\s\S]*?"""|#[^\n]*|\'(?:[^\'\\\n]|\\.)*\'|f?"(?:[^"\\\n]|\\.)*"')
+_TOKEN = re.compile(
+    r'"""[\s\S]*?(?:"""|\Z)|#[^\n]*|\'(?:[^\'\\\n]|\\.?)*\'?|f?"(?:[^"\\\n]|\\.?)*"?'
+)
 
 
 # The names that it imports where it uses them, in this order.

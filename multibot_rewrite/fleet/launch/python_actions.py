@@ -7,15 +7,19 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from multibot_rewrite.base.markup import STRING
 from multibot_rewrite.fleet.launch.starts import Component, File, Start, Text
 
 _Files = tuple[File, ...]
 # What stays in one line.
 _SHORT = 64
 _FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
-_TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
+_TEXTS = re.compile(STRING)
 # A key with its value, which may be a list or a call.
-_ENTRY = re.compile(rf"{_TEXTS.pattern}: (?:\[[^\]]*\]|\{{[^}}]*\}}|\w+\([^)]*\)|[^,\[{{]+)")
+_ENTRY = re.compile(
+    rf"{STRING}: (?:\[(?:[^\[\]\"]|{STRING})*\]|\{{(?:[^{{}}\"]|{STRING})*\}}"
+    rf"|\w+\((?:[^()\"]|{STRING})*\)|[^,\[{{]+)"
+)
 
 
 def group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:

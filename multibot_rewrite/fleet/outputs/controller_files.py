@@ -10,6 +10,7 @@ gz_ros2_control and gazebo_ros2_control hand ``<parameters>`` on as ``--params-f
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
@@ -28,7 +29,8 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 PARAMETERS = "parameters"
 # A package and the path in it, as xacro, a resource or an installed file names them.
 IN_PACKAGE = lazy_compile(
-    r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)"
+    r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)",
+    re.DOTALL,
 )
 
 OTHER_CONTROLLER_FILE = declare(

@@ -13,11 +13,11 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.description.steps.document import without_comments
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Start, shell_line

@@ -25,7 +25,7 @@ _PART = lazy_compile(
     r"gripper|hand|finger|camera|sensor|lidar|tool|effector|mount|wheel|dock|geometr"
 )
 # What a file manager calls a copy of a file.
-_COPY = lazy_compile(r"[ (_-]+copy\b\)?|\s*\(\d+\)")
+_COPY = lazy_compile(r"(?<![ (_-])[ (_-]+copy\b\)?|(?<!\s)\s*\(\d+\)")
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6
 # With a share of its names that is so many times as large, files are for this description.

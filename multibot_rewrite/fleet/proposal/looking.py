@@ -7,6 +7,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
 from lxml import etree
 
@@ -31,7 +32,7 @@ _CLASSIC = ("libgazebo_", "libhector_gazebo")
 _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
 # An argument of a xacro that is empty where nobody gives it.
-_EMPTY = lazy_compile(r"""<xacro:arg\b(?=[^>]*\bdefault=(?:""|''))[^>]*\bname=["'](\w+)""")
+_EMPTY = lazy_compile(r"""<xacro:arg\b(?=[^<>]*\bdefault=(?:""|''))[^<>]*\bname=["'](\w+)""")
 _MANAGER = "controller_manager"
 # A robot to expand a xacro for.
 ANY = "robot1"
@@ -252,13 +253,11 @@ def is_placed(it: Looked) -> bool:
 # What gives each robot its own names.
 _PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "ns")
 # A declaration in Python or XML: its default, or the first of its choices.
-_PYTHON = (
-    r"""["']%s["']\s*,(?:(?!Declare|LaunchConfiguration)[^\0]){0,400}?"""
-    r"""\b%s\s*=\s*\[?\s*["']([^"']+)"""
-)
-_XML = r"""<arg\b[^>]*\bname=["']%s["'][^>]*\bdefault=["']([^"'$]+)["']"""
+_XML = r"""<arg\b[^<>]*\bname=["']%s["'][^<>]*\bdefault=["']([^"'$]+)["']"""
+# Behind its name, what is said of an argument: so many characters at most, and not of another one.
+_NEAR, _ANOTHER = 400, re.compile(r"Declare|LaunchConfiguration")
 _DEFAULT, _CHOICES = "default(?:_value)?", "choices"
-_ARGUMENT = re.compile(r"""<xacro:arg\b[^>]*\bname=["'](\w+)["']""")
+_ARGUMENT = re.compile(r"""<xacro:arg\b[^<>]*\bname=["'](\w+)["']""")
 
 
 class NeededValues(NamedTuple):
@@ -273,9 +272,8 @@ class NeededValues(NamedTuple):
             return "{robot}_"
         if name in _NAME:
             return "{robot}"
-        word = re.escape(name)
-        patterns = (_PYTHON % (word, _DEFAULT), _XML % word, _PYTHON % (word, _CHOICES))
-        return next(self._found(patterns), "")
+        found = (self._declared(name, _DEFAULT), self._in_xml(name), self._declared(name, _CHOICES))
+        return next(chain(*found), "")
 
     def of_mandatory(self, path: str) -> dict[str, str]:
         """The arguments of a xacro that every launch has to choose a value for, with the first of them:
@@ -284,13 +282,18 @@ class NeededValues(NamedTuple):
         return {name: value for name in names if (value := self._choice(name))}
 
     def _choice(self, name: str) -> str:
-        word = re.escape(name)
-        with_default = any(self._found((_PYTHON % (word, _DEFAULT),)))
-        return "" if with_default else next(self._found((_PYTHON % (word, _CHOICES),)), "")
+        with_default = any(self._declared(name, _DEFAULT))
+        return "" if with_default else next(self._declared(name, _CHOICES), "")
 
-    def _found(self, patterns: Sequence[str]) -> Iterator[str]:
-        for pattern in patterns:
-            for path in self.launch:
-                found = re.search(pattern, text_of(path))
-                if found:
-                    yield found[1]
+    def _in_xml(self, name: str) -> Iterator[str]:
+        pattern = re.compile(_XML % re.escape(name))
+        yield from (found[1] for it in self.launch if (found := pattern.search(text_of(it))))
+
+    def _declared(self, name: str, key: str) -> Iterator[str]:
+        """The values that a key has where Python declares an argument."""
+        named = re.compile(rf"""["']{re.escape(name)}["']\s*,""")
+        value = re.compile(rf"""\b(?:{key})\s*=\s*(?:\[\s*)?["']([^"']+)["']""")
+        for text in map(text_of, self.launch):
+            ends = (it.end() for it in named.finditer(text))
+            near = (_ANOTHER.split(text[end : end + _NEAR], maxsplit=1)[0] for end in ends)
+            yield from (found[1] for it in near if (found := value.search(it)))

@@ -20,10 +20,10 @@ from multibot_rewrite.fleet.proposal.searching import Found, home_of
 
 # Descriptions whose names are looked at.
 MOST = 60
-_NAMED = re.compile(rb"""<(?:link|joint)\b[^>]*?\bname\s*=\s*["']([^"']+)["']""")
-_GROUP = re.compile(rb"""<group\b[^>]*?\bname\s*=\s*["']([^"']+)["']""")
-_FILLED_IN = re.compile(r"\$[({][^)}]*[)}]")
-_KEY = re.compile(rb"^[ \t-]*[\w./-]+:", re.MULTILINE)
+_NAMED = re.compile(rb"""<(?:link|joint)\b[^<>]*?\bname\s*=\s*["']([^"'<]+)["']""")
+_GROUP = re.compile(rb"""<group\b[^<>]*?\bname\s*=\s*["']([^"'<]+)["']""")
+_FILLED_IN = re.compile(r"\$[({](?:[^$)}]|\$(?![({]))*[)}]")
+_KEY = re.compile(rb"^[ \t-]*[\w./][\w./-]*:", re.MULTILINE)
 _WORD = re.compile(r"[\w.-]+")
 # How many names of a file another description has to have for each that is the robot's own: the files
 # of a robot name more than a variant of it has.

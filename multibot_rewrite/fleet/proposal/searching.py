@@ -41,13 +41,15 @@ _ENDS = (
 )
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
-_ROBOT = re.compile(rb"<robot\b[^>]*\sname\s*=")
+_ROBOT = re.compile(rb"<robot\b[^<>]*\sname\s*=")
 # What urdf-postfix has written is made of the robot that is meant.
 _REWRITTEN = re.compile(rb"<!-- multibot \S+ \+\d")
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
-_BRIDGE = re.compile(rb"^\s*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE)
+_BRIDGE = re.compile(
+    rb"^[^\S\n]*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE
+)
 # What launch files begin with, in a folder of theirs: many are called up.py.
-_LAUNCH = re.compile(rb"^def generate_launch_description|^\s*<launch\b", re.MULTILINE)
+_LAUNCH = re.compile(rb"^def generate_launch_description|^[^\S\n]*<launch\b", re.MULTILINE)
 # MoveIt's own files, by the names that its setup assistant gives them.
 _MOVEIT = frozenset(
     (

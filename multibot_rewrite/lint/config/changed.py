@@ -22,7 +22,7 @@ _LONGEST = 4096
 # The mode of a submodule in the list of an index.
 _SUBMODULE = b"160000 "
 # Only xacro knows these values: it may be any name.
-_UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
+_UNKNOWN = re.compile(rb"\$.*[)}]|\$.*|&#?\w+;", re.DOTALL)
 # Text in a file, or the end of its name -> files that it reads without naming them.
 _YAML = (b"load_yaml", ("*.yaml", "*.yml"))
 _BESIDE = ((".srdf", ".srdf.xacro"), ("*.urdf", "*.xacro"))

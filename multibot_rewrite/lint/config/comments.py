@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.selection import is_on, level_of
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import ATTRIBUTES
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.directives import (
@@ -23,7 +24,7 @@ from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 UNUSED, BROKEN = "MB002", "MB003"
 _CALL = lazy_compile(r"(.*):(\d+): ")
 # A xacro file whose root has no name is a part of another one.
-_NAMED = lazy_compile(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
+_NAMED = lazy_compile(rb"<robot\s" + ATTRIBUTES + rb"?\bname\s*=")
 # With one of these the file was not checked completely.
 _UNFINISHED = ALWAYS_REPORTED - {UNUSED, BROKEN}
 Position = tuple[int, int]

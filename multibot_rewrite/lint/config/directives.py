@@ -12,6 +12,7 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES
@@ -23,13 +24,10 @@ ALWAYS_REPORTED = frozenset(
     {"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103", "MB145", "MB119"}
 )
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = range(5)
-_PART = lazy_compile(
-    rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</?([^\s/>!?]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
-    re.DOTALL,
-)
-_DIRECTIVE = lazy_compile(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
+_PART = lazy_compile(SILENT + rb"|</?([^\s/<>!?\"']+)(?=[\s/>])" + ATTRIBUTES + rb">")
+_DIRECTIVE = lazy_compile(rb"<!--\s*urdf-lint\s*(?:(:)\s*)?(?=\S)([^\s:]*)(|[\s:].*)-->", re.DOTALL)
 # A dash or a colon with spaces around it, so that MB401-MB405 and MB401:MB402 are errors.
-_REASON = lazy_compile(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
+_REASON = lazy_compile(rb"(?::|(?<=\s)(?:-|\xe2\x80\x93|\xe2\x80\x94))(?=\s|$)")
 _WORD = lazy_compile(rb"[^\s,]+")
 _LIKE_A_CODE = lazy_compile(r"[A-Za-z]{1,3}-?\d+")
 # What only some expansions of a xacro file hold.

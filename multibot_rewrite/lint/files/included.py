@@ -8,11 +8,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of
-from multibot_rewrite.description.sources.read import COMMENT, read_file
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rules.settings import Settings
@@ -22,7 +23,7 @@ _INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)
 # What xacro fills in, and a name that says something beside it.
 _FILLED = lazy_compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
 _PACKAGE = lazy_compile(r"\$\(find\s+([^\s()]+)\s*\)")
-_LITERAL = lazy_compile(r"^[^*.]{4,}.*\*|\*[^*.]{4,}|^[^*]*$")
+_LITERAL = lazy_compile(r"^[^*.]{4}.*\*|\*[^*.]{4}|^[^*]*$")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
@@ -58,7 +59,7 @@ def _includes_itself(real: str) -> bool:
 
 def _included_by(path: str) -> Iterator[str]:
     """The files that a file includes, where only packages are to be filled in."""
-    for name in _INCLUDE.findall(COMMENT.sub(b"", _text(path))):
+    for name in _INCLUDE.findall(without_comments(_text(path))):
         text = _PACKAGE.sub(
             lambda it: package_folder(it[1], path, ()), name.decode("utf-8", "replace")
         )

@@ -10,7 +10,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.description.sources.packages import entries
 
-_NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+_NAME = lazy_compile(rb"<robot\b[^<>]*?\sname\s*=\s*[\"']([^\"'$<]+)[\"']")
 # What the name of an SRDF has in it.
 SRDF_MARK = ".srdf"
 # The root element is in the first bytes: the whole file need not be read.

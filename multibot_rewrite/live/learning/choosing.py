@@ -18,7 +18,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 # A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
 # Hidden nodes, launch and tf2 listeners: never part of a robot.
-NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)")
+NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)", re.DOTALL)
 
 
 class Helpers(NamedTuple):

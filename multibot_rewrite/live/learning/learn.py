@@ -16,6 +16,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.live.learning.choosing import (
@@ -274,8 +275,8 @@ def _signature(end: Endpoint, node: str) -> tuple[str, str, str]:
 def _pattern(end: Endpoint, node: str) -> re.Pattern[str]:
     """A pattern for an endpoint: <...> in its name stands for anything, a leading slash too."""
     kind, role, full = _signature(end, node)
-    text = re.escape(f"{kind} {role} {end.name if end.name[0] == '<' else full}")
-    return re.compile(re.sub(r"<[^<>/]+>", ".+", text))
+    text = f"{kind} {role} {end.name if end.name[0] == '<' else full}"
+    return re.compile(with_gaps(re.split(r"<[^<>/]+>", text), "."))
 
 
 def _listed(ends: Iterable[Endpoint]) -> str:

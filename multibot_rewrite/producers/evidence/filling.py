@@ -12,6 +12,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_topic_name
+from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
@@ -19,6 +20,7 @@ from multibot_rewrite.producers.evidence.records import Given, GivenNode
 _ID = re.compile(r"<([a-z_ ]+)>")
 # What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.
 _NUMBER = "N"
+_GAP = re.compile(r"\*|<[^<>]+>")
 # A type that a list has behind the name is called list/msg/Type and so on.
 OF_LIST = "list/"
 _TYPE = re.compile(r"/(?:msg|srv|action)/")
@@ -260,15 +262,18 @@ def _topics(name: str, given: Given) -> Iterator[tuple[str, str]]:
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:
     """The values that a parameter may stand for, in their order."""
-    pattern = _pattern(parameter)
-    if pattern == re.escape(parameter):
+    if not (_is_numbered(parameter) or _GAP.search(parameter)):
         return [parameter] if parameter in values else []
-    return [name for name in values if re.fullmatch(pattern, name)]
+    return [name for name in values if _pattern(parameter).fullmatch(name)]
+
+
+def _is_numbered(parameter: str) -> bool:
+    """Does it end with a number, as ``odomN``?"""
+    return parameter.endswith(_NUMBER) and parameter[:-1].islower()
 
 
 @lru_cache(maxsize=1024)
-def _pattern(parameter: str) -> str:
-    text = re.escape(parameter).replace(r"\*", r"[^.]+")
-    if parameter.endswith(_NUMBER) and parameter[:-1].islower():
-        text = rf"{text[: -len(_NUMBER)]}\d+"
-    return re.sub(r"<[^<>]+>", r"[^.]+", text)
+def _pattern(parameter: str) -> re.Pattern[str]:
+    number = r"\d+" if _is_numbered(parameter) else ""
+    name = parameter.removesuffix(_NUMBER) if number else parameter
+    return re.compile(with_gaps(_GAP.split(name), "[^.]") + number)

@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 
+from multibot_rewrite.base.markup import COMMENT
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
@@ -18,7 +19,7 @@ from multibot_rewrite.system.records import TOPIC
 
 Decide = Callable[[Condition], bool | None]
 _COMMENTS = {
-    ".xml": re.compile(r"<!--.*?-->", re.DOTALL),
+    ".xml": re.compile(COMMENT.decode()),
     ".lua": re.compile(r"--[^\n]*"),
     ".yaml": re.compile(r"(?m)(?:^|\s)#.*$"),
 }
@@ -90,5 +91,5 @@ def _has(path: str, words: Sequence[str]) -> bool:
         return False
     text = read_file(path).decode("utf-8", "replace")
     comments = _COMMENTS.get(os.path.splitext(path)[1])
-    plain = re.sub(r"\s*=\s*", " = ", comments.sub(" ", text) if comments else text)
+    plain = re.sub(r"(?<!\s)\s*=\s*", " = ", comments.sub(" ", text) if comments else text)
     return any(re.search(rf"(?<![\w/]){re.escape(it)}(?!\w)", plain) for it in words)

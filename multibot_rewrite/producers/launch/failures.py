@@ -33,7 +33,7 @@ _NO_VALUE = lazy_compile(
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
 _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
-_TRIED = lazy_compile(r"Caught multiple exceptions .*? of format \[\w+\]: - (.*?) - \w+Error: ")
+_NEXT_TRIED = lazy_compile(r" - \w+Error: ")
 _OF_ROS_1 = re.compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
     r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
@@ -56,7 +56,9 @@ def failure(error: BaseException) -> str:
         # The folder with links to sources is gone when this is read.
         text = text.replace(str(inner.filename), os.path.realpath(inner.filename))
     # launch tries its other forms, too, and says what each of them says.
-    text = f"{found[1] if (found := _TRIED.search(text)) else text}{_line(error)}"
+    if "Caught multiple exceptions " in text and (tried := text.partition("]: - ")[2]):
+        text = _NEXT_TRIED.split(tried)[0]
+    text += _line(error)
     return f"{text}; {_ROS_1}" if _OF_ROS_1.search(text) else text
 
 

@@ -15,8 +15,8 @@ from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.producers.launch.kept_paths import read_text
 
 _DECLARED = re.compile(
-    r"""DeclareLaunchArgument\(\s*(?:name\s*=\s*)?["']([\w.-]+)["']|<arg\s[^>]*\bname="([\w.-]+)\""""
-    r"""|-\s*arg:\s*\{?\s*name:\s*["']?([\w.-]+)"""
+    r"""DeclareLaunchArgument\(\s*(?:name\s*=\s*)?["']([\w.-]+)["']|<arg\s[^<>]*\bname="([\w.-]+)\""""
+    r"""|-\s*arg:\s*(?:\{\s*)?name:\s*["']?([\w.-]+)"""
 )
 # It may read any name: one that is made when it runs, or one for a file that it includes itself.
 _ANY = re.compile(

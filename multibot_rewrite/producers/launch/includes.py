@@ -41,7 +41,7 @@ _SPAWN_WORDS = {
     "model_string": "-string",
 }
 _BRIDGE = "ros_gz_bridge", "bridge_node"
-_LAUNCH_FILE = re.compile(r"\w+\.launch\.py")
+_LAUNCH_FILE = re.compile(r"(?<!\w)\w+\.launch\.py")
 _SHARE = re.compile(r"/share/([\w-]+)/")
 
 

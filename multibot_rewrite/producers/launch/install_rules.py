@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 
 _RULE = re.compile(
-    r"install\(\s*(?:DIRECTORY|FILES)\s+([^)]*?)\s+DESTINATION\s+\"?([^\s)\"]+)", re.IGNORECASE
+    r"install\(\s*(?:DIRECTORY|FILES)\s([^()]*?)\sDESTINATION\s+\"?([^\s)\"]+)", re.IGNORECASE
 )
 _PROJECT = re.compile(r"\$\{(?:PROJECT_NAME|CMAKE_PROJECT_NAME)\}")
 

@@ -47,7 +47,7 @@ from multibot_rewrite.system.records import (
 
 # nodl_observe writes no limit as the largest int32, rosgraph_monitor as 0.
 _NO_LIMIT = 2**31 - 1
-_CUT_SHORT = lazy_compile(r"^\s*- '?\.\.\.'?$", re.MULTILINE)
+_CUT_SHORT = lazy_compile(r"^[^\S\n]*- '?\.\.\.'?$", re.MULTILINE)
 _REQUEST = "_Request"
 NO_FRAMES = Caveat(
     "frames-not-read", False, "a rosgraph_msgs/Graph has no transforms: they are not compared"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import IN_EXPRESSION
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.subject import Subject
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 Starts = Mapping[_Element, int]
 _ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 # What is the same text for every caller.
-_CONSTANT = lazy_compile(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
-_EXPRESSION = lazy_compile(rb"\$\{([^}]*)\}")
+_CONSTANT = lazy_compile(rb"\$\((?:find [^()]*|dirname|env [^()]*)\)|\$\$")
+_EXPRESSION = lazy_compile(rf"\$\{{({IN_EXPRESSION})\}}".encode())
 _LITERAL = lazy_compile(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
 _NAME = lazy_compile(rb"[A-Za-z_]\w*")
 _OF_ARGUMENT = lazy_compile(

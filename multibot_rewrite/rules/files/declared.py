@@ -33,8 +33,8 @@ from multibot_rewrite.rules.files.section_facts import Given, Section, sections
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = lazy_compile(
     r"use_sim_time|start_type_description_service|qos_overrides\..*|diagnostic_updater\..*|bond_\w+|type"
-    r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|.*\.plugin|enable_parameter_\w+"
-    r"|.*plugin_?\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
+    r"|params_file|update_rate|is_async|async_parameters\..*|introspection.*|enable_parameter_\w+"
+    r"|.*plugin(?!.*?plugin)\w*|robot_description\w*|fallback_controllers|node_options_args|autostart_node|service_\w+"
 )
 _ARRAY = lazy_compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _WORD = lazy_compile(r"\w+")

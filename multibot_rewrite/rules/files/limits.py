@@ -38,8 +38,8 @@ _OF_URDF = {
 _ROUNDED = 1e-3
 _JOINT = lazy_compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]+)\.")
 _SRDF = ".srdf"
-_ROBOT = lazy_compile(rb"<robot\s[^>]*?name\s*=\s*[\"']([^\"'$]*)[\"']")
-_GROUP = lazy_compile(rb"<group\s[^>]*?name\s*=\s*[\"']([^\"']*)[\"']")
+_ROBOT = lazy_compile(rb"<robot\s[^<>]*?name\s*=\s*[\"']([^\"'$<]*)[\"']")
+_GROUP = lazy_compile(rb"<group\s[^<>]*?name\s*=\s*[\"']([^\"'<]*)[\"']")
 _ARM = """\
 <robot name="arm">
   <link name="base"/><link name="upper"/>

@@ -27,7 +27,7 @@ from multibot_rewrite.rules.files.parameter_files import file_parameters
 NODL = "nodl"
 # Folders of a package that have files of generate_parameter_library, and what those are called.
 _FOLDERS = ("src", "param", "params", "parameters", "config", "include", "")
-_CALLED = lazy_compile(r".*param\w*\.ya?ml")
+_CALLED = lazy_compile(r".*param(?!.*?param)\w*\.ya?ml")
 
 
 def facts_of_node(

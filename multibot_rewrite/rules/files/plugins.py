@@ -33,7 +33,9 @@ RENAMED = {
     "publish_odom_tf": "enable_odom_tf",
 }
 # A part of a filter of filter_chain.hpp (ros/filters), by its number.
-FILTER = re.compile(r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d{0,9}))\.(?P<word>\w+).*")
+FILTER = re.compile(
+    r"(?P<filter>(?P<chain>(?:\w+\.)*)filter(?P<number>\d{0,9}))\.(?P<word>\w+).*", re.DOTALL
+)
 _PLUGIN, _PRIMARY = ".plugin", ".primary_controller"
 _CRITICS, _NAMESPACES = ".critics", ".default_critic_namespaces"
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.markup import IN_SUBSTITUTION
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
 from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS
@@ -18,7 +19,7 @@ from multibot_rewrite.companions.sites import SECTION, Site
 from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
-_IN_VALUE = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}|%\w+")
+_IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
 # Stand for whole names of nodes.
 _ANY = ("*", "**")
 # What RViz calls the frame that everything is shown in.

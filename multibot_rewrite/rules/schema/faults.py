@@ -43,7 +43,7 @@ _BROKEN = {
     b"\t": lazy_compile(rb"\t(?<=[\d.]\t)"),
     b"\r": lazy_compile(rb"\r(?<=[\d.]\r)"),
 }
-_ASSIGNED = lazy_compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
+_ASSIGNED = lazy_compile(rb"(?<![\w.-])([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 # Joints of these types have no axis that urdfdom reads.
 _AXIS_FREE = ("fixed", "floating")
 

@@ -9,7 +9,7 @@ from math import isfinite
 
 from multibot_rewrite.base.lazy import lazy_compile
 
-_SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
+_SCALAR = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d\d?)?"
 _UNIT = r"(?:0+(?:\.\d*)?|\.\d+|1(?:\.0*)?)"
 # What most values look like. urdfdom accepts spaces before a single number and none after it.
 _ONE = lazy_compile(rf" *{_SCALAR}", re.ASCII)
@@ -37,7 +37,7 @@ COUNTS = {
 }
 # What numbers of these types may not be.
 _BEYOND = {"unsigned": "below 0", "positive": "not above 0", "positives": "not above 0"}
-_NUMBER = lazy_compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_NUMBER = lazy_compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _INFINITE = lazy_compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, rule
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import ATTRIBUTES
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.loose import loosely_written
 from multibot_rewrite.description.checks.problem import Problem
@@ -18,9 +19,9 @@ BOM = b"\xef\xbb\xbf"
 _ENCODINGS = (b"", b" ", b' encoding="utf-8"', b' encoding="UTF-8"')
 _USUAL = tuple(b'<?xml version="1.0"%b?>' % it for it in _ENCODINGS)
 _DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
-_ENCODED = lazy_compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
-_NAMESPACE = lazy_compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
-_ROOT = lazy_compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_ENCODED = lazy_compile(rb"<\?xml\s[^<>]*?\sencoding\s*=\s*[\"']([^\"'<]*)[\"']")
+_NAMESPACE = lazy_compile(rb"(?<!\s)\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = lazy_compile(rb"<robot\b" + ATTRIBUTES + rb">")
 
 
 @rule(

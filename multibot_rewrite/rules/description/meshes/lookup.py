@@ -26,7 +26,7 @@ from multibot_rewrite.rules.subject import EXPANDED, Subject
 _CMAKE = "CMakeLists.txt"
 # install(DIRECTORY a b DESTINATION share/${PROJECT_NAME}/below)
 _INSTALLED = lazy_compile(
-    rb"install\s*\(\s*DIRECTORY\s+([^)]*?)\s+DESTINATION\s+\"?share/\$\{PROJECT_NAME\}/?([^\s\")]*)",
+    rb"install\s*\(\s*DIRECTORY\s([^()]*?)\sDESTINATION\s+\"?share/\$\{PROJECT_NAME\}/?([^\s\")]*)",
     0,
 )
 

@@ -9,12 +9,13 @@ from collections.abc import Iterator, Mapping
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.markup import IN_EXPRESSION
 from multibot_rewrite.base.record import NamedTuple
 
 # What people call the parameter that is put in front of a robot's names.
 PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
 _PARAM = lazy_compile(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
-SUBSTITUTIONS = lazy_compile(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
+SUBSTITUTIONS = lazy_compile(rf"\$\{{({IN_EXPRESSION})\}}|\$\(arg\s+([^)\s]+)\s*\)")
 _LITERAL = lazy_compile(r"'[^']*'|\"[^\"]*\"")
 _WORD = lazy_compile(r"[A-Za-z_]\w*")
 # Tag -> the attribute that refers to a link or joint; empty for the text.
