@@ -19,6 +19,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -41,12 +42,22 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
-    """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
-    read: what a robot has is true of its sort. All are where they do something to each other, or name
-    other ones.
+    """Return what is wrong with the files of a fleet, which will be in ``folder``.
+
+    Every value of the launch file is compared. Of the files two robots of each sort are read: what a
+    robot has is true of its sort. All are read where they do something to each other, or name other
+    ones.
 
     Raises MultibotError where no temporary file can be written.
     """
+    with _temporary_folder() as home:
+        launch = next(it.data for it in made.files if it.path == LAUNCH)
+        printed = [*not_as_printed(made.starts, launch, home)]
+        wrong = [_fault(it.message, it.place, os.path.realpath(home)) for it in printed]
+    return [*dict.fromkeys((*wrong, *_of_files(plan, made, folder)))]
+
+
+def _of_files(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     sample = two_of_each(made, [it.spec for it in plan.robots])
     found, graph = _read(plan, sample.made, folder)
     alone = all(it.robots or it.robot in sample.alike for it in found)
@@ -66,10 +77,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         found = launched(graph, _known(plan))
         seen = found.system
-        wrong = [*not_as_planned(made.planned, seen, made.started, made.findings)]
+        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
+        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 

@@ -84,6 +84,11 @@ class RobotStarts(NamedTuple):
     windows: tuple[Start, ...] = ()
     nodes: tuple[str, ...] = ()
 
+    @property
+    def every(self) -> tuple[Start, ...]:
+        """All processes, whatever they are started under."""
+        return (*self.starts, *self.bridged_tf, *self.spawned, *self.windows)
+
 
 class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
@@ -100,6 +105,22 @@ class FleetStarts(NamedTuple):
     driving: Sequence[str]
     world: File | str = ""
     domains: Mapping[str, int] = TOGETHER
+
+    @property
+    def nodes(self) -> frozenset[str]:
+        """The full names of the planned nodes that are started."""
+        shared = (f"{it.namespace.rstrip('/')}/{it.name}" for it in self.shared if it.name)
+        return frozenset((*shared, *(node for it in self.robots for node in it.nodes)))
+
+    @property
+    def texts(self) -> frozenset[str]:
+        """The paths of the files whose texts are parameters."""
+        starts = (*self.shared, *self.windows, *(one for it in self.robots for one in it.every))
+        given = (it.parameters for one in starts for it in (one, *one.components))
+        values = (
+            it for one in given for row in one if isinstance(row, Mapping) for it in row.values()
+        )
+        return frozenset(it.path for it in values if isinstance(it, Text))
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
