@@ -49,8 +49,8 @@ class Difference(NamedTuple):
     place: Place
 
 
-def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> Iterator[Difference]:
-    """Yield each difference once: between what a launch file does and what is planned.
+def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list[Difference]:
+    """Return the differences between what a launch file does and what is planned, each once.
 
     It is written to an empty ``folder``. Each file whose text it reads has its own path as text there:
     which file is read is compared, and not what it says.
@@ -59,15 +59,14 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> Iter
         os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
         Path(folder, name).write_bytes(data)
     path, launches = os.path.join(folder, LAUNCH), _launches(starts)
-    seen: set[Difference] = set()
-    for it, found in zip(launches, performed(path, launches), strict=True):
-        if found.error:
-            differences = [Difference(found.error, Place(path, 1))]
+    found: list[Difference] = []
+    for it, done in zip(launches, performed(path, launches), strict=True):
+        if done.error:
+            found.append(Difference(done.error, Place(path, 1)))
         else:
             planned = _Planned(starts, it, os.path.realpath(folder))
-            differences = [*_differences([*planned.actions()], found.actions)]
-        yield from (one for one in differences if one not in seen)
-        seen.update(differences)
+            found += _differences([*planned.actions()], done.actions)
+    return [*dict.fromkeys(found)]
 
 
 def _launches(starts: FleetStarts) -> list[Launching]:
@@ -106,8 +105,7 @@ class _Planned(NamedTuple):
             given = {"name": name, "default_value": self.value(default), "description": about}
             yield Action("DeclareLaunchArgument", given)
         simulated = self.is_on("simulator")
-        for it in self.starts.simulators if simulated else ():
-            yield self.simulator(it)
+        yield from map(self.simulator, self.starts.simulators if simulated else ())
         of_simulator = [it for it in self.starts.shared if self.is_bridge(it)]
         others = [it for it in self.starts.shared if not self.is_bridge(it)]
         shared = [*(of_simulator if simulated else ()), *others]
@@ -152,11 +150,9 @@ class _Planned(NamedTuple):
         for start in it.starts:
             yield from self.process(start, environment, number)
             number += start.brought_up
-        for start in bridged:
-            yield from self.process(start, environment, number)
         if it.bridged_tf and not self.launch.installed:
             yield Action("LogInfo", {"msg": not_bridged(it.name)})
-        for start in (*spawned, *opened):
+        for start in (*bridged, *spawned, *opened):
             yield from self.process(start, environment, number)
 
     def simulator(self, name: str) -> Action:
@@ -185,7 +181,7 @@ class _Planned(NamedTuple):
         told["environment"] = dict(environment)
         yield Action("LifecycleNode" if it.brought_up else kind, told)
         if it.brought_up:
-            entities = [_change(number, _ACTIVATE)]
+            entities = [{"event": _change(number, _ACTIVATE)}]
             target = {"target_lifecycle_node": number, "entities": entities}
             yield Action("RegisterEventHandler", {**target, **_CONFIGURED})
             yield Action("EmitEvent", {"event": _change(number, _CONFIGURE)})

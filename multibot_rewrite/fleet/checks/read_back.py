@@ -50,9 +50,9 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
     Raises MultibotError where no temporary file can be written.
     """
-    with _temporary_folder() as home:
+    with _temporary_folder() as home, gc_paused():
         launch = next(it.data for it in made.files if it.path == LAUNCH)
-        printed = [*not_as_printed(made.starts, launch, home)]
+        printed = not_as_printed(made.starts, launch, home)
         wrong = [_fault(it.message, it.place, os.path.realpath(home)) for it in printed]
     return [*dict.fromkeys((*wrong, *_of_files(plan, made, folder)))]
 

@@ -115,11 +115,10 @@ class FleetStarts(NamedTuple):
     @property
     def texts(self) -> frozenset[str]:
         """The paths of the files whose texts are parameters."""
-        starts = (*self.shared, *self.windows, *(one for it in self.robots for one in it.every))
-        given = (it.parameters for one in starts for it in (one, *one.components))
-        values = (
-            it for one in given for row in one if isinstance(row, Mapping) for it in row.values()
-        )
+        starts = [*self.shared, *self.windows, *(one for it in self.robots for one in it.every)]
+        given = [row for it in starts for row in it.parameters]
+        given += [row for it in starts for one in it.components for row in one.parameters]
+        values = (one for row in given if isinstance(row, Mapping) for one in row.values())
         return frozenset(it.path for it in values if isinstance(it, Text))
 
 

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.launch.stand_in.packages import (
     PackageNotFoundError,
 )
 from multibot_rewrite.producers.launch.stand_in.parameters import evaluate_parameters
-from multibot_rewrite.producers.launch.stand_in.processes import EmitEvent, RegisterEventHandler
+from multibot_rewrite.producers.launch.stand_in.processes import RegisterEventHandler
 from multibot_rewrite.producers.launch.stand_in.ros import ComposableNode, LifecycleNode
 from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, text_of
 from multibot_rewrite.producers.launch.visit import EXECUTED
@@ -178,9 +178,7 @@ class _Seen(NamedTuple):
         return found
 
     def plain(self, it: Any) -> Any:
-        """Return a value as plain Python; a node with a life cycle is its number."""
-        if isinstance(it, LifecycleNode):
-            return self.managed.index(it)
+        """Return a value as plain Python."""
         if hasattr(it, "perform"):
             return text_of(self.context, it)
         if isinstance(it, PurePath):
@@ -189,10 +187,15 @@ class _Seen(NamedTuple):
             return {self.plain(key): self.plain(one) for key, one in it.items()}
         if isinstance(it, list | tuple):
             return [self.plain(one) for one in it]
+        return self.of_action(it)
+
+    def of_action(self, it: Any) -> Any:
+        """Return what is no plain value: a node with a life cycle is its number, what asks for such
+        nodes the numbers of those that it matches."""
+        if isinstance(it, LifecycleNode):
+            return self.managed.index(it)
         if isinstance(it, ComposableNode):
             return self.evaluated({name: getattr(it, name) for name in _OF_COMPONENT})
-        if isinstance(it, EmitEvent):
-            return self.plain(it.event)
         if isinstance(it, Kept):
             return self.kept(it)
         if callable(it):
