@@ -41,6 +41,7 @@ FULL = RobotStarts(
     (Start("ros_gz_sim", "create", arguments=("-name", "r1", "-x", "1.0")),),
     (("x", "no program"), ("y", "")),
     (Start("tf_bridge", "b", parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),),
+    not_bridged("r1"),
     (Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz"))),),
 )  # fmt: skip
 BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),), (), ())

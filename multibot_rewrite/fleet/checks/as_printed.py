@@ -28,7 +28,6 @@ from multibot_rewrite.fleet.launch.starts import (
     Text,
     launch_arguments,
 )
-from multibot_rewrite.fleet.outputs.relays import not_bridged
 from multibot_rewrite.producers.launch.performed import Action, Launching, performed, share
 from multibot_rewrite.system.records import Place
 
@@ -38,7 +37,7 @@ _CONFIGURED = {"start_state": "configuring", "goal_state": "inactive"}
 _BRIDGES = "ros_gz_bridge"
 _INCLUDED = {GZ: "ros_gz_sim/gz_sim", CLASSIC: "gazebo_ros/gazebo"}
 # More of a value is not shown.
-_SHOWN = 60
+_SHOWN = 100
 _NOTHING = object()
 
 
@@ -52,10 +51,11 @@ class Difference(NamedTuple):
 def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list[Difference]:
     """Return the differences between what a launch file does and what is planned, each once.
 
-    It is written to an empty ``folder``. Each file whose text it reads has its own path as text there:
-    which file is read is compared, and not what it says.
+    It is written to an empty ``folder``. Each file whose text it reads has a text of its own there: it
+    is compared which file is read, and not what it says.
     """
-    for name, data in {LAUNCH: launch_file, **{it: it.encode() for it in starts.texts}}.items():
+    texts = {it: _text_of(it).encode() for it in starts.texts}
+    for name, data in {LAUNCH: launch_file, **texts}.items():
         os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
         Path(folder, name).write_bytes(data)
     path, launches = os.path.join(folder, LAUNCH), _launches(starts)
@@ -69,6 +69,11 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list
     return [*dict.fromkeys(found)]
 
 
+def _text_of(path: str) -> str:
+    """Return a text that only its file has."""
+    return f"the text of {path}"
+
+
 def _launches(starts: FleetStarts) -> list[Launching]:
     """Return launches in which every launch argument has two values, and every way to choose robots
     is taken."""
@@ -77,13 +82,12 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
     first = ",".join(it.name for it in starts.robots[:2])
     other = {"headless": "true", "world": "other.sdf"}
-    every = (
+    return [
         Launching({}),
         Launching({name: it for name, it in off.items() if name in usual}, installed=False),
         Launching({"robots": first, **{name: it for name, it in other.items() if name in usual}}),
-        Launching({"robots": "1"}),
-    )
-    return list(every)
+        Launching({"robots": "1", "use_sim_time": "1"}),
+    ]
 
 
 class _Planned(NamedTuple):
@@ -122,7 +126,7 @@ class _Planned(NamedTuple):
 
     def is_on(self, argument: str) -> bool:
         """Is a launch argument that switches something true?"""
-        return bool(self.arguments.get(argument) == "true")
+        return self.arguments.get(argument) in ("true", "1")
 
     def is_bridge(self, it: Start) -> bool:
         """Is it of no use without the simulator?"""
@@ -151,7 +155,7 @@ class _Planned(NamedTuple):
             yield from self.process(start, environment, number)
             number += start.brought_up
         if it.bridged_tf and not self.launch.installed:
-            yield Action("LogInfo", {"msg": not_bridged(it.name)})
+            yield Action("LogInfo", {"msg": it.not_bridged})
         for start in (*bridged, *spawned, *opened):
             yield from self.process(start, environment, number)
 
@@ -208,7 +212,7 @@ class _Planned(NamedTuple):
         if isinstance(it, File):
             return os.path.join(self.home, it.path)
         if isinstance(it, Text):
-            return it.path
+            return _text_of(it.path)
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         return it

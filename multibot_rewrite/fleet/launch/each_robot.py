@@ -28,6 +28,8 @@ _MOST = 12
 _NAME = "name"
 # What a launch file calls otherwise in its functions.
 _TAKEN = frozenset((_NAME, "file", "text", "params", "str", "if_installed", "brought_up"))
+# What is printed of a robot, but for people.
+_VALUES = ("files", "starts", "spawned", "bridged_tf", "not_bridged", "windows")
 # Robots are of one kind only if they start the same programs.
 _OF_PROGRAMS = frozenset(("package", "executable", "plugin"))
 
@@ -75,7 +77,7 @@ def of_any(text: str, robot: str) -> str:
 def _kind(it: RobotStarts) -> object:
     """Return all of a robot but for the texts of its own."""
     left = tuple((name, of_any(why, it.name)) for name, why in it.left)
-    return left, _shape((it.files, it.starts, it.spawned, it.bridged_tf, it.windows))
+    return left, _shape([getattr(it, field) for field in _VALUES])
 
 
 def _shape(it: Any, field: str = "") -> object:
@@ -124,20 +126,13 @@ class _Merging(NamedTuple):
     def starts(self, group: Sequence[RobotStarts]) -> RobotStarts:
         """Return what all of them start."""
         first = group[0]
-        files, starts, spawned, bridged, windows = (
-            self.one([getattr(it, field) for it in group], field)
-            for field in ("files", "starts", "spawned", "bridged_tf", "windows")
-        )
+        values = {it: self.one([getattr(own, it) for own in group], it) for it in _VALUES}
         left = tuple((name, of_any(why, first.name)) for name, why in first.left)
         return first._replace(
             description=_any_of([it.description for it in group], "description"),
             where=_any_of([of_any(it.where, it.name) for it in group], "namespace"),
-            files=files,
-            starts=starts,
-            spawned=spawned,
             left=left,
-            bridged_tf=bridged,
-            windows=windows,
+            **values,
         )
 
     def one(self, values: Sequence[Any], label: str) -> Any:

@@ -19,7 +19,7 @@ from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, S
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_paths, path_for
-from multibot_rewrite.fleet.outputs.relays import relays
+from multibot_rewrite.fleet.outputs.relays import not_bridged, relays
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
@@ -75,7 +75,8 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
     found = tuple(starts), tuple(spawned), tuple(left.items())
     nodes = tuple(_nodes(names, left))
-    return RobotStarts(*told, *found, bridged_tf, nodes=nodes)
+    otherwise = not_bridged(robot.spec.name) if bridged_tf else ""
+    return RobotStarts(*told, *found, bridged_tf, otherwise, nodes=nodes)
 
 
 class _Given(NamedTuple):

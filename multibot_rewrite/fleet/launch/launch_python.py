@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.launch.starts import (
     RobotStarts,
     launch_arguments,
 )
-from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+from multibot_rewrite.fleet.outputs.relays import BRIDGE
 
 # What brings topics of a simulator is of no use without it.
 BRIDGES = "ros_gz_bridge"
@@ -220,7 +220,7 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     if it.bridged_tf:
         yield "        *if_installed("
         yield f"            {value(BRIDGE)},"
-        yield f"            {value(not_bridged(it.name))},"
+        yield f"            {value(it.not_bridged)},"
         yield "            ["
         for start in it.bridged_tf:
             yield from process(start, 16)

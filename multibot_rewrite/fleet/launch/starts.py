@@ -70,8 +70,8 @@ class RobotStarts(NamedTuple):
     """What one robot runs: ``description`` is the name of its file, ``where`` its namespace in words;
     ``files`` are its parameter files, ``spawned`` is what brings it into the simulator,
     ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its tf to
-    ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone. ``nodes`` are the
-    full names of those that are started."""
+    ``/tf`` where tf_namespace_bridge is installed, otherwise ``not_bridged`` is said. ``windows`` show
+    this robot alone. ``nodes`` are the full names of those that are started."""
 
     name: str
     description: str
@@ -81,6 +81,7 @@ class RobotStarts(NamedTuple):
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
     bridged_tf: tuple[Start, ...] = ()
+    not_bridged: str = ""
     windows: tuple[Start, ...] = ()
     nodes: tuple[str, ...] = ()
 

@@ -33,14 +33,7 @@ from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContex
 from multibot_rewrite.producers.launch.visit import EXECUTED
 from multibot_rewrite.system.records import Place
 
-_OF_COMPONENT = (
-    "package",
-    "node_plugin",
-    "node_name",
-    "node_namespace",
-    "parameters",
-    "remappings",
-)
+_OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
 class Launching(NamedTuple):
@@ -195,7 +188,10 @@ class _Seen(NamedTuple):
         if isinstance(it, LifecycleNode):
             return self.managed.index(it)
         if isinstance(it, ComposableNode):
-            return self.evaluated({name: getattr(it, name) for name in _OF_COMPONENT})
+            texts = {name: getattr(it, name) for name in _OF_COMPONENT}
+            given = {name: text_of(self.context, one) for name, one in texts.items() if one}
+            more = {"parameters": it.parameters or None, "remappings": it.remappings or None}
+            return given | self.evaluated(more)
         if isinstance(it, Kept):
             return self.kept(it)
         if callable(it):
