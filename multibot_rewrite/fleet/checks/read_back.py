@@ -18,12 +18,14 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
 from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -54,6 +56,9 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
         launch = next(it.data for it in made.files if it.path == LAUNCH)
         printed = not_as_printed(made.starts, launch, home)
         wrong = [_fault(it.message, it.place, os.path.realpath(home)) for it in printed]
+        commands = next(it.text for it in made.files if it.path == COMMANDS)
+        told = not_as_commanded(made.starts, commands)
+        wrong += [_fault(it, Place(COMMANDS, 1), home) for it in told]
     return [*dict.fromkeys((*wrong, *_of_files(plan, made, folder)))]
 
 

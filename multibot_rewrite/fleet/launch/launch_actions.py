@@ -142,7 +142,7 @@ def _sends(it: EndpointName, topic: str) -> bool:
 def _started(given: _Given, name: str) -> Iterator[Start]:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
-        yield _controller(given, it)
+        yield controller(given.plan, it)
     elif it.way != COMPONENT:
         program = program_of(facts, given.release)
         assert program is not None
@@ -233,13 +233,13 @@ def _description(robot: RewrittenRobot) -> str:
     return path_for(robot, expanded_name(robot.spec.description))
 
 
-def _controller(given: _Given, it: Started) -> Start:
-    """The spawner of a controller."""
-    words = (*spawner_arguments(it), *as_declared(given.plan, it.node.node))
+def controller(plan: FleetPlan, it: Started) -> Start:
+    """Return the spawner of a controller of the one robot of a plan."""
+    words = (*spawner_arguments(it), *_as_declared(plan, it.node.node))
     return Start(*SPAWN, it.node.namespace, arguments=words)
 
 
-def as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
+def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
     """The file of a controller whose own section has its type, and if a launch file leaves it
     inactive."""
     (robot,) = plan.robots
