@@ -22,8 +22,9 @@ from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.launch_file import fleet_starts, launch_file, started
+from multibot_rewrite.fleet.launch.launch_file import fleet_starts, launch_file
 from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
+from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_outputs
 from multibot_rewrite.fleet.outputs.commands_file import commands_file
@@ -73,13 +74,13 @@ TABLE = "remappings.yaml"
 
 
 class Outputs(NamedTuple):
-    """Every file of a fleet, in the order of paths, the findings about them, the full names of the
-    planned nodes that its launch file starts, and the plan."""
+    """Every file of a fleet, in the order of paths, the findings about them, what its launch file
+    starts, and the plan."""
 
     files: tuple[OutputFile, ...]
     findings: tuple[Finding, ...]
-    started: frozenset[str] = frozenset()
-    planned: System = System()
+    starts: FleetStarts
+    planned: System
 
 
 def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
@@ -124,7 +125,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
-        return Outputs(tuple(files), said, started(starts), planned)
+        return Outputs(tuple(files), said, starts, planned)
 
 
 def _of_robots(plan: FleetPlan) -> Iterator[Finding]:

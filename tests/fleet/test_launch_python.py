@@ -7,8 +7,9 @@ import ast
 
 import pytest
 
-from multibot_rewrite.fleet.launch.each_robot import Function, Written, functions
+from multibot_rewrite.fleet.launch.each_robot import Code, functions
 from multibot_rewrite.fleet.launch.launch_python import to_python
+from multibot_rewrite.fleet.launch.python_actions import value as python_value
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
@@ -40,6 +41,7 @@ FULL = RobotStarts(
     (Start("ros_gz_sim", "create", arguments=("-name", "r1", "-x", "1.0")),),
     (("x", "no program"), ("y", "")),
     (Start("tf_bridge", "b", parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),),
+    not_bridged("r1"),
     (Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz"))),),
 )  # fmt: skip
 BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),), (), ())
@@ -273,83 +275,159 @@ def test_a_line_for_a_shell() -> None:
     )
 
 
-# ---------------------------------------------------------------- robots that run the same
+# ---------------------------------------------------------------- robots that start the same
 
 
-def robot(name: str, *lines: str, about: str = "the rover {}", kind: str = "rover") -> Written:
-    return Written(name, about.format(name), kind, [f"    {it}" for it in lines])
+def robot(name: str, *starts: Start, kind: str = "rover.urdf") -> RobotStarts:
+    return RobotStarts(name, kind, f"namespace /{name}", (), starts, (), ())
+
+
+def given(name: str, *words: str, **named: str) -> RobotStarts:
+    return robot(name, Start("p", "e", arguments=words, **named))  # type: ignore[arg-type]
 
 
 def test_what_differs_is_a_parameter() -> None:
-    line = 'return ["{0}", "/{0}/a", "-x", "{1}", "-name", "{2}"]'
     both = [
-        robot(it, line.format(it, x, model), f'namespace="of_{it}x"')
+        given(it, it, f"/{it}/a", "-x", x, "-name", model, namespace=f"of_{it}x")
         for it, x, model in (("r1", "1.0", "m1"), ("r2", "2.5", "m2"))
     ]
     (made,) = functions(both)
-    assert made == Function(
-        (
-            "def start(name, x, model, namespace):",
-            '    """Start the rover <name>."""',
-            '    return [name, f"/{name}/a", "-x", str(x), "-name", model]',
-            "    namespace=namespace",
-        ),
-        (
-            ("r1", 'partial(start, "r1", x=1.0, model="m1", namespace="of_r1x")'),
-            ("r2", 'partial(start, "r2", x=2.5, model="m2", namespace="of_r2x")'),
-        ),
-    )
+    (start,) = made.starts.starts
+    assert made.title == "start" and made.parameters == ("namespace", "x", "model")
+    assert start.namespace == Code("namespace")
+    assert start.arguments == (
+        Code("name"), Code("f'/{name}/a'"), "-x", Code("str(x)"), "-name", Code("model")
+    )  # fmt: skip
+    assert made.calls == {"r1": ("'of_r1x'", "1.0", "'m1'"), "r2": ("'of_r2x'", "2.5", "'m2'")}
+    text = to_python(fleet(*both))
+    assert "def start(name, namespace, x, model):\n" in text
+    assert "    'r2': partial(start, 'r2', namespace='of_r2x', x=2.5, model='m2'),\n" in text
 
 
-def test_robots_that_run_other_things_have_functions_of_their_own() -> None:
-    found = functions([
-        robot("a", 'x("a")'), robot("b", 'x("b")'), robot("c", 'y("c")', kind="my arm"),
-        robot("d", 'y("d")', kind="my arm"), robot("e", 'z("e")'), robot("f", 'x("f", 1)'),
-        robot("g", 'x("g", 1)'),
-    ])  # fmt: skip
-    assert [it.lines[0] for it in found] == [
-        "def start_rover(name):", "def start_my_arm(name):", "def start_e():",
-        "def start_rover_2(name):",
-    ]  # fmt: skip
-    assert found[2].calls == (("e", "start_e"),)
-    assert found[2].lines == ("def start_e():", '    """Start the rover e."""', '    z("e")')
-    assert [name for it in found for name, _ in it.calls] == ["a", "b", "c", "d", "e", "f", "g"]
-
-
-def test_what_is_no_robots_stays() -> None:
-    both = [robot(it, 'package="p"', f"# of {it}", f'f("{{}}{it}", "x")') for it in ("p", "q")]
+@pytest.mark.parametrize("name", ["e", "gz", "p", "x", "name", "screen"])
+def test_a_text_of_all_robots_is_nobodys_name(name: str) -> None:
+    """A robot may be called like a program, a flag's word or a value that all robots have."""
+    both = [given(it, "gz", "name", "x/e", "screen", f"/{it}/p") for it in (name, "other")]
     (made,) = functions(both)
-    assert made.lines[2:4] == ('    package="p"', "    # of <name>")
+    assert made.starts.starts[0].arguments == ("gz", "name", "x/e", "screen", Code("f'/{name}/p'"))
+
+
+def test_one_robot_is_called_like_its_file() -> None:
+    (made,) = functions([given(it, f"{it}/rover.urdf") for it in ("rover", "scout")])
+    assert made.starts.starts[0].arguments == (Code("f'{name}/rover.urdf'"),)
+    assert made.parameters == ()
+
+
+def test_a_name_with_more_behind_it_that_differs_is_no_template() -> None:
+    (made,) = functions([given("r1", "-name", "r1_red"), given("r2", "-name", "r2_blue")])
+    assert made.calls == {"r1": ("'r1_red'",), "r2": ("'r2_blue'",)}
+    (made,) = functions([given("r1", "-name", "r1_red"), given("r2", "-name", "r2_red")])
+    assert made.starts.starts[0].arguments == ("-name", Code("f'{name}_red'"))
 
 
 @pytest.mark.parametrize(
-    ("line", "name"),
+    "text", ["{name}", "a{0}", "it's", 'a "b"', "a\\b", "\n", "\U0001f916", "\\N{x}", "\udc80"]
+)
+def test_any_text_is_printed_as_it_is(text: str) -> None:
+    for it in ("r1", "r2"):
+        (made,) = functions([given(one, f"{text}/{one}/{text}") for one in (it, "z")])
+        (word,) = made.starts.starts[0].arguments
+        assert isinstance(word, Code)
+        assert eval(word, {"name": it}) == f"{text}/{it}/{text}"
+    assert eval(python_value(text)) == text
+
+
+def test_robots_that_start_other_things_have_functions_of_their_own() -> None:
+    two, managed = (Start("p", "e"), Start("p", "e")), Start("p", "e", brought_up=True)
+    found = functions([
+        given("a", "a"), given("b", "b"), robot("c", *two, kind="my arm.urdf"),
+        robot("d", *two, kind="my arm.urdf"), robot("e", Start("p", "f")),
+        robot("f", managed), robot("g", managed),
+    ])  # fmt: skip
+    assert [(it.title, [*it.calls]) for it in found] == [
+        ("start_rover", ["a", "b"]), ("start_my_arm", ["c", "d"]), ("start_e", ["e"]),
+        ("start_rover_2", ["f", "g"]),
+    ]  # fmt: skip
+
+
+def test_no_two_functions_have_one_title() -> None:
+    """Robots may be called like the function of a kind, or like its second one."""
+    others = [robot(it, Start("p", it)) for it in ("rover", "rover_2", "rover-2")]
+    titles = [it.title for it in functions([given("a", "a"), given("b", "b"), *others])]
+    assert titles == ["start_rover", "start_rover_2", "start_rover_2_2", "start_rover_2_3"]
+
+
+def test_a_value_of_another_type_is_another_kind() -> None:
+    def start(name: str, value: object) -> RobotStarts:
+        return robot(name, Start("p", "e", parameters=({"a": value},)))
+
+    assert len(functions([start("a", 1), start("b", 1.0)])) == 2
+    assert len(functions([start("a", 1), start("b", True)])) == 2
+    assert len(functions([start("a", File("f")), start("b", Text("f"))])) == 2
+    assert len(functions([start("a", File("f")), start("b", File("g"))])) == 1
+
+
+def test_a_key_may_have_the_name_of_the_robot() -> None:
+    (made,) = functions([
+        robot(it, Start("p", "e", parameters=({f"{it}.type": "T"},))) for it in ("a", "b")
+    ])  # fmt: skip
+    assert made.starts.starts[0].parameters == ({Code("f'{name}.type'"): "T"},)
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
     [
-        ('a=["-y", "{}"]', "y"), ('a=["--yaw", "{}"]', "yaw"), ('a=["-R", "{}"]', "roll"),
-        ('a=["-P", "{}"]', "pitch"), ('a=["-Y", "{}"]', "yaw"), ('a=["--roll", "{}"]', "roll"),
-        ('namespace="{}"', "namespace"), ('name="{}"', "value"), ('"some key": "{}"', "some_key"),
-        ('a=["--Long-Flag", "{}"]', "long_flag"), ('"1": "{}"', "value"), ('f("{}")', "value"),
+        (("-y", "{}"), "y"), (("--yaw", "{}"), "yaw"), (("-R", "{}"), "roll"),
+        (("-P", "{}"), "pitch"), (("-Y", "{}"), "yaw"), (("--roll", "{}"), "roll"),
+        (("-name", "{}"), "model"), (("--Long-Flag", "{}"), "long_flag"), (("{}",), "arguments"),
+        # What the functions of a launch file need is not hidden, and no word of Python is taken.
+        (("-file", "{}"), "value"), (("-text", "{}"), "value"), (("--from", "{}"), "value"),
+        (("--params", "{}"), "value"),
     ],
 )  # fmt: skip
-def test_a_parameter_is_called_by_what_is_before_it(line: str, name: str) -> None:
-    (made,) = functions([robot(it, line.format(text)) for it, text in (("a", "v"), ("b", "w"))])
-    assert made.lines[0] == f"def start(name, {name}):"
-    assert made.calls[0][1] == f'partial(start, "a", {name}="v")'
+def test_a_parameter_is_called_by_what_is_before_it(words: tuple[str, ...], name: str) -> None:
+    (made,) = functions([
+        given(it, *(one.format(text) for one in words)) for it, text in (("a", "v"), ("b", "w"))
+    ])  # fmt: skip
+    assert made.parameters == (name,)
+    assert made.calls == {"a": ("'v'",), "b": ("'w'",)}
+
+
+def test_a_parameter_is_called_by_its_keyword_or_key() -> None:
+    def start(name: str, it: str) -> RobotStarts:
+        values = ({"some.key": it, "1": it + it}, File(it * 3))
+        return robot(name, Start("p", "e", it * 4, it * 5, values, ((it * 6, it * 7),)))
+
+    (made,) = functions([start("r1", "v"), start("r2", "w")])
+    assert made.parameters == (
+        *("namespace", "node_name", "some_key", "value", "parameters", "remappings"),
+        "remappings_2",
+    )
 
 
 def test_two_values_of_one_name_are_numbered_and_equal_ones_are_one() -> None:
-    line = 'f("-x", "{0}", "-x", "{1}", "-x", "{0}")'
     (made,) = functions([
-        robot("a", line.format("1.0", "2.0")), robot("b", line.format("3.0", "4.0"))
+        given("a", "-x", "1.0", "-x", "2.0", "-x", "1.0"),
+        given("b", "-x", "3.0", "-x", "4.0", "-x", "3.0"),
     ])  # fmt: skip
-    assert made.lines[0] == "def start(name, x, x_2):"
-    assert made.lines[2] == '    f("-x", str(x), "-x", str(x_2), "-x", str(x))'
-    # 1 and 1.0 are other texts than the numbers give.
-    (made,) = functions([robot("a", 'f("-x", "1")'), robot("b", 'f("-x", "2.0")')])
-    assert made.calls[0][1] == 'partial(start, "a", x="1")' and made.lines[2] == '    f("-x", x)'
+    assert made.parameters == ("x", "x_2")
+    codes = [it for it in made.starts.starts[0].arguments if isinstance(it, Code)]
+    assert codes == [Code("str(x)"), Code("str(x_2)"), Code("str(x)")]
+    # 1 and 1.0 are other texts than the numbers give, and there is no literal of these two.
+    for text in ("1", "nan", "inf"):
+        (made,) = functions([given("a", "-x", text), given("b", "-x", "2.0")])
+        assert made.calls["a"] == (f"'{text}'",)
 
 
 @pytest.mark.parametrize(("count", "alike"), [(12, True), (13, False)])
 def test_robots_that_differ_much_are_not_one_kind(count: int, alike: bool) -> None:
-    both = [robot(it, *(f'k{at}="{it}v{at}"' for at in range(count))) for it in ("a", "b")]
+    both = [given(it, *(f"{it}v{at}" for at in range(count))) for it in ("a", "b")]
     assert (len(functions(both)) == 1) is alike
+
+
+def test_a_file_name_ends_no_docstring_and_no_comment() -> None:
+    odd = 'a"""\n\\b.urdf'
+    text = to_python(fleet(FULL._replace(description=odd, left=(("x", odd),))))
+    assert ast.parse(text).body
+    quotes = "'" * 3
+    assert f"Start a{quotes} /b.urdf in" in text and f"# Not started: x (a{quotes} /b.urdf)" in text

@@ -55,7 +55,9 @@ def test_a_rule_that_a_rehearsal_would_miss_is_an_error() -> None:
     example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
     plan = plan_fleet(read_fleet(example, "humble", os.environ), trust=True)
     spoiled = edited(make_outputs(plan, OUT), in_launch(without("~/robot_description")))
-    found = {it.node: it.code for it in read_back(plan, spoiled, OUT) if it.level == ERROR}
+    found = {
+        it.node: it.code for it in read_back(plan, spoiled, OUT) if it.node and it.level == ERROR
+    }
     assert found.keys() == {"/left/controller_manager", "/right/controller_manager"}
 
 

@@ -18,11 +18,14 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -41,12 +44,25 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 
 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
-    """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
-    read: what a robot has is true of its sort. All are where they do something to each other, or name
-    other ones.
+    """Return what is wrong with the files of a fleet, which will be in ``folder``.
+
+    Every value of the launch file is compared. Of the files two robots of each sort are read: what a
+    robot has is true of its sort. All are read where they do something to each other, or name other
+    ones.
 
     Raises MultibotError where no temporary file can be written.
     """
+    with _temporary_folder() as home, gc_paused():
+        launch = next(it.data for it in made.files if it.path == LAUNCH)
+        printed = not_as_printed(made.starts, launch, home)
+        wrong = [_fault(it.message, it.place, os.path.realpath(home)) for it in printed]
+        commands = next(it.text for it in made.files if it.path == COMMANDS)
+        told = not_as_commanded(made.starts, commands)
+        wrong += [_fault(it, Place(COMMANDS, 1), home) for it in told]
+    return [*dict.fromkeys((*wrong, *_of_files(plan, made, folder)))]
+
+
+def _of_files(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     sample = two_of_each(made, [it.spec for it in plan.robots])
     found, graph = _read(plan, sample.made, folder)
     alone = all(it.robots or it.robot in sample.alike for it in found)
@@ -66,10 +82,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         found = launched(graph, _known(plan))
         seen = found.system
-        wrong = [*not_as_planned(made.planned, seen, made.started, made.findings)]
+        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
+        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 

@@ -1,194 +1,224 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The functions of ``fleet.launch.py``: one for robots that run the same, called with what differs.
+"""Robots that start the same but for some texts -> what one function starts, and its calls.
 
-What a robot runs is written with its own names first. Then its name in a text becomes ``{name}``, and
-a text in which robots still differ becomes a parameter of the function: whatever is taken for the name
-of a robot, the values of a call are those that were written.
+The records of the robots are compared value by value, before anything is printed. A text that all of
+them have stays as it is, whatever it says. A text that is the same but for the robot's name becomes an
+f-string, if it gives the text of every robot. Any other text becomes a parameter of the function.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
+from keyword import iskeyword
+from typing import Any
 
-from multibot_rewrite.base.markup import STRING
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.launch.starts import Component, RobotStarts, Start
 
-_TEXT = re.compile(STRING)
-# What these say is no robot's.
-_OF_PROGRAMS = ("package=", "executable=", "plugin=", "#")
+FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
 _POSE = {
     **{f"-{it}": it for it in "xyz"},
     **{f"--{it}": it for it in ("x", "y", "z", "roll", "pitch", "yaw")},
     **{"-R": "roll", "-P": "pitch", "-Y": "yaw"},
 }
-# More than this would be no function for one kind of robot.
+# Robots in which more differs are not of one kind.
 _MOST = 12
 _NAME = "name"
+# What a launch file calls otherwise in its functions.
+_TAKEN = frozenset((_NAME, "file", "text", "params", "str", "if_installed", "brought_up"))
+# What is printed of a robot, but for people.
+_VALUES = ("files", "starts", "spawned", "bridged_tf", "not_bridged", "windows")
+# Robots are of one kind only if they start the same programs.
+_OF_PROGRAMS = frozenset(("package", "executable", "plugin"))
 
 
-class Written(NamedTuple):
-    """What one robot runs: its name, what it is, the name of its description, and the lines that start
-    it."""
+class Code(str):
+    """Python that stands for a text which differs between robots."""
 
-    name: str
-    about: str
-    kind: str
-    lines: Sequence[str]
+    __slots__ = ()
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Code) and str.__eq__(self, other)
 
-class Parameter(NamedTuple):
-    """What differs: its name in the function, and the value of each robot as Python has it."""
-
-    name: str
-    values: tuple[str, ...]
-
-    @property
-    def is_number(self) -> bool:
-        """Are all of them numbers?"""
-        return all(not it.startswith('"') for it in self.values)
+    __hash__ = str.__hash__
 
 
 class Function(NamedTuple):
-    """A function that starts robots, and the calls: each robot's name and call."""
+    """A function that starts robots: its title, its parameters, what it starts, and for each robot
+    the values of the parameters, as Python has them."""
 
-    lines: tuple[str, ...]
-    calls: tuple[tuple[str, str], ...]
+    title: str
+    parameters: tuple[str, ...]
+    starts: RobotStarts
+    calls: Mapping[str, tuple[str, ...]]
 
 
-def functions(robots: Sequence[Written]) -> list[Function]:
-    """The functions for these robots, in the order in which their first ones come."""
-    groups: dict[tuple[str, ...], list[Written]] = {}
+def functions(robots: Sequence[RobotStarts]) -> list[Function]:
+    """Return the functions for these robots, in the order of the first robot of each."""
+    groups: dict[object, list[RobotStarts]] = {}
     for it in robots:
-        groups.setdefault(tuple(_TEXT.sub('""', line) for line in _templates(it)), []).append(it)
-    kinds = [own for group in groups.values() for own in _alike(group)]
-    used: list[str] = []
-    return [_function(group, _unique(_title(group, len(kinds)), used)) for group in kinds]
+        groups.setdefault(_kind(it), []).append(it)
+    found = [one for group in groups.values() for one in _functions(group)]
+    if len(found) == 1 and len(robots) > 1:
+        return [found[0]._replace(title="start")]
+    titles: list[str] = []
+    for own in found:
+        titles.append(_unused(own.title, titles))
+    return [own._replace(title=title) for own, title in zip(found, titles, strict=True)]
 
 
-def _alike(group: list[Written]) -> list[list[Written]]:
-    """The group, or each robot alone where too much differs."""
-    return [group] if len(_parameters(group)) <= _MOST else [[it] for it in group]
+def of_any(text: str, robot: str) -> str:
+    """Return a text for people with ``<name>`` in the place of the robot's name."""
+    return "<name>".join(_parts(text, robot))
 
 
-def _title(group: Sequence[Written], kinds: int) -> str:
-    if len(group) == 1:
-        return f"start_{group[0].name}"
-    return "start" if kinds == 1 else f"start_{re.sub(r'[^0-9a-zA-Z_]', '_', group[0].kind)}"
+def _kind(it: RobotStarts) -> object:
+    """Return all of a robot but for the texts of its own."""
+    left = tuple((name, of_any(why, it.name)) for name, why in it.left)
+    return left, _shape([getattr(it, field) for field in _VALUES])
 
 
-def _unique(name: str, used: list[str]) -> str:
-    count = used.count(name)
-    used.append(name)
-    return f"{name}_{count + 1}" if count else name
+def _shape(it: Any, field: str = "") -> object:
+    if isinstance(it, str):
+        return it if field in _OF_PROGRAMS or FLAG.fullmatch(it) else ""
+    if isinstance(it, Mapping):
+        return tuple((_shape(key), _shape(one)) for key, one in it.items())
+    if isinstance(it, tuple | list):
+        return (type(it), *(_shape(one, name) for name, one in _named(it)))
+    return type(it), it
 
 
-def _function(group: Sequence[Written], title: str) -> Function:
-    first = group[0]
-    if len(group) == 1:
-        head = (f"def {title}():", f'    """Start {first.about}."""')
-        return Function((*head, *first.lines), ((first.name, title),))
-    given = _parameters(group)
-    names = list(dict.fromkeys(it.name for it in given.values()))
-    about = _of_any(first.about, first.name, "<name>")
-    head = (f"def {title}({', '.join((_NAME, *names))}):", f'    """Start {about}."""')
-    body = (_with(line, at, given) for at, line in enumerate(_templates(first)))
-    values = {it.name: it.values for it in given.values()}
-    calls = []
-    for number, it in enumerate(group):
-        words = [f"{key}={own[number]}" for key, own in values.items()]
-        told = ", ".join((title, f'"{it.name}"', *words))
-        calls.append((it.name, f"partial({told})"))
-    return Function((*head, *body), tuple(calls))
+def _named(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the items, each with its field; that of an argument of a program is the flag before it."""
+    fields = getattr(it, "_fields", None)
+    if fields:
+        yield from zip(fields, it, strict=True)
+        return
+    before = ""
+    for one in it:
+        yield before, one
+        before = one if isinstance(one, str) and FLAG.fullmatch(one) else ""
 
 
-def _templates(it: Written) -> list[str]:
-    """The lines with the robot's name as a parameter."""
-    return [_template(line, it.name) for line in it.lines]
+def _functions(group: Sequence[RobotStarts]) -> list[Function]:
+    """Return the function of a group, or one for each robot where too much differs."""
+    if len(group) > 1:
+        merging = _Merging(tuple(it.name for it in group), {})
+        starts = merging.starts(group)
+        given = merging.parameters
+        if len(given) <= _MOST:
+            values = zip(*given.values(), strict=True) if given else iter([()] * len(group))
+            calls = dict(zip(merging.names, values, strict=True))
+            title = _title(group[0].description.partition(".")[0])
+            return [Function(title, tuple(given), starts, calls)]
+    return [Function(_title(it.name), (), it, {it.name: ()}) for it in group]
 
 
-def _template(line: str, robot: str) -> str:
-    if line.lstrip().startswith(_OF_PROGRAMS):
-        return _of_any(line, robot, "<name>") if line.lstrip().startswith("#") else line
-    return _TEXT.sub(lambda found: _named(found[0], robot), line)
+class _Merging(NamedTuple):
+    """The names of robots of one kind, and the parameters that are known by now: by name the value of
+    each robot."""
+
+    names: tuple[str, ...]
+    parameters: dict[str, tuple[str, ...]]
+
+    def starts(self, group: Sequence[RobotStarts]) -> RobotStarts:
+        """Return what all of them start."""
+        first = group[0]
+        values = {it: self.one([getattr(own, it) for own in group], it) for it in _VALUES}
+        left = tuple((name, of_any(why, first.name)) for name, why in first.left)
+        return first._replace(
+            description=_any_of([it.description for it in group], "description"),
+            where=_any_of([of_any(it.where, it.name) for it in group], "namespace"),
+            left=left,
+            **values,
+        )
+
+    def one(self, values: Sequence[Any], label: str) -> Any:
+        """Return one value for those of all robots, which have the same shape."""
+        first = values[0]
+        if isinstance(first, str):
+            return self.text(values, label)
+        if isinstance(first, Mapping):
+            every = zip(*(it.items() for it in values), strict=True)
+            return dict(self.pair(pairs) for pairs in every)
+        if isinstance(first, tuple | list):
+            labels = (name or label for name, _ in _named(first))
+            columns = zip(labels, zip(*values, strict=True), strict=True)
+            own = [self.one(column, self.label(first, name, label)) for name, column in columns]
+            return type(first)(*own) if hasattr(first, "_fields") else type(first)(own)
+        return first
+
+    def label(self, owner: Any, field: str, above: str) -> str:
+        """Return what a value may be called: the name of a node is not that of the robot, a path is
+        what it is given as."""
+        if isinstance(owner, Start | Component):
+            return "node_name" if field == _NAME else field
+        return above if field == "path" else field
+
+    def pair(self, pairs: Sequence[tuple[str, Any]]) -> tuple[str, Any]:
+        """Return a key and its value for those of all robots."""
+        keys, values = zip(*pairs, strict=True)
+        return self.text(keys, "key"), self.one(values, keys[0])
+
+    def text(self, values: Sequence[str], label: str) -> str:
+        """Return the text of all robots, or Python that gives the text of each."""
+        if len(set(values)) == 1:
+            return values[0]
+        for value, name in zip(values, self.names, strict=True):
+            parts = _parts(value, name)
+            if len(parts) > 1 and all(
+                one.join(parts) == other for one, other in zip(self.names, values, strict=True)
+            ):
+                return Code(_NAME if parts == ["", ""] else _f_string(parts))
+        return self.parameter(values, label)
+
+    def parameter(self, values: Sequence[str], label: str) -> Code:
+        """Return a parameter of the function; one of the same values may be there already."""
+        numbers = all(map(_is_number, values))
+        given = tuple(values if numbers else map(repr, values))
+        name = _called(label)
+        every = (name if number == 1 else f"{name}_{number}" for number in count(1))
+        own = next(it for it in every if self.parameters.get(it, given) == given)
+        self.parameters[own] = given
+        return Code(f"str({own})" if numbers else own)
 
 
-def _named(text: str, robot: str) -> str:
-    """A text with the name in it, as an f-string; the name alone is the parameter."""
-    if text == f'"{robot}"':
-        return f'f"{{{_NAME}}}"'
-    own = _of_any(text.replace("{", "{{").replace("}", "}}"), robot, f"{{{_NAME}}}")
-    return f"f{own}" if f"{{{_NAME}}}" in own and own != text else text
+def _parts(text: str, robot: str) -> list[str]:
+    """Return a text cut where the robot's name is a word of it."""
+    return re.split(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])", text)
 
 
-def _of_any(text: str, robot: str, word: str) -> str:
-    return re.sub(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])", lambda _: word, text)
+def _f_string(parts: Sequence[str]) -> str:
+    text = f"{{{_NAME}}}".join(it.replace("{", "{{").replace("}", "}}") for it in parts)
+    return f"f{text!r}"
 
 
-def _parameters(group: Sequence[Written]) -> dict[tuple[int, int], Parameter]:
-    """Return the texts that differ besides the robot's name, by line and number of the text in it.
-
-    The values of a parameter are the texts that each robot has, not their templates.
-    """
-    found: dict[tuple[int, int], Parameter] = {}
-    templates = zip(*map(_templates, group), strict=True)
-    for at, (lines, own) in enumerate(
-        zip(templates, zip(*(it.lines for it in group), strict=True), strict=True)
-    ):
-        for number, texts in enumerate(zip(*map(_TEXT.findall, lines), strict=True)):
-            if len(set(texts)) > 1:
-                values = tuple(_TEXT.findall(it)[number] for it in own)
-                found[at, number] = _parameter(lines[0], number, values, found.values())
-    return found
-
-
-def _parameter(
-    line: str, number: int, texts: tuple[str, ...], known: Iterable[Parameter]
-) -> Parameter:
-    """One that is known has the same values and would have the same name."""
-    name = _called(line, number)
-    values = tuple(map(_as_number, texts))
-    whole = values if all(values) else texts
-    taken = {it.name: it.values for it in known}
-    unused = (it for it in _names(name) if taken.get(it, whole) == whole)
-    return Parameter(next(unused), whole)
-
-
-def _names(name: str) -> Iterator[str]:
-    yield name
-    yield from (f"{name}_{number}" for number in range(2, 10_000))
-
-
-def _as_number(text: str) -> str:
-    """The number that a text is and that gives this text again; else nothing."""
-    word = text.strip('"')
+def _is_number(text: str) -> bool:
+    """Is it the text of a number that gives this text again?"""
     try:
-        return word if str(float(word)) == word else ""
+        return str(float(text)) == text and text.strip("-")[0].isdigit()
     except ValueError:
-        return ""
+        return False
 
 
-def _called(line: str, number: int) -> str:
-    """By the flag before the text, else by the keyword or key of its line."""
-    texts = list(_TEXT.finditer(line))
-    before = texts[number - 1][0].strip('"') if number else ""
-    if before in _POSE:
-        return _POSE[before]
-    keyword = re.match(r"\s*(\w+)=", line)
-    word = keyword[1] if keyword and not before.startswith("-") else before
-    word = "model" if word == "-name" else word
-    word = re.sub(r"\W", "_", word).strip("_").lower()
-    return word if word.isidentifier() and word != _NAME else "value"
+def _called(label: str) -> str:
+    """Return a name for a parameter, by the flag, keyword or key before its value."""
+    word = "model" if label == "-name" else _POSE.get(label, label)
+    word = re.sub(r"\W", "_", word, flags=re.ASCII).strip("_").lower()
+    return word if word.isidentifier() and not iskeyword(word) and word not in _TAKEN else "value"
 
 
-def _with(line: str, at: int, given: dict[tuple[int, int], Parameter]) -> str:
-    """The line with its parameters in the place of the texts that differ."""
-    numbers = iter(range(line.count('"')))
+def _any_of(texts: Sequence[str], what: str) -> str:
+    """Return a text for people: the one of all, or that they have several."""
+    return texts[0] if len(set(texts)) == 1 else f"its own {what}"
 
-    def one(found: re.Match[str]) -> str:
-        parameter = given.get((at, next(numbers)))
-        if parameter is None:
-            return found[0]
-        return f"str({parameter.name})" if parameter.is_number else parameter.name
 
-    return re.sub(rf"f?{STRING}", one, line).replace(f'f"{{{_NAME}}}"', _NAME)
+def _title(word: str) -> str:
+    return f"start_{re.sub(r'[^0-9a-zA-Z_]', '_', word)}"
+
+
+def _unused(title: str, titles: Sequence[str]) -> str:
+    every = (title if number == 1 else f"{title}_{number}" for number in count(1))
+    return next(it for it in every if it not in titles)

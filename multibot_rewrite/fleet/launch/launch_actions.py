@@ -19,7 +19,7 @@ from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, S
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_paths, path_for
-from multibot_rewrite.fleet.outputs.relays import relays
+from multibot_rewrite.fleet.outputs.relays import not_bridged, relays
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
@@ -75,7 +75,8 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
     found = tuple(starts), tuple(spawned), tuple(left.items())
     nodes = tuple(_nodes(names, left))
-    return RobotStarts(*told, *found, bridged_tf, nodes=nodes)
+    otherwise = not_bridged(robot.spec.name) if bridged_tf else ""
+    return RobotStarts(*told, *found, bridged_tf, otherwise, nodes=nodes)
 
 
 class _Given(NamedTuple):
@@ -141,7 +142,7 @@ def _sends(it: EndpointName, topic: str) -> bool:
 def _started(given: _Given, name: str) -> Iterator[Start]:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
-        yield _controller(given, it)
+        yield controller(given.plan, it)
     elif it.way != COMPONENT:
         program = program_of(facts, given.release)
         assert program is not None
@@ -232,13 +233,13 @@ def _description(robot: RewrittenRobot) -> str:
     return path_for(robot, expanded_name(robot.spec.description))
 
 
-def _controller(given: _Given, it: Started) -> Start:
-    """The spawner of a controller."""
-    words = (*spawner_arguments(it), *as_declared(given.plan, it.node.node))
+def controller(plan: FleetPlan, it: Started) -> Start:
+    """Return the spawner of a controller of the one robot of a plan."""
+    words = (*spawner_arguments(it), *_as_declared(plan, it.node.node))
     return Start(*SPAWN, it.node.namespace, arguments=words)
 
 
-def as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
+def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
     """The file of a controller whose own section has its type, and if a launch file leaves it
     inactive."""
     (robot,) = plan.robots

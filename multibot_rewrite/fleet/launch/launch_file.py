@@ -24,12 +24,6 @@ def launch_file(starts: FleetStarts) -> OutputFile:
     return OutputFile(LAUNCH, to_python(starts).encode())
 
 
-def started(starts: FleetStarts) -> frozenset[str]:
-    """The full names of the planned nodes that the launch file starts."""
-    shared = (f"{it.namespace.rstrip('/')}/{it.name}" for it in starts.shared if it.name)
-    return frozenset((*shared, *(node for it in starts.robots for node in it.nodes)))
-
-
 def fleet_starts(
     plan: FleetPlan,
     each: Sequence[FleetPlan],

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from textwrap import wrap
 
-from multibot_rewrite.fleet.launch.each_robot import Written, functions
-from multibot_rewrite.fleet.launch.python_actions import group, list_between, process, quoted, value
+from multibot_rewrite.fleet.launch.each_robot import Function, functions
+from multibot_rewrite.fleet.launch.python_actions import comment, group, lines, process, value
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
@@ -17,18 +17,13 @@ from multibot_rewrite.fleet.launch.starts import (
     RobotStarts,
     launch_arguments,
 )
-from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+from multibot_rewrite.fleet.outputs.relays import BRIDGE
 
 # What brings topics of a simulator is of no use without it.
 BRIDGES = "ros_gz_bridge"
+_NAME = "name"
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
-# A docstring, a comment, a string: whichever begins first.
-_TOKEN = re.compile(
-    r'"""[\s\S]*?(?:"""|\Z)|#[^\n]*|\'(?:[^\'\\\n]|\\.?)*\'?|f?"(?:[^"\\\n]|\\.?)*"?'
-)
-
-
 # The names that it imports where it uses them, in this order.
 _IMPORTS = {
     "ament_index_python.packages": ("PackageNotFoundError", "get_package_prefix"),
@@ -50,7 +45,7 @@ _IMPORTS = {
 }
 _BODY = '''\
 FOLDER = Path(__file__).resolve().parent
-CLOCK = {"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}
+CLOCK = {'use_sim_time': ParameterValue(LaunchConfiguration('use_sim_time'), value_type=bool)}
 
 
 def file(name):
@@ -82,8 +77,8 @@ def brought_up(node):
 
     configured = OnStateTransition(
         target_lifecycle_node=node,
-        start_state="configuring",
-        goal_state="inactive",
+        start_state='configuring',
+        goal_state='inactive',
         entities=[change(Transition.TRANSITION_ACTIVATE)],
     )
     return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
@@ -91,26 +86,26 @@ def brought_up(node):
 _IN_DOMAIN = '''\
 def in_domain(name, actions):
     """Start the nodes of a robot in its ROS domain."""
-    return GroupAction([SetEnvironmentVariable("ROS_DOMAIN_ID", DOMAINS[name]), *actions])
+    return GroupAction([SetEnvironmentVariable('ROS_DOMAIN_ID', DOMAINS[name]), *actions])
 '''
 _CHOSEN = '''\
 def first(count):
     """Return the names of so many robots."""
     if not 0 < count <= len(ROBOTS):
-        more = f"multibot build FLEET -o {FOLDER} --count {count}"
-        raise RuntimeError(f"robots:={count}: {len(ROBOTS)} robots were built; for more: {more}")
+        more = f'multibot build FLEET -o {FOLDER} --count {count}'
+        raise RuntimeError(f'robots:={count}: {len(ROBOTS)} robots were built; for more: {more}')
     return list(ROBOTS)[:count]
 
 
 def chosen(context):
     """Start the robots that robots:= names, or so many of them; all of them by default."""
-    words = LaunchConfiguration("robots").perform(context).replace(",", " ").split()
+    words = LaunchConfiguration('robots').perform(context).replace(',', ' ').split()
     if len(words) == 1 and words[0].isdigit():
         words = first(int(words[0]))
     unknown = [it for it in words if it not in ROBOTS]
     if unknown:
-        known = ", ".join(ROBOTS)
-        raise RuntimeError(f"robots:={unknown[0]} is not in this fleet; it has {known}")
+        known = ', '.join(ROBOTS)
+        raise RuntimeError(f'robots:={unknown[0]} is not in this fleet; it has {known}')
     return {started}
 '''
 _STARTED = "[action for name in words or ROBOTS for action in ROBOTS[name]()]"
@@ -120,20 +115,7 @@ _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 def to_python(it: FleetStarts) -> str:
     """The text of the file."""
     body = _text(_BODY.splitlines(), *_parts(it))
-    return _singlequoted(_text(_head(it), _imports(body)) + body)
-
-
-def _singlequoted(text: str) -> str:
-    """The text as ament_flake8 wants it: single quotes but for a string that has one."""
-    return _TOKEN.sub(lambda it: _quotes_of(it[0]), text)
-
-
-def _quotes_of(token: str) -> str:
-    inner = token.removeprefix("f")[1:-1]
-    is_plain = token.removeprefix("f").startswith('"') and not token.endswith('"""')
-    if not is_plain or "'" in inner or "\\" in inner:
-        return token
-    return f"{'f' * token.startswith('f')}'{inner}'"
+    return _text(_head(it), _imports(body)) + body
 
 
 def _text(*parts: Iterable[str]) -> str:
@@ -145,11 +127,11 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield "", "", *_INSTALLED.splitlines()
     if any(start.brought_up for robot in it.robots for start in robot.starts):
         yield "", "", *_BROUGHT_UP.splitlines()
-    made = functions([_written(robot) for robot in it.robots])
+    made = functions(it.robots)
     for own in made:
-        yield ("", "", *own.lines)
-    calls = dict(call for own in made for call in own.calls)
-    names = (f'    "{robot.name}": {calls[robot.name]},' for robot in it.robots)
+        yield ("", "", *_function(own))
+    calls = {name: _call(own, name) for own in made for name in own.calls}
+    names = (f"    {value(robot.name)}: {calls[robot.name]}," for robot in it.robots)
     yield "", "", "ROBOTS = {", *names, "}", *_domains(it)
     chosen = _CHOSEN.replace("{started}", _STARTED_APART if it.domains else _STARTED)
     yield "", "", *chosen.splitlines()
@@ -160,7 +142,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
 def _domains(it: FleetStarts) -> Iterator[str]:
     """The domain of each robot, as an environment has it."""
     if it.domains:
-        own = (f'    "{robot.name}": "{it.domains[robot.name]}",' for robot in it.robots)
+        rows = ((robot.name, f"{it.domains[robot.name]}") for robot in it.robots)
+        own = (f"    {value(name)}: {value(number)}," for name, number in rows)
         yield from ("DOMAINS = {", *own, "}", "", "", *_IN_DOMAIN.splitlines())
 
 
@@ -206,28 +189,38 @@ def _shell(line: str) -> Iterator[str]:
         yield f"    {indent}{it}{more}"
 
 
-def _written(it: RobotStarts) -> Written:
-    kind = it.description.partition(".")[0]
-    return Written(it.name, f"{it.description} in {it.where}", kind, list(_robot(it)))
+def _function(it: Function) -> Iterator[str]:
+    """Yield the function that starts a robot, or each of several."""
+    own = (_NAME, *it.parameters) if len(it.calls) > 1 else ()
+    yield f"def {it.title}({', '.join(own)}):"
+    yield f'    """Start {comment(it.starts.description)} in {comment(it.starts.where)}."""'
+    yield from _robot(it.starts)
+
+
+def _call(it: Function, name: str) -> str:
+    """Return what starts a robot in the table of robots."""
+    if len(it.calls) == 1:
+        return it.title
+    given = (f"{key}={own}" for key, own in zip(it.parameters, it.calls[name], strict=True))
+    return f"partial({', '.join((it.title, value(name), *given))})"
 
 
 def _robot(it: RobotStarts) -> Iterator[str]:
     for name, why in it.left:
         if why:
-            text = f"Not started: {name} ({why})"
-            lines = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
-            yield from (f"    # {line}" for line in lines)
-    if it.files:
-        files = [value(File(path)) for path in it.files]
-        yield from (f"    {line}" for line in list_between("params = [", files, "]"))
+            text = comment(f"Not started: {name} ({why})")
+            rows = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
+            yield from (f"    # {row}" for row in rows)
     own = tuple(File(path) for path in it.files)
+    if own:
+        yield from (f"    {line}" for line in lines("params = ", [*own]))
     yield "    return ["
     for start in it.starts:
         yield from process(start, 8, own)
     if it.bridged_tf:
         yield "        *if_installed("
-        yield f"            {quoted(BRIDGE)},"
-        yield f"            {quoted(not_bridged(it.name))},"
+        yield f"            {value(BRIDGE)},"
+        yield f"            {value(it.not_bridged)},"
         yield "            ["
         for start in it.bridged_tf:
             yield from process(start, 16)
@@ -247,12 +240,13 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "        ["
     for name, default, about in launch_arguments(it):
         yield "            DeclareLaunchArgument("
-        yield f'                "{name}",'
+        yield f"                {value(name)},"
         yield f"                default_value={value(default)},"
-        yield f'                description="{about}",'
+        yield f"                description={value(about)},"
         yield "            ),"
     if it.domains:
-        yield f'            SetEnvironmentVariable("ROS_DOMAIN_ID", "{it.domains[""]}"),'
+        number = value(f"{it.domains['']}")
+        yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
     inside = [start for start in it.shared if it.simulators and start.package == BRIDGES]
@@ -269,36 +263,36 @@ _SIMULATORS: Mapping[str, tuple[str, ...]] = {
     GZ: (
         "IncludeLaunchDescription(",
         "    PathJoinSubstitution(",
-        '        [FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]',
+        "        [FindPackageShare('ros_gz_sim'), 'launch', 'gz_sim.launch.py']",
         "    ),",
         "    launch_arguments=[",
-        '        ("gz_args", ["-r ", HEADLESS, \'"\', LaunchConfiguration("world"), \'"\']),',
+        "        ('gz_args', ['-r ', HEADLESS, '\"', LaunchConfiguration('world'), '\"']),",
         "    ],",
-        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "    condition=IfCondition(LaunchConfiguration('simulator')),",
         "),",
     ),
     CLASSIC: (
         "IncludeLaunchDescription(",
         "    PathJoinSubstitution(",
-        '        [FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]',
+        "        [FindPackageShare('gazebo_ros'), 'launch', 'gazebo.launch.py']",
         "    ),",
         "    launch_arguments=[",
-        '        ("gui", GUI),',
-        '        ("world", LaunchConfiguration("world")),',
+        "        ('gui', GUI),",
+        "        ('world', LaunchConfiguration('world')),",
         "    ],",
-        '    condition=IfCondition(LaunchConfiguration("simulator")),',
+        "    condition=IfCondition(LaunchConfiguration('simulator')),",
         "),",
     ),
 }
 _SWITCHES: Mapping[str, tuple[str, ...]] = {
     GZ: (
         "HEADLESS = PythonExpression(",
-        """    ["'-s ' if '", LaunchConfiguration("headless"), "'.lower() == 'true' else ''"]""",
+        """    ["'-s ' if '", LaunchConfiguration('headless'), "'.lower() == 'true' else ''"]""",
         ")",
     ),
     CLASSIC: (
         "GUI = PythonExpression(",
-        """    ["'false' if '", LaunchConfiguration("headless"), "'.lower() == 'true' else 'true'"]""",
+        """    ["'false' if '", LaunchConfiguration('headless'), "'.lower() == 'true' else 'true'"]""",
         ")",
     ),
 }

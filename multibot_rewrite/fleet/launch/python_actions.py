@@ -7,23 +7,16 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from multibot_rewrite.base.markup import STRING
+from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
 from multibot_rewrite.fleet.launch.starts import Component, File, Start, Text
 
 _Files = tuple[File, ...]
 # What stays in one line.
-_SHORT = 64
-_FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
-_TEXTS = re.compile(STRING)
-# A key with its value, which may be a list or a call.
-_ENTRY = re.compile(
-    rf"{STRING}: (?:\[(?:[^\[\]\"]|{STRING})*\]|\{{(?:[^{{}}\"]|{STRING})*\}}"
-    rf"|\w+\((?:[^()\"]|{STRING})*\)|[^,\[{{]+)"
-)
+_SHORT = 66
 
 
 def group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
-    """What is started where a launch argument is true."""
+    """Yield what is started where a launch argument is true."""
     if not starts:
         return
     space = " " * indent
@@ -32,12 +25,12 @@ def group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
     for start in starts:
         yield from process(start, indent + 8)
     yield f"{space}    ],"
-    yield f'{space}    condition=IfCondition(LaunchConfiguration("{argument}")),'
+    yield f"{space}    condition=IfCondition(LaunchConfiguration({value(argument)})),"
     yield f"{space}),"
 
 
 def process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
-    """A node; ``own`` are the files that the robot's function calls ``params``."""
+    """Yield a node; ``own`` are the files that the robot's function calls ``params``."""
     space = " " * indent
     if it.brought_up:
         yield f"{space}*brought_up("
@@ -55,20 +48,20 @@ def process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> I
 
 
 def _keywords(it: Start, own: _Files) -> Iterator[str]:
-    yield f'package="{it.package}",'
-    yield f'executable="{it.executable}",'
+    yield f"package={value(it.package)},"
+    yield f"executable={value(it.executable)},"
     yield from _names(it.namespace, it.name)
     if it.arguments:
-        yield from _list("arguments", [*_pairs(it.arguments)])
+        yield from lines("arguments=", [*_pairs(it.arguments)], ",")
     yield from _given(it.parameters, it.remappings, own)
-    yield 'output="screen",'
+    yield "output='screen',"
 
 
 def _names(namespace: str, name: str) -> Iterator[str]:
     if namespace:
-        yield f'namespace="{namespace}",'
+        yield f"namespace={value(namespace)},"
     if name:
-        yield f'name="{name}",'
+        yield f"name={value(name)},"
 
 
 def _given(
@@ -77,9 +70,9 @@ def _given(
     own: _Files,
 ) -> Iterator[str]:
     common = bool(own) and tuple(parameters[: len(own)]) == own
-    words = ["*params"] if common else []
-    words += [value(it) for it in parameters[len(own) * common :]]
-    yield from _list("parameters", [*words, "CLOCK"])
+    first = [Code("*params")] if common else []
+    rest = parameters[len(own) * common :]
+    yield from lines("parameters=", [*first, *rest, Code("CLOCK")], ",")
     pairs = list(remappings)
     if pairs:
         yield "remappings=["
@@ -87,20 +80,16 @@ def _given(
         yield "],"
 
 
-def _list(key: str, items: Sequence[str]) -> Iterator[str]:
-    """A keyword with a list."""
-    yield from list_between(f"{key}=[", items, "],")
-
-
-def list_between(start: str, items: Sequence[str], end: str) -> Iterator[str]:
-    """A list in one line where that is short, whatever the names of robots are."""
-    line = f"{start}{', '.join(items)}{end}"
-    if _is_short(line):
-        yield line
-        return
-    yield start
-    yield from (f"    {line}" for it in items for line in _item(it))
-    yield end
+def lines(before: str, it: Any, after: str = "") -> list[str]:
+    """Return the lines of a value: one if that is short, else those of its items."""
+    line = f"{before}{value(it)}{after}"
+    if _is_short(line) or not isinstance(it, Mapping | list):
+        return [line]
+    first, last = "{}" if isinstance(it, Mapping) else "[]"
+    pairs = it.items() if isinstance(it, Mapping) else ((None, one) for one in it)
+    inner = [lines("" if key is None else f"{value(key)}: ", one) for key, one in pairs]
+    below = (f"    {line}" for one in inner for line in (*one[:-1], f"{one[-1]},"))
+    return [f"{before}{first}", *below, f"{last}{after}"]
 
 
 def _is_short(text: str) -> bool:
@@ -108,71 +97,48 @@ def _is_short(text: str) -> bool:
     return len(re.sub(r"\d", "", text)) <= _SHORT
 
 
-def _item(it: str) -> Iterator[str]:
-    """An item of a list; a long dictionary or list of words in several lines."""
-    if _is_short(it) or not it.startswith("{"):
-        yield f"{it},"
-        return
-    yield "{"
-    for text in _ENTRY.findall(it[1:-1]):
-        yield from (f"    {line}" for line in _entry(text))
-    yield "},"
-
-
-def _entry(text: str) -> Iterator[str]:
-    key, _, words = text.partition(": ")
-    if _is_short(text) or not words.startswith("["):
-        yield f"{text},"
-        return
-    yield f"{key}: ["
-    yield from (f"    {it}," for it in _TEXTS.findall(words))
-    yield "],"
-
-
-def _pairs(words: Iterable[str | File]) -> Iterator[str]:
-    """The arguments of a program: a flag and its value stand together."""
+def _pairs(words: Iterable[str | File]) -> Iterator[Code]:
+    """Yield the arguments of a program: a flag and its value stand together."""
     flag = ""
     for it in words:
-        is_flag = isinstance(it, str) and _FLAG.fullmatch(it) is not None
+        is_flag = isinstance(it, str) and not isinstance(it, Code) and bool(FLAG.fullmatch(it))
         if flag and is_flag:
-            yield flag
+            yield Code(flag)
             flag = ""
         if is_flag:
             flag = value(it)
         else:
-            yield f"{flag}, {value(it)}" if flag else value(it)
+            yield Code(f"{flag}, {value(it)}" if flag else value(it))
             flag = ""
     if flag:
-        yield flag
+        yield Code(flag)
 
 
 def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
     space = " " * indent
     yield f"{space}ComposableNode("
-    yield f'{space}    package="{it.package}",'
-    yield f'{space}    plugin="{it.plugin}",'
-    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
-    yield from (f"{space}    {line}" for line in lines)
+    yield f"{space}    package={value(it.package)},"
+    yield f"{space}    plugin={value(it.plugin)},"
+    own_lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
+    yield from (f"{space}    {line}" for line in own_lines)
     yield f"{space}),"
 
 
 def value(it: Any) -> str:
-    """A value of a parameter or argument."""
+    """Return the Python of a value of a parameter or argument."""
+    if isinstance(it, Code):
+        return str(it)
     if isinstance(it, File):
-        return f"file({quoted(it.path)})"
+        return f"file({value(it.path)})"
     if isinstance(it, Text):
-        return f"text({quoted(it.path)})"
-    if isinstance(it, str):
-        return quoted(it)
+        return f"text({value(it.path)})"
     if isinstance(it, Mapping):
-        return "{" + ", ".join(f"{quoted(key)}: {value(one)}" for key, one in it.items()) + "}"
+        return "{" + ", ".join(f"{value(key)}: {value(one)}" for key, one in it.items()) + "}"
     if isinstance(it, list):
         return f"[{', '.join(map(value, it))}]"
     return repr(it)
 
 
-def quoted(text: str) -> str:
-    """A text in double quotes."""
-    import json
-
-    return json.dumps(text)
+def comment(text: str) -> str:
+    """Return a text for people that ends no comment and no docstring."""
+    return " ".join(text.split()).replace("\\", "/").replace('"', "'")

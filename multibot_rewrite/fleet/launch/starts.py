@@ -70,8 +70,8 @@ class RobotStarts(NamedTuple):
     """What one robot runs: ``description`` is the name of its file, ``where`` its namespace in words;
     ``files`` are its parameter files, ``spawned`` is what brings it into the simulator,
     ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its tf to
-    ``/tf`` where tf_namespace_bridge is installed, ``windows`` show this robot alone. ``nodes`` are the
-    full names of those that are started."""
+    ``/tf`` where tf_namespace_bridge is installed, otherwise ``not_bridged`` is said. ``windows`` show
+    this robot alone. ``nodes`` are the full names of those that are started."""
 
     name: str
     description: str
@@ -81,8 +81,14 @@ class RobotStarts(NamedTuple):
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
     bridged_tf: tuple[Start, ...] = ()
+    not_bridged: str = ""
     windows: tuple[Start, ...] = ()
     nodes: tuple[str, ...] = ()
+
+    @property
+    def every(self) -> tuple[Start, ...]:
+        """All processes, whatever they are started under."""
+        return (*self.starts, *self.bridged_tf, *self.spawned, *self.windows)
 
 
 class FleetStarts(NamedTuple):
@@ -100,6 +106,21 @@ class FleetStarts(NamedTuple):
     driving: Sequence[str]
     world: File | str = ""
     domains: Mapping[str, int] = TOGETHER
+
+    @property
+    def nodes(self) -> frozenset[str]:
+        """The full names of the planned nodes that are started."""
+        shared = (f"{it.namespace.rstrip('/')}/{it.name}" for it in self.shared if it.name)
+        return frozenset((*shared, *(node for it in self.robots for node in it.nodes)))
+
+    @property
+    def texts(self) -> frozenset[str]:
+        """The paths of the files whose texts are parameters."""
+        starts = [*self.shared, *self.windows, *(one for it in self.robots for one in it.every)]
+        given = [row for it in starts for row in it.parameters]
+        given += [row for it in starts for one in it.components for row in one.parameters]
+        values = (one for row in given if isinstance(row, Mapping) for one in row.values())
+        return frozenset(it.path for it in values if isinstance(it, Text))
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:

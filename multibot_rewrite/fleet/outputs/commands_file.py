@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.launch_actions import as_declared
-from multibot_rewrite.fleet.launch.starts import Start, shell_line
+from multibot_rewrite.fleet.launch.launch_actions import controller
+from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_commands
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_commands
@@ -22,7 +22,7 @@ from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.spelling.ways import SPAWN, SPAWNER, spawner_arguments, started
+from multibot_rewrite.spelling.ways import SPAWNER, started
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"
@@ -89,9 +89,7 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")
-            name, *more = spawner_arguments(it)
-            words = (name, *as_declared(plan, it.node.node), *more)
-            line = shell_line(Start(*SPAWN, it.node.namespace, arguments=words))
+            line = shell_line(controller(plan, it))
             yield f"{line}  # {condition}\n" if condition else f"{line}\n"
 
 

@@ -24,7 +24,7 @@ from multibot_rewrite.producers.launch.includes import simulator, without_effect
 from multibot_rewrite.producers.launch.places import place_of
 
 # They only change the context, or give further entities.
-_EXECUTED = (
+EXECUTED = (
     *("LaunchDescription", "GroupAction", "OpaqueFunction"),
     *("ForEach", "ForLoop"),
     *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
@@ -236,7 +236,7 @@ def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
 Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
 _HANDLERS: Mapping[str, Handler] = MappingProxyType(
     {
-        **dict.fromkeys(_EXECUTED, _execute),
+        **dict.fromkeys(EXECUTED, _execute),
         **dict.fromkeys(_PASSED, _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The actions of a launch file that ``build`` printed, with the values that launch gives them.
+
+The file is executed with the stand-in for launch, as often as wanted, each time with other launch
+arguments. Nothing is started, and every value is kept: what is printed can be compared with what is
+planned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.launch.describe import is_wanted
+from multibot_rewrite.producers.launch.failures import failure
+from multibot_rewrite.producers.launch.places import keep_places, place_of
+from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in.actions import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    load_python_launch_file_as_module,
+)
+from multibot_rewrite.producers.launch.stand_in.packages import (
+    FindPackageShare,
+    PackageNotFoundError,
+)
+from multibot_rewrite.producers.launch.stand_in.parameters import evaluate_parameters
+from multibot_rewrite.producers.launch.stand_in.processes import RegisterEventHandler
+from multibot_rewrite.producers.launch.stand_in.ros import ComposableNode, LifecycleNode
+from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, text_of
+from multibot_rewrite.producers.launch.visit import EXECUTED
+from multibot_rewrite.system.records import Place
+
+_OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
+
+
+class Launching(NamedTuple):
+    """How a launch file is launched: its arguments, and whether the packages that it asks for are
+    installed."""
+
+    arguments: Mapping[str, str]
+    installed: bool = True
+
+    @property
+    def command(self) -> str:
+        """The command line, for people."""
+        words = (f" {name}:={value}" for name, value in self.arguments.items())
+        return f"ros2 launch fleet.launch.py{''.join(words)}"
+
+
+class Action(NamedTuple):
+    """What launch does: the name of the action, its values by keyword, and its place."""
+
+    kind: str
+    values: Mapping[str, Any]
+    place: Place = Place("", 1)
+
+
+class Performed(NamedTuple):
+    """The actions of one launch, or why it fails."""
+
+    actions: tuple[Action, ...]
+    error: str = ""
+
+
+def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
+    """Return what each of the launches does. The file is loaded once."""
+    packages = _Packages()
+    with standing_in(**packages.modules()):
+        keep_places()
+        try:
+            module = load_python_launch_file_as_module(path)
+        except (Exception, SystemExit) as error:
+            return [Performed((), failure(error)) for _ in launches]
+        return [_performed(module, path, it, packages) for it in launches]
+
+
+def share(package: str) -> str:
+    """Return the share folder that every package has here."""
+    return f"/{package}/share/{package}"
+
+
+class _Packages:
+    """The packages: all of them are installed, or none."""
+
+    def __init__(self) -> None:
+        self.installed = True
+
+    def modules(self) -> dict[str, Mapping[str, Any]]:
+        """Return the modules that ask for packages."""
+
+        class Share(FindPackageShare):
+            def find(self, package_name: str) -> str:
+                return share(package_name)
+
+        asked, found = "ament_index_python.packages", "launch_ros.substitutions"
+        known = contents()
+        return {
+            asked: {**known[asked], "get_package_prefix": self.prefix},
+            found: {**known[found], "FindPackageShare": Share},
+        }
+
+    def prefix(self, package: str) -> str:
+        """Return the folder of a package; raises PackageNotFoundError."""
+        if not self.installed:
+            raise PackageNotFoundError(package)
+        return f"/{package}"
+
+
+def _performed(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
+    packages.installed = it.installed
+    context = LaunchContext(noninteractive=True)
+    context.environment.clear()
+    context.launch_configurations.update(it.arguments)
+    try:
+        description = module.generate_launch_description()
+        return Performed(tuple(_Seen(context, path, []).below(description)))
+    except (Exception, SystemExit) as error:
+        # A launch file is a program: it may raise anything.
+        return Performed((), failure(error))
+
+
+class _Seen(NamedTuple):
+    """A launch: its context, its file, and the nodes with a life cycle so far."""
+
+    context: LaunchContext
+    path: str
+    managed: list[Any]
+
+    def below(self, entity: Any) -> Iterator[Action]:
+        """Yield what an entity does, and all below it, in the order of the launch."""
+        kind = type(entity).__name__
+        if isinstance(entity, DeclareLaunchArgument) or kind not in EXECUTED:
+            if not is_wanted(entity, self.context):
+                return
+            yield Action(kind, self.values(entity), place_of(entity, self.path))
+        if kind in EXECUTED:
+            for it in entity.visit(self.context) or ():
+                yield from self.below(it)
+
+    def values(self, entity: Any) -> dict[str, Any]:
+        """Return what an action is given, evaluated."""
+        if isinstance(entity, RegisterEventHandler):
+            return self.kept(entity.event_handler)
+        if isinstance(entity, LifecycleNode):
+            self.managed.append(entity)
+        found = self.kept(entity)
+        if isinstance(entity, IncludeLaunchDescription):
+            location = entity.launch_description_source.location
+            given = entity.launch_arguments
+            found["launch_description_source"] = text_of(self.context, location)
+            found["launch_arguments"] = [[text_of(self.context, one) for one in it] for it in given]
+        if hasattr(entity, "node_executable"):
+            found["environment"] = dict(self.context.environment)
+        return found
+
+    def kept(self, it: Kept) -> dict[str, Any]:
+        """Return the values that an action keeps by keyword, evaluated."""
+        given = {name: vars(it).get(name) for name in (*it.names, *it.others)}
+        return self.evaluated({name: one for name, one in given.items() if name != "condition"})
+
+    def evaluated(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the values that are there, evaluated."""
+        there = {name: it for name, it in given.items() if it is not None}
+        own = there.pop("parameters", None)
+        found = {name: self.plain(it) for name, it in there.items()}
+        if own is not None:
+            found["parameters"] = [self.plain(it) for it in evaluate_parameters(self.context, own)]
+        return found
+
+    def plain(self, it: Any) -> Any:
+        """Return a value as plain Python."""
+        if hasattr(it, "perform"):
+            return text_of(self.context, it)
+        if isinstance(it, PurePath):
+            return str(it)
+        if isinstance(it, Mapping):
+            return {self.plain(key): self.plain(one) for key, one in it.items()}
+        if isinstance(it, list | tuple):
+            return [self.plain(one) for one in it]
+        return self.of_action(it)
+
+    def of_action(self, it: Any) -> Any:
+        """Return what is no plain value: a node with a life cycle is its number, what asks for such
+        nodes the numbers of those that it matches."""
+        if isinstance(it, LifecycleNode):
+            return self.managed.index(it)
+        if isinstance(it, ComposableNode):
+            texts = {name: getattr(it, name) for name in _OF_COMPONENT}
+            given = {name: text_of(self.context, one) for name, one in texts.items() if one}
+            more = {"parameters": it.parameters or None, "remappings": it.remappings or None}
+            return given | self.evaluated(more)
+        if isinstance(it, Kept):
+            return self.kept(it)
+        if callable(it):
+            return [number for number, node in enumerate(self.managed) if it(node)]
+        return it
