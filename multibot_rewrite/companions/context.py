@@ -15,16 +15,21 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.targets import placed
 
 
+NO_FRAMES: Mapping[str, str] = {}
+
+
 class Context(NamedTuple):
     """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
     with a slot for the robot. ``nodes`` maps a node's name in the stack to the full name it runs
-    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release.
+    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release. ``frames`` are usual
+    frames that the robots do not have, each with their own one.
     """
 
     names: CompanionNames
     topics: CompanionNames
     nodes: Mapping[str, str]
     distro: str
+    frames: Mapping[str, str] = NO_FRAMES
 
 
 def make_context(

@@ -26,6 +26,14 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
+from multibot_rewrite.fleet.robots.fitting import (
+    NO_FRAMES,
+    Frames,
+    driven,
+    fitted,
+    fitting_frames,
+    with_frames,
+)
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -63,7 +71,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, and the arguments of all that they start."""
+    start all of its nodes and no simulator, the arguments of all that they start, and the usual
+    frames that it does not have, each with its own one."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -72,6 +81,7 @@ class RobotEvidence(NamedTuple):
     spawned: Mapping[str, Spawned]
     unsimulated: bool = False
     arguments: tuple[str, ...] = ()
+    frames: Frames = NO_FRAMES
 
 
 def robot_nodes(
@@ -97,6 +107,10 @@ def robot_nodes(
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
+    sent = driven(member, spec)
+    frames = fitting_frames(member, nodes, sent)
+    known = {name: with_frames(it, frames) for name, it in known.items()}
+    nodes = fitted([with_frames(it, frames) for it in nodes], given, known, sent, spec)
     marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     started = launched.started if launched else {}
@@ -104,7 +118,7 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
+    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments, frames)
 
 
 def _as_written(
