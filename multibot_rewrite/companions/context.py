@@ -14,7 +14,6 @@ from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.targets import placed
 
-
 NO_FRAMES: Mapping[str, str] = {}
 
 

@@ -40,7 +40,6 @@ class BridgedTopic(NamedTuple):
     gz_type: str
     direction: str
 
-
     is_free: bool = False
 
 

@@ -77,7 +77,9 @@ def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Itera
             own = context.frames.get(param.default, param.default)
             text = SPELLERS[param.kind](context, own)
             if text != param.default:
-                yield DefaultLine(DEFAULT if own == param.default else OWN_FRAME, param.path, quoted(text))
+                yield DefaultLine(
+                    DEFAULT if own == param.default else OWN_FRAME, param.path, quoted(text)
+                )
 
 
 def _set_anywhere(

@@ -19,7 +19,9 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
@@ -43,10 +45,12 @@ _HINT = "the fleet would not start as planned; please report it, with the fleet 
 def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     """What is wrong with the files of a fleet, which will be in ``folder``. Two robots of each sort are
     read: what a robot has is true of its sort. All are where they do something to each other, or name
-    other ones.
+    other ones. Nothing is read where a node cannot start: what follows from that is no news.
 
     Raises MultibotError where no temporary file can be written.
     """
+    if any(it.code == LACKING.code for it in made.findings):
+        return []
     sample = two_of_each(made, [it.spec for it in plan.robots])
     found, graph = _read(plan, sample.made, folder)
     alone = all(it.robots or it.robot in sample.alike for it in found)
@@ -66,7 +70,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         found = launched(graph, _known(plan))
         seen = found.system
-        wrong = [*not_as_planned(made.planned, seen, made.started, made.findings)]
+        real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
+        wrong = [*not_as_planned(made.planned, seen, made.started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
         wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))

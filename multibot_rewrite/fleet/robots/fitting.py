@@ -21,19 +21,19 @@ from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
-from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import sent_by
-from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
 ODOM = "odom"
 Frames = Mapping[str, str]
 NO_FRAMES: Frames = {}
+_BY_FILE = "open: file"
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
 
@@ -55,9 +55,7 @@ def driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
     return (*found, *(it for node in nodes for it in sent_by(node, "")))
 
 
-def fitting_frames(
-    member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]
-) -> Frames:
+def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
     """Return the usual frames that nothing of the robot has, each with the frame that its drive has in
     that place."""
     placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
@@ -98,7 +96,7 @@ def fitted(
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes, those without a section in a file with the settings that fit the others;
     ``sent`` are the transforms of the description's plugins."""
-    settled = [it if _section(it, given) else _settled(it) for it in nodes]
+    settled = [it if _section(it, given) else _settled(_as_listed(it, spec)) for it in nodes]
     choices = {it.node.name: it for it in _choices(settled, given, known)}
     wanted = _wanted(tuple(choices.values()), settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
@@ -108,6 +106,18 @@ def fitted(
 def _section(node: NodeFacts, given: Iterable[GivenNode]) -> GivenNode | None:
     last = f"/{node.name}"
     return next((it for it in given if f"/{it.name}".endswith(last)), None)
+
+
+def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
+    """The node without the names that it makes of a list which no file gives it: they may come, if a
+    file is added."""
+    if node.kind == MOVE_GROUP and spec.companions.get("moveit"):
+        return node
+    ends = (
+        it._replace(when=_BY_FILE) if "<" in it.name and not it.when else it
+        for it in node.endpoints
+    )
+    return node._replace(endpoints=tuple(ends))
 
 
 def _settled(node: NodeFacts) -> NodeFacts:
@@ -170,7 +180,9 @@ def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotS
         end.type
         for node in nodes
         for end in node.endpoints
-        if end.role == SUBSCRIBES and not (end.when or end.also) and (end.remapped or end.name) in topics
+        if end.role == SUBSCRIBES
+        and not (end.when or end.also)
+        and (end.remapped or end.name) in topics
     ]
     fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
     of_files = [it.type for it in choices if it.section]
@@ -217,9 +229,7 @@ def _without_second_senders(
     for node in nodes:
         own = {_place(it, bodies) for it in sent_by(node, "")}
         switch = "" if node.name in filed or own.isdisjoint(taken) else _switch_of(node)
-        yield (
-            node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node
-        )
+        yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
         taken |= set() if switch else own
 
 
