@@ -30,8 +30,8 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 
 
 class BridgedTopic(NamedTuple):
-    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots. ``is_free``: the
-    description does not say its name in ROS."""
+    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots. ``is_free`` is
+    true where the description does not say its name in ROS."""
 
     robot: str
     ros: str
@@ -81,7 +81,8 @@ def bridged_topics(
 
 
 def _fitting(topic: BridgedTopic, names: Iterable[EndpointName]) -> BridgedTopic:
-    """The topic with the name and type of the nodes at its end, where the bridge can convert that type."""
+    """Return the topic with the name and type that the nodes at its end have, where the bridge can
+    convert that type."""
     role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
     ends = [it for it in names if it.robot == topic.robot and not it.endpoint.when]
     sides = [it for it in ends if it.endpoint.role == role]

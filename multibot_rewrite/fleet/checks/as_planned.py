@@ -26,7 +26,7 @@ from multibot_rewrite.rules.system import (
     transforms,
 )
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.spelling.ways import SPAWNER
+from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
@@ -120,7 +120,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
 
 def _is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
     """Is the tree in pieces at a link that no started node's parameters name? A driver places it."""
-    edges = (it for it in planned.edges if started.intersection(it.publishers))
+    edges = (it for it in planned.edges if started & {*it.publishers})
     named = {frame for edge in edges for frame in (edge.parent, edge.child)}
     return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
 
@@ -146,7 +146,7 @@ def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str])
     if own is None or it.node not in started:
         return False
     if it.code == nodes.missing_node.code:
-        loaded = own.way == SPAWNER or own.taker.rpartition("/")[2] == MANAGER
+        loaded = own.way == SPAWNER or (own.way == HOST and not own.taker)
         return not loaded or _has_manager(own, seen)
     known = any(one.known for one in seen.nodes if one.name == it.node)
     return _is_read(seen) and (known or own.way == SPAWNER)

@@ -42,8 +42,8 @@ LACKING = declare(
     "MF857",
     "node-without-its-file",
     ERROR,
-    what="A stack starts a node that reads an SRDF, a `<ros2_control>` of the description or a Lua file, "
-    "and the robot has none.",
+    what="A stack starts a node that reads an SRDF, a `<ros2_control>` of the description or a Lua "
+    "file, and the robot has none.",
     why="The node ends as soon as it is started: `move_group` has no semantic description, the "
     "controller manager no hardware, Cartographer no options.",
     fix="Name the file in the fleet file (`srdf:`, `lua` under `companions`), take a description with "

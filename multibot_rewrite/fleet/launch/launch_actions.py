@@ -160,7 +160,7 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
 
 
 def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
-    """The words that name the robot's own Lua file to Cartographer: the first that the fleet file has."""
+    """Return the words that name the robot's first Lua file to Cartographer."""
     files = given.robot.spec.companions.get("lua", ())
     if facts.kind == CARTOGRAPHER and files:
         folder, _, name = path_for(given.robot, files[0]).rpartition("/")

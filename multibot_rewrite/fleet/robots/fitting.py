@@ -49,7 +49,8 @@ def driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
         sites = frame_sites(host, section, _NAMING)
         frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
         if len(frames) == 2:
-            found.append(edge_of(*(it.removeprefix(MODEL) for it in frames)))
+            parent, child = (it.removeprefix(MODEL) for it in frames)
+            found.append(edge_of(parent, child))
     reading = read(source.source, source.file, member.vocabulary)
     nodes = (node for node, _ in plugin_nodes(reading, ""))
     return (*found, *(it for node in nodes for it in sent_by(node, "")))
@@ -187,7 +188,7 @@ def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotS
     fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
     of_files = [it.type for it in choices if it.section]
     usual = {it.type for it in choices}
-    return [*fixed, *of_files, *(usual if len(usual) == 1 else ()), PLAIN][0]
+    return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
 
 
 def _typed(node: NodeFacts, choice: _Choice | None, wanted: str) -> NodeFacts:

@@ -54,6 +54,7 @@ from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
+from multibot_rewrite.system.records import Edge
 
 WORLD, BRIDGE = "world", "ros_gz_bridge"
 # The stack of a controller manager that no plugin makes.
@@ -71,8 +72,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, the arguments of all that they start, and the usual
-    frames that it does not have, each with its own one."""
+    start all of its nodes and no simulator, the arguments of all that they start, the usual frames
+    that it does not have, each with its own one, and the transforms that a simulator sends."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -82,6 +83,7 @@ class RobotEvidence(NamedTuple):
     unsimulated: bool = False
     arguments: tuple[str, ...] = ()
     frames: Frames = NO_FRAMES
+    simulated: tuple[Edge, ...] = ()
 
 
 def robot_nodes(
@@ -118,7 +120,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments, frames)
+    more = unsimulated, arguments, frames, sent
+    return RobotEvidence(given, known, marked, said, spawned, *more)
 
 
 def _as_written(
