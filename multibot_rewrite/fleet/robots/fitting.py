@@ -26,7 +26,7 @@ from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.spelling.table import plugin_nodes
-from multibot_rewrite.spelling.transforms import sent_by
+from multibot_rewrite.spelling.transforms import edges_in, sent_by
 from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
@@ -78,6 +78,20 @@ def with_frames(node: NodeFacts, fits: Frames) -> NodeFacts:
     return node._replace(frames=tuple(frames)) if fits else node
 
 
+def changed_frames(
+    nodes: Iterable[NodeFacts], before: Iterable[NodeFacts]
+) -> Mapping[tuple[str, str], str]:
+    """Return the frames of nodes that are others than ``before``, where no file sets them: by the
+    node's last name and the parameter."""
+    old = {(node.name, it.parameter): it.default for node in before for it in node.frames}
+    return {
+        (node.kind.rpartition("/")[2], it.parameter): it.default
+        for node in nodes
+        for it in node.frames
+        if not it.given and old.get((node.name, it.parameter), it.default) != it.default
+    }
+
+
 class _Choice(NamedTuple):
     """A node whose commands are stamped or not as a parameter says: the type that it has now, whether
     a file sets the parameter, and the node's section in the files."""
@@ -94,10 +108,14 @@ def fitted(
     known: Mapping[str, NodeFacts],
     sent: Sequence[Edge],
     spec: RobotSpec,
+    member: Member,
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes, those without a section in a file with the settings that fit the others;
     ``sent`` are the transforms of the description's plugins."""
-    settled = [it if _section(it, given) else _settled(_as_listed(it, spec)) for it in nodes]
+    root = _root(member)
+    settled = [
+        it if _section(it, given) else _settled(_rooted(_as_listed(it, spec), root)) for it in nodes
+    ]
     choices = {it.node.name: it for it in _choices(settled, given, known)}
     wanted = _wanted(tuple(choices.values()), settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
@@ -107,6 +125,28 @@ def fitted(
 def _section(node: NodeFacts, given: Iterable[GivenNode]) -> GivenNode | None:
     last = f"/{node.name}"
     return next((it for it in given if f"/{it.name}".endswith(last)), None)
+
+
+def _root(member: Member) -> str:
+    """The link that no joint holds, where another usual one of the body is below it; else empty."""
+    children = {it.child for it in edges_in(member.source.root)}
+    roots = [
+        name
+        for it in member.source.root.iterfind("link")
+        if (name := it.get("name", "")) not in children
+    ]
+    return roots[0] if len(roots) == 1 and not children.isdisjoint(BODY_FRAMES) else ""
+
+
+def _rooted(node: NodeFacts, root: str) -> NodeFacts:
+    """The node with the root of the description as the frame that it places: a link that a joint holds
+    has a parent already."""
+    placed = {it.child for it in node.sends}
+    frames = (
+        it._replace(default=root) if it.parameter in placed and it.default in BODY_FRAMES else it
+        for it in node.frames
+    )
+    return node._replace(frames=tuple(frames)) if root else node
 
 
 def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:

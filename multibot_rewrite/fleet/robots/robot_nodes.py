@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.context import NO_FRAMES, Frames
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec, Sources
@@ -27,8 +28,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting import (
-    NO_FRAMES,
-    Frames,
+    changed_frames,
     driven,
     fitted,
     fitting_frames,
@@ -72,8 +72,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, the arguments of all that they start, the usual frames
-    that it does not have, each with its own one, and the transforms that a simulator sends."""
+    start all of its nodes and no simulator, the arguments of all that they start, the frames that it
+    has in the place of defaults, and the transforms that a simulator sends."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -110,9 +110,10 @@ def robot_nodes(
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     sent = driven(member, spec)
-    frames = fitting_frames(member, nodes, sent)
-    known = {name: with_frames(it, frames) for name, it in known.items()}
-    nodes = fitted([with_frames(it, frames) for it in nodes], given, known, sent, spec)
+    fits = fitting_frames(member, nodes, sent)
+    known = {name: with_frames(it, fits) for name, it in known.items()}
+    fitting = fitted([with_frames(it, fits) for it in nodes], given, known, sent, spec, member)
+    frames, nodes = changed_frames(fitting, nodes), fitting
     marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     started = launched.started if launched else {}
@@ -163,7 +164,9 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
     """A plugin's node runs where the description loads the plugin, the robot's own bridge where there
     is something to bridge."""
     if it.plugin:
-        return library_key(it.plugin) in plugin_libraries(member.inventory)
+        # On Humble it has the name of Ignition, too.
+        loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
+        return library_key(it.plugin) in loaded
     of_one = it.name == BRIDGE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 
