@@ -116,7 +116,7 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
-    carried, left = bridged_topics(made.inventories, made.naming)
+    carried, left = bridged_topics(made.inventories, made.naming, made.table.names)
     for item in left:
         message = f"line {item.line}: {item.what} has no topic, its default depends on the world"
         note(options, f"{item.robot}: warning: {message} (write the element)")

@@ -14,17 +14,22 @@ from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.targets import placed
 
+Frames = Mapping[tuple[str, str], str]
+NO_FRAMES: Frames = {}
+
 
 class Context(NamedTuple):
     """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
     with a slot for the robot. ``nodes`` maps a node's name in the stack to the full name it runs
-    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release.
+    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release. ``frames`` are
+    those that the robots have in the place of a default: by the node's last name and the parameter.
     """
 
     names: CompanionNames
     topics: CompanionNames
     nodes: Mapping[str, str]
     distro: str
+    frames: Frames = NO_FRAMES
 
 
 def make_context(

@@ -19,6 +19,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
+from multibot_rewrite.fleet.checks.lacking import lacking
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -138,6 +139,7 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from one_device_each(plan.robots, plan.evidence_of, known, met)
     for found in plan.evidence.values():
         yield from found.findings
+    yield from lacking(plan)
     yield from too_near(plan)
     yield from launched_prefixes(plan)
     yield from moveit_frames(plan)

@@ -136,7 +136,7 @@ def _with_bridge_and_findings(
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming)
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming, table.names)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))
 

@@ -18,6 +18,7 @@ from multibot_rewrite.description.rewriters.model_namespaces import is_model_nam
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, Topic
 
 # How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
@@ -29,7 +30,8 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 
 
 class BridgedTopic(NamedTuple):
-    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots."""
+    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots. ``is_free`` is
+    true where the description does not say its name in ROS."""
 
     robot: str
     ros: str
@@ -37,6 +39,8 @@ class BridgedTopic(NamedTuple):
     ros_type: str
     gz_type: str
     direction: str
+
+    is_free: bool = False
 
 
 class UnbridgedTopic(NamedTuple):
@@ -58,11 +62,12 @@ def bridge_data() -> Mapping[str, Any]:
 
 
 def bridged_topics(
-    inventories: Mapping[str, Inventory], naming: Naming
+    inventories: Mapping[str, Inventory], naming: Naming, names: Sequence[EndpointName] = ()
 ) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
-    """The bridged topics of a fleet, and those that cannot be bridged.
+    """Return the bridged topics of a fleet, and those that cannot be bridged.
 
-    ``inventories`` are those of the rewritten descriptions.
+    ``inventories`` are those of the rewritten descriptions, ``names`` the ends of the robots' nodes: a
+    topic has the type and, where the description does not say it, the name that these have.
     """
     bridged = [
         BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
@@ -72,7 +77,30 @@ def bridged_topics(
     for robot, inventory in inventories.items():
         for item in _robot_topics(inventory, robot, naming):
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return list(dict.fromkeys(bridged)), left
+    return [_fitting(it, names) for it in dict.fromkeys(bridged)], left
+
+
+def _fitting(topic: BridgedTopic, names: Iterable[EndpointName]) -> BridgedTopic:
+    """Return the topic with the name and type that the nodes at its end have, where the bridge can
+    convert that type."""
+    role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
+    ends = [it for it in names if it.robot == topic.robot and not it.endpoint.when]
+    sides = [it for it in ends if it.endpoint.role == role]
+    if topic.is_free and all(it.name != topic.ros for it in sides):
+        sent = {it.name for it in ends if it.endpoint.role not in (role, "")}
+        alike = {it.name for it in sides if it.endpoint.type == topic.ros_type} - sent
+        topic = topic._replace(ros=alike.pop()) if len(alike) == 1 else topic
+    own = [it.endpoint for it in sides if it.name == topic.ros]
+    types = {it for end in own for it in (end.type, *end.also)}
+    if len(types) == 1 and topic.gz_type.rpartition(".")[2] in _pairs(*types):
+        return topic._replace(ros_type=types.pop())
+    return topic
+
+
+def _pairs(ros_type: str) -> Sequence[str]:
+    """The types of gz that the bridge makes of one of ROS."""
+    found: Sequence[str] = bridge_data()["pairs"].get(ros_type, ())
+    return found
 
 
 def is_bridged(inventory: Inventory) -> bool:
@@ -164,11 +192,12 @@ def _plugin(
             yield UnbridgedTopic(robot, _line(plugin), what, type=gz_type)
             continue
         ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
-        if not given and ros_type != TF_TYPE:
+        is_free = not given and ros_type != TF_TYPE
+        if is_free:
             ros = _robot_name(default.rpartition("/")[2], robot, naming)
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
-        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way], is_free)
 
 
 def _given(plugin: etree._Element, element: str, default: str) -> str:

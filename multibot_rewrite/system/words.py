@@ -10,8 +10,9 @@ _ALWAYS = (
     "ackermann_msgs/msg/AckermannDrive", "ackermann_msgs/msg/AckermannDriveStamped",
     "trajectory_msgs/msg/JointTrajectory", "control_msgs/msg/JointJog",
 )  # fmt: skip
+PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 _BY_NAME = (
-    "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "std_msgs/msg/Float64MultiArray",
+    PLAIN, STAMPED, "std_msgs/msg/Float64MultiArray",
     "std_msgs/msg/Float64",
 )  # fmt: skip
 _NAMED = ("cmd", "vel", "command", "setpoint", "speed")

@@ -155,7 +155,10 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
 
 
 # What opens nothing of a robot's, beside the programs of the table.
-QUIET = ("parameter_bridge", "rviz2", "gz_sim.launch.py", "gazebo.launch.py")
+QUIET = (
+    *("parameter_bridge", "rviz2", "gz_sim.launch.py", "gazebo.launch.py"),
+    *("component_container", "component_container_isolated", "static_transform_publisher"),
+)
 
 
 def strangers(given: Reader, nodes: list[Node]) -> Iterator[tuple[str, str]]:

@@ -14,6 +14,9 @@ import yaml
 Start = dict[str, Any]
 # Programs that put a robot into the simulator, with the option that names it there.
 SPAWNERS = {"create": "-name", "spawn_entity.py": "-entity"}
+# In a container a costmap has the rules of the process in these; later those of the component that
+# makes it (nav2_costmap_2d 1.5.0 src/costmap_2d_ros.cpp, getChildNodeOptions).
+BEFORE_HANDED_ON = ("humble", "iron", "jazzy", "kilted")
 
 
 class Reader(NamedTuple):
@@ -46,6 +49,7 @@ class Node(NamedTuple):
 
 def nodes_of(given: Reader) -> Iterator[Node]:
     """The nodes of programs and components, and those that they have inside."""
+    containers = {who: it["rules"] for who, it in given.starts if is_container(it)}
     for who, it in given.starts:
         if "executable" not in it or it["executable"] in ("spawner", *SPAWNERS):
             continue
@@ -63,7 +67,14 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         yield Node(who, what, name, space, plain, values, ends)
         costmap = programs.COSTMAPS.get(what)
         if costmap:
-            yield costmap_of(who, it, costmap, space, plain, given.release)
+            inner = plain
+            if it.get("component") and given.release in BEFORE_HANDED_ON:
+                inner = tuple(tuple(rule) for rule in containers.get(who, ()))
+            yield costmap_of(who, it, costmap, space, inner, given.release)
+
+
+def is_container(start: Start) -> bool:
+    return str(start.get("executable", "")).startswith("component_container")
 
 
 def costmap_of(who: str, start: Start, name: str, space: str, rules: Any, release: str) -> Node:

@@ -28,6 +28,23 @@ NODES = {
     "ros2_control_node": "controller_manager",
     "lifecycle_manager": "lifecycle_manager",
     "teleop_node": "teleop_twist_joy_node",
+    "map_saver_server": "map_saver",
+    # Components of Nav2 (RCLCPP_COMPONENTS_REGISTER_NODE at the end of each source).
+    "AmclNode": "amcl",
+    "BehaviorServer": "behavior_server",
+    "BtNavigator": "bt_navigator",
+    "CollisionMonitor": "collision_monitor",
+    "ControllerServer": "controller_server",
+    "DockingServer": "docking_server",
+    "FollowingServer": "following_server",
+    "LifecycleManager": "lifecycle_manager",
+    "MapSaver": "map_saver",
+    "MapServer": "map_server",
+    "PlannerServer": "planner_server",
+    "RouteServer": "route_server",
+    "SmootherServer": "smoother_server",
+    "VelocitySmoother": "velocity_smoother",
+    "WaypointFollower": "waypoint_follower",
 }
 # Controllers that are another with one interface (velocity_controllers/src/*.cpp and its neighbours).
 SAME = dict.fromkeys(
@@ -83,7 +100,8 @@ def table(release: str) -> Mapping[str, tuple[Mapping[str, str], ...]]:
 
 def node_of(executable: str) -> str:
     """The node that a program is, as the table calls it."""
-    return NODES.get(executable, executable.rpartition("::")[2] or executable)
+    last = executable.rpartition("::")[2]
+    return NODES.get(last, last)
 
 
 def is_known(node: str, release: str) -> bool:

@@ -41,12 +41,25 @@ class Edge(NamedTuple):
     node: str
 
 
+def is_static(topic: str) -> bool:
+    return "tf_static" in topic.split("/")
+
+
+def static_of(topic: str) -> str:
+    """The topic of the transforms that hold for ever, beside that of the others: /tf_static/robot1."""
+    return "/".join("tf_static" if it == "tf" else it for it in topic.split("/"))
+
+
+def moving_of(topic: str) -> str:
+    return "/".join("tf" if it == "tf_static" else it for it in topic.split("/"))
+
+
 def edges_of(
     given: Any, nodes: Iterable[Any], roots: Mapping[str, Any], ends: Any, gz: Any, bridges: Any
 ) -> Iterator[Edge]:
     """Every transform that is sent."""
     topics = {
-        (it.node, it.name.endswith("_static")): it.name
+        (it.node, is_static(it.name)): it.name
         for it in ends
         if it.type == TF and it.role == "publishes"
     }

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
-from trees import LOOKED_UP, TF, Edge, connected, whole
+from trees import LOOKED_UP, TF, Edge, connected, is_static, moving_of, static_of, whole
 from twins import Fault, models_twice, topics_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -213,7 +213,7 @@ def is_placed(fleet: Fleet, robot: str, reader: End) -> bool:
     topic = next((it.name for it in listening(fleet) if it.node == reader.node), None)
     if topic is None:
         return True
-    near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
+    near = [e for e in fleet.edges if e.topic in (topic, static_of(topic))]
     own = {it.child for it in near if it.robot in (robot, fleet.models.get(robot))}
     return any(connected(near, frames_sent(fleet)[reader.name], link) for link in own)
 
@@ -223,7 +223,7 @@ def listening(fleet: Fleet) -> list[End]:
     return [
         it
         for it in fleet.ends
-        if it.role == "subscribes" and it.type == TF and not it.name.endswith("_static")
+        if it.role == "subscribes" and it.type == TF and not is_static(it.name)
     ]
 
 
@@ -265,7 +265,7 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
         topic = listens.get(it.fqn)
         if it.robot != robot or topic is None:
             continue
-        near = [e for e in fleet.edges if e.topic in (topic, f"{topic}_static")]
+        near = [e for e in fleet.edges if e.topic in (topic, static_of(topic))]
         yield from unknown_frames(fleet, robot, it, topic, near)
     yield from two_parents(fleet, robot)
     yield from one_start(fleet, robot)
@@ -336,4 +336,4 @@ def two_parents(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 def one_tree(edges: Iterable[Edge]) -> list[Edge]:
     """tf's buffer holds static and other transforms in one tree."""
-    return [it._replace(topic=it.topic.removesuffix("_static")) for it in edges]
+    return [it._replace(topic=moving_of(it.topic)) for it in edges]

@@ -27,6 +27,7 @@ from multibot_rewrite.knowledge.parameters import KnownNode
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
+OWN_FRAME = "# multibot: the robot has this frame in the place of the default"
 _FRAMES = ("frame", "link", "stem", "interface", *PREFIX_KINDS)
 
 
@@ -73,9 +74,12 @@ def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Itera
         elif param.kind == "no_prefix":
             yield DefaultLine(OFF, param.path, quoted(NO_PREFIX))
         elif param.kind in _FRAMES and expressible(context, param.kind):
-            text = SPELLERS[param.kind](context, param.default)
+            own = context.frames.get((node.name, param.path), param.default)
+            text = SPELLERS[param.kind](context, own)
             if text != param.default:
-                yield DefaultLine(DEFAULT, param.path, quoted(text))
+                yield DefaultLine(
+                    DEFAULT if own == param.default else OWN_FRAME, param.path, quoted(text)
+                )
 
 
 def _set_anywhere(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence, Set
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
@@ -26,7 +26,7 @@ from multibot_rewrite.rules.system import (
     transforms,
 )
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.spelling.ways import SPAWNER
+from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
@@ -55,10 +55,15 @@ _OF_NODES = frozenset(
 
 
 def not_as_planned(
-    planned: System, seen: System, started: Set[str], told: Sequence[Finding]
+    planned: System,
+    seen: System,
+    started: Set[str],
+    told: Sequence[Finding],
+    real: Set[str] = frozenset(),
 ) -> Iterator[Finding]:
     """What ``multibot check`` would say of the running fleet, as errors; ``started`` are the planned
-    nodes that the launch file is to start. What the build has ``told`` is said as it was told."""
+    nodes that the launch file is to start. What the build has ``told`` is said as it was told. Robots
+    that are ``real`` have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
     found = check(planned, seen._replace(environment=Environment()))
     if not found:
@@ -69,6 +74,8 @@ def not_as_planned(
         known[_key(by_plan, it)].append(it)
     for it in found:
         level, place = _level(it, planned, seen, started), _place(it, running)
+        if it.robot in real and level == WARNING and _is_for_driver(it, planned, started):
+            level = NOTE
         if not level or any((it.code, name) in open_ for name in it.names):
             continue
         here = it._replace(file=place.file, line=place.line, column=place.column)
@@ -111,6 +118,13 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     return "" if it.code in ABSENCE and doubts(seen) else ERROR
 
 
+def _is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
+    """Is the tree in pieces at a link that no started node's parameters name? A driver places it."""
+    edges = (it for it in planned.edges if started & {*it.publishers})
+    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
+    return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
+
+
 def _sender_left(it: Finding, planned: System, started: Set[str]) -> bool:
     """Is the transform between the pieces that of a node that may be missing and is not started? A
     simulator may send any other."""
@@ -132,7 +146,8 @@ def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str])
     if own is None or it.node not in started:
         return False
     if it.code == nodes.missing_node.code:
-        return own.way != SPAWNER or _has_manager(own, seen)
+        loaded = own.way == SPAWNER or (own.way == HOST and not own.taker)
+        return not loaded or _has_manager(own, seen)
     known = any(one.known for one in seen.nodes if one.name == it.node)
     return _is_read(seen) and (known or own.way == SPAWNER)
 

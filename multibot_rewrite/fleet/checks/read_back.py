@@ -21,7 +21,9 @@ from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
 from multibot_rewrite.fleet.checks.as_printed import not_as_printed
+from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
@@ -48,10 +50,12 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
     Every value of the launch file is compared. Of the files two robots of each sort are read: what a
     robot has is true of its sort. All are read where they do something to each other, or name other
-    ones.
+    ones. Nothing is read where a node cannot start: the rest would follow from that.
 
     Raises MultibotError where no temporary file can be written.
     """
+    if any(it.code == LACKING.code for it in made.findings):
+        return []
     with _temporary_folder() as home, gc_paused():
         launch = next(it.data for it in made.files if it.path == LAUNCH)
         printed = not_as_printed(made.starts, launch, home)
@@ -82,7 +86,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         found = launched(graph, _known(plan))
         seen = found.system
-        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings)]
+        real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
+        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
         wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))

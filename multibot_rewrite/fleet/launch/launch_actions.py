@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -153,10 +154,18 @@ def _started(given: _Given, name: str) -> Iterator[Start]:
             it.node.name,
             _parameters(given, name),
             it.rules,
-            program.words,
+            (*program.words, *_options(given, facts)),
             tuple(_components(given, name)),
             is_unmanaged(facts, given.release) and not _is_listed(given, name),
         )
+
+
+def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
+    """Return the words that name the robot's first Lua file to Cartographer."""
+    files = given.robot.spec.companions.get("lua", ())
+    if facts.kind == CARTOGRAPHER and files:
+        folder, _, name = path_for(given.robot, files[0]).rpartition("/")
+        yield from ("-configuration_directory", File(folder), "-configuration_basename", name)
 
 
 def _is_listed(given: _Given, name: str) -> bool:

@@ -55,7 +55,8 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
 
     Raises InputError for a bridge file that cannot be read or rewritten.
     """
-    topics, unbridged = bridged_topics(plan.fleet.inventories, plan.fleet.naming)
+    fleet = plan.fleet
+    topics, unbridged = bridged_topics(fleet.inventories, fleet.naming, fleet.table.names)
     topics = as_spawned(topics, plan.robots)
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:

@@ -17,8 +17,8 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.words import PLAIN, STAMPED
 
-PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND = "cmd_vel"
 # What drives call the commands that they read.
 COMMANDS = (COMMAND, "cmd_vel_unstamped", "reference", "reference_unstamped")
@@ -99,7 +99,7 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
             if end.role == SUBSCRIBES:
                 yield robot_topic(robot.topics, end.name), end.type
     own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
-    made, _ = bridged_topics(own, plan.fleet.naming)
+    made, _ = bridged_topics(own, plan.fleet.naming, plan.fleet.table.names)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
 
 

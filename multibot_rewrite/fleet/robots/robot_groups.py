@@ -42,11 +42,11 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec
-        nodes = plan.evidence_of(robots[0]).nodes
-        facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
+        evidence = plan.evidence_of(robots[0])
+        facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own, words = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own, words)
-        yield RobotGroup(tuple(robots), facts, context)
+        yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:

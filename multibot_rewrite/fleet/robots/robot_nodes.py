@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.context import NO_FRAMES, Frames
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec, Sources
@@ -26,6 +27,13 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
+from multibot_rewrite.fleet.robots.fitting import (
+    changed_frames,
+    driven,
+    fitted,
+    fitting_frames,
+    with_frames,
+)
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -46,6 +54,7 @@ from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
+from multibot_rewrite.system.records import Edge
 
 WORLD, BRIDGE = "world", "ros_gz_bridge"
 # The stack of a controller manager that no plugin makes.
@@ -63,7 +72,8 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, and the arguments of all that they start."""
+    start all of its nodes and no simulator, the arguments of all that they start, the frames that it
+    has in the place of defaults, and the transforms that a simulator sends."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -72,6 +82,8 @@ class RobotEvidence(NamedTuple):
     spawned: Mapping[str, Spawned]
     unsimulated: bool = False
     arguments: tuple[str, ...] = ()
+    frames: Frames = NO_FRAMES
+    simulated: tuple[Edge, ...] = ()
 
 
 def robot_nodes(
@@ -97,6 +109,11 @@ def robot_nodes(
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
+    sent = driven(member, spec)
+    fits = fitting_frames(member, nodes, sent)
+    known = {name: with_frames(it, fits) for name, it in known.items()}
+    fitting = fitted([with_frames(it, fits) for it in nodes], given, known, sent, spec, member)
+    frames, nodes = changed_frames(fitting, nodes), fitting
     marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     started = launched.started if launched else {}
@@ -104,7 +121,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    return RobotEvidence(given, known, marked, said, spawned, unsimulated, arguments)
+    more = unsimulated, arguments, frames, sent
+    return RobotEvidence(given, known, marked, said, spawned, *more)
 
 
 def _as_written(
@@ -146,7 +164,9 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
     """A plugin's node runs where the description loads the plugin, the robot's own bridge where there
     is something to bridge."""
     if it.plugin:
-        return library_key(it.plugin) in plugin_libraries(member.inventory)
+        # On Humble it has the name of Ignition, too.
+        loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
+        return library_key(it.plugin) in loaded
     of_one = it.name == BRIDGE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 

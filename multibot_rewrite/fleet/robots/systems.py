@@ -79,6 +79,8 @@ def system_before(
     plain = [_plainly(robot, it) for it in given]
     said = _said(srdf, source.root)
     exports = (_plain(robot, it) for it in exported(source.root, source.file))
+    lookups = _lookups(plain, nodes, evidence.known, said, sent)
+    simulated = {frame for it in evidence.simulated for frame in (it.parent, it.child)}
     return RobotSystem(
         _control(plain, evidence, exports, _documents(robot, "moveit"), said),
         System(
@@ -86,7 +88,7 @@ def system_before(
             ends=tuple(_ends_of(robot, nodes, given, reading)),
             edges=tuple(_edges_of(robot, nodes, evidence, sent)),
             environment=DRIVERS,
-            lookups=tuple(_lookups(plain, nodes, evidence.known, said, sent)),
+            lookups=tuple(it for it in lookups if it.frame not in simulated),
         ),
     )
 

@@ -46,13 +46,13 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     return with_frames._replace(
         name=given.name,
         endpoints=tuple(dict.fromkeys(made)),
-        sends=tuple(_sent(with_frames, values)),
+        sends=tuple(sent_with(with_frames, values)),
         origin=str(given.place),
     )
 
 
-def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
-    """The transforms that it sends with these parameters."""
+def sent_with(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
+    """Return the transforms that a node sends with these parameters."""
     value_of = lookup(node, values)
     yield from (it._replace(condition="") for it in node.sends if holds(it.condition, value_of))
 

@@ -14,6 +14,7 @@ from contextlib import suppress
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     NameFault,
@@ -53,6 +54,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.spelling.table import plugin_nodes
+from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 DESCRIPTION = "robot_description"
@@ -214,10 +216,11 @@ def _started(
     inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.name]
     hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
     documents = [document_of(text.file, text.text) for text in it.parameters if has_sections(text)]
+    handed_on = it.container and has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, known.release)
     for full, own in {name: facts, **hosted}.items():
         above, _, last = full.rpartition("/")
         given = GivenNode(full.strip("/"), "", "", values_for(full, documents), it.place)
-        rules = it.remappings if full == name else home
+        rules = it.remappings if full == name or handed_on else home
         arguments = it.arguments if full == name else ()
         yield RunningNode(
             last,

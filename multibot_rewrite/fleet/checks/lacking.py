@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes of a stack that end at once, because what they read is in no file of the robot.
+
+Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
+no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag"),
+cartographer_ros ros2 src/node_main.cpp (CHECK of both flags).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP
+
+CARTOGRAPHER = "cartographer_node"
+_FLEET = """\
+layout: both
+simulator: none
+stack: [moveit]
+description: arm.urdf
+{}robots:
+  - {{name: robot1}}
+"""
+_ARM = """\
+<robot name="arm">
+  <link name="base_link"/> <link name="hand"/>
+  <joint name="turn" type="fixed"><parent link="base_link"/><child link="hand"/></joint>
+</robot>
+"""
+_SRDF = """\
+<robot name="arm">
+  <group name="all"><link name="hand"/></group>
+  <disable_collisions link1="base_link" link2="hand" reason="Adjacent"/>
+</robot>
+"""
+LACKING = declare(
+    "MF857",
+    "node-without-its-file",
+    ERROR,
+    what="A stack starts a node that reads an SRDF, a `<ros2_control>` of the description or a Lua "
+    "file, and the robot has none.",
+    why="The node ends as soon as it is started: `move_group` has no semantic description, the "
+    "controller manager no hardware, Cartographer no options.",
+    fix="Name the file in the fleet file (`srdf:`, `lua` under `companions`), take a description with "
+    "`<ros2_control>`, or leave the stack out.",
+    bad=_FLEET.format(""),
+    good=_FLEET.format("srdf: arm.srdf\n"),
+    line=6,
+    formats=("fleet",),
+    beside={"arm.urdf": _ARM, "arm.srdf": _SRDF},
+)
+
+
+class Need(NamedTuple):
+    """What a node reads: whether a robot has it, what it is, and where to name it."""
+
+    is_there: Callable[[RewrittenRobot], bool]
+    what: str
+    hint: str
+
+
+def _has_hardware(robot: RewrittenRobot) -> bool:
+    """Return whether something in the description makes or fills a controller manager."""
+    made = any(it.manager for it in robot.member.reading.nodes)
+    return made or next(robot.member.described.document.root.iter("ros2_control"), None) is not None
+
+
+NEEDS: Mapping[str, Need] = {
+    MOVE_GROUP: Need(lambda it: bool(it.spec.srdf), "no SRDF", "name it: `srdf: FILE`"),
+    MANAGER: Need(
+        _has_hardware,
+        "a description without <ros2_control>",
+        "take a description that has one",
+    ),
+    CARTOGRAPHER: Need(
+        lambda it: bool(it.spec.companions.get("lua")),
+        "no Lua file of Cartographer",
+        "name it: `companions: {lua: FILE}`",
+    ),
+}
+
+
+def lacking(plan: FleetPlan) -> Iterator[Finding]:
+    """Find the nodes that the build starts and that end at once. What a robot's own launch files start
+    gets its files from them."""
+    for robot in (it for it in plan.robots if not it.spec.launch):
+        for node in plan.evidence_of(robot).nodes:
+            need = NEEDS.get(node.kind)
+            if need is None or node.when or node.shared or need.is_there(robot):
+                continue
+            message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"
+            yield at_robot(LACKING, robot, message, f"{need.hint}, or leave the stack out")

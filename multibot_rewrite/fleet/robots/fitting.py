@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Settings of a robot's nodes that no file of the robot makes: they fit what its description and its
+files have.
+
+What the user's files say stays. A node that a stack adds gets the type of commands, the frames and the
+transforms with which it works beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.readback.reading import read
+from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_of, frame_sites
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
+from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
+from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.producers.ends import bridge_ends
+from multibot_rewrite.producers.evidence.filling import lookup, sent_with
+from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.table import plugin_nodes
+from multibot_rewrite.spelling.transforms import edges_in, sent_by
+from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.words import PLAIN, STAMPED
+
+ODOM = "odom"
+Frames = Mapping[str, str]
+NO_FRAMES: Frames = {}
+_BY_FILE = "open: file"
+# The layout in which a description keeps its frames.
+_NAMING = make_naming("tf-per-robot")
+
+
+def driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
+    """Return the transforms that plugins of the description send, under the names that it has; none of
+    a real robot."""
+    if spec.simulator == REAL:
+        return ()
+    source = member.source
+    found: list[Edge] = []
+    for host, section in collect(source, member.tree).served:
+        sites = frame_sites(host, section, _NAMING)
+        frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
+        if len(frames) == 2:
+            parent, child = (it.removeprefix(MODEL) for it in frames)
+            found.append(edge_of(parent, child))
+    reading = read(source.source, source.file, member.vocabulary)
+    nodes = (node for node, _ in plugin_nodes(reading, ""))
+    return (*found, *(it for node in nodes for it in sent_by(node, "")))
+
+
+def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
+    """Return the usual frames that nothing of the robot has, each with the frame that its drive has in
+    that place."""
+    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
+    if placed is None:
+        return NO_FRAMES
+    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
+    given = {frame.default for it in nodes for frame in it.frames if frame.given}
+    has = links | given | {frame for it in sent for frame in it[:2]}
+    wanted = {**dict.fromkeys(BODY_FRAMES, placed.child), ODOM: placed.parent}
+    return {name: it for name, it in wanted.items() if name not in has}
+
+
+def with_frames(node: NodeFacts, fits: Frames) -> NodeFacts:
+    """Return the node with frames that the robot has, where no file sets them."""
+    frames = (
+        it if it.given else it._replace(default=fits.get(it.default, it.default))
+        for it in node.frames
+    )
+    return node._replace(frames=tuple(frames)) if fits else node
+
+
+def changed_frames(
+    nodes: Iterable[NodeFacts], before: Iterable[NodeFacts]
+) -> Mapping[tuple[str, str], str]:
+    """Return the frames of nodes that are others than ``before``, where no file sets them: by the
+    node's last name and the parameter."""
+    old = {(node.name, it.parameter): it.default for node in before for it in node.frames}
+    return {
+        (node.kind.rpartition("/")[2], it.parameter): it.default
+        for node in nodes
+        for it in node.frames
+        if not it.given and old.get((node.name, it.parameter), it.default) != it.default
+    }
+
+
+class _Choice(NamedTuple):
+    """A node whose commands are stamped or not as a parameter says: the type that it has now, whether
+    a file sets the parameter, and the node's section in the files."""
+
+    node: NodeFacts
+    type: str
+    is_set: bool
+    section: GivenNode | None
+
+
+def fitted(
+    nodes: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+    sent: Sequence[Edge],
+    spec: RobotSpec,
+    member: Member,
+) -> tuple[NodeFacts, ...]:
+    """Return the nodes, those without a section in a file with the settings that fit the others;
+    ``sent`` are the transforms of the description's plugins."""
+    root = _root(member)
+    settled = [
+        it if _section(it, given) else _settled(_rooted(_as_listed(it, spec), root)) for it in nodes
+    ]
+    choices = {it.node.name: it for it in _choices(settled, given, known)}
+    wanted = _wanted(tuple(choices.values()), settled, spec)
+    typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
+    return tuple(_without_second_senders(typed, given, sent))
+
+
+def _section(node: NodeFacts, given: Iterable[GivenNode]) -> GivenNode | None:
+    last = f"/{node.name}"
+    return next((it for it in given if f"/{it.name}".endswith(last)), None)
+
+
+def _root(member: Member) -> str:
+    """The link that no joint holds, where another usual one of the body is below it; else empty."""
+    children = {it.child for it in edges_in(member.source.root)}
+    roots = [
+        name
+        for it in member.source.root.iterfind("link")
+        if (name := it.get("name", "")) not in children
+    ]
+    return roots[0] if len(roots) == 1 and not children.isdisjoint(BODY_FRAMES) else ""
+
+
+def _rooted(node: NodeFacts, root: str) -> NodeFacts:
+    """The node with the root of the description as the frame that it places: a link that a joint holds
+    has a parent already."""
+    placed = {it.child for it in node.sends}
+    frames = (
+        it._replace(default=root) if it.parameter in placed and it.default in BODY_FRAMES else it
+        for it in node.frames
+    )
+    return node._replace(frames=tuple(frames)) if root else node
+
+
+def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
+    """The node without the names that it makes of a list which no file gives it: they may come, if a
+    file is added."""
+    if node.kind == MOVE_GROUP and spec.companions.get("moveit"):
+        return node
+    ends = (
+        it._replace(when=_BY_FILE) if "<" in it.name and not it.when else it
+        for it in node.endpoints
+    )
+    return node._replace(endpoints=tuple(ends))
+
+
+def _settled(node: NodeFacts) -> NodeFacts:
+    """The node as the parameters of its stack make it."""
+    if not node.usual:
+        return node
+    values = _values(node)
+    frames = tuple(
+        it._replace(default=str(values[it.parameter].value), given=True)
+        if it.parameter in values
+        else it
+        for it in node.frames
+    )
+    with_them = node._replace(frames=frames)
+    return with_them._replace(sends=tuple(sent_with(with_them, values)))
+
+
+def _values(node: NodeFacts) -> dict[str, Given]:
+    return {name: Given(value, NOWHERE) for name, value in node.usual}
+
+
+def _choices(
+    nodes: Iterable[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+) -> Iterator[_Choice]:
+    for node in nodes:
+        ends = [*_either(known.get(node.kind, node)), *_either(node)]
+        if ends:
+            section = _section(node, given)
+            values = section.values if section else _values(node)
+            chosen = chosen_type(ends[0].types, lookup(node, values)) or ends[0].type
+            is_set = not _switches(ends).isdisjoint(values)
+            yield _Choice(node, chosen, is_set, section)
+
+
+def _either(node: NodeFacts) -> Iterator[Endpoint]:
+    """The ends of a node that are of either type, as a parameter says; not those that are open."""
+    both = {PLAIN, STAMPED}
+    yield from (
+        it for it in node.endpoints if it.types and not it.when and {it.type, *it.also} >= both
+    )
+
+
+def _switches(ends: Iterable[Endpoint]) -> set[str]:
+    conditions = (condition for it in ends for condition, _ in it.types)
+    return {it.parameter for one in conditions for terms in parse_condition(one) for it in terms}
+
+
+def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotSpec) -> str:
+    """The type of the robot's commands: what a file sets, what its bridge or driver takes, what the
+    nodes of its files have, and what all nodes have; else the plain one."""
+    topics = {end.remapped or end.name for it in choices for end in _either(it.node)}
+    said = [it.type for it in choices if it.is_set]
+    rows = [
+        end.type
+        for path in spec.companions.get("bridge", ())
+        for end in bridge_ends(own_yaml(spec, path))
+        if end.role == SUBSCRIBES
+    ]
+    heard = [
+        end.type
+        for node in nodes
+        for end in node.endpoints
+        if end.role == SUBSCRIBES
+        and not (end.when or end.also)
+        and (end.remapped or end.name) in topics
+    ]
+    fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
+    of_files = [it.type for it in choices if it.section]
+    usual = {it.type for it in choices}
+    return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
+
+
+def _typed(node: NodeFacts, choice: _Choice | None, wanted: str) -> NodeFacts:
+    """The node with ends of the wanted type, and the parameter for it where that is not the default."""
+    if choice is None or choice.section:
+        return node
+    switch = () if choice.type == wanted else _switch(choice, wanted)
+    if switch is None:
+        return node
+    ends = tuple(_of_type(it, wanted) for it in node.endpoints)
+    return node._replace(endpoints=ends, usual=(*node.usual, *switch))
+
+
+def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
+    """The parameter that gives all of the node's ends the wanted type; None where there is none."""
+    ends = [*_either(choice.node)]
+    for name in sorted(_switches(ends)):
+        for value in (True, False):
+            value_of = {name: value}.get
+            if all((chosen_type(it.types, value_of) or it.type) == wanted for it in ends):
+                return ((name, value),)
+    return None
+
+
+def _of_type(end: Endpoint, wanted: str) -> Endpoint:
+    either = end.types and {end.type, *end.also} >= {PLAIN, STAMPED}
+    return end._replace(type=wanted, also=(), types=()) if either else end
+
+
+def _without_second_senders(
+    nodes: Sequence[NodeFacts], given: Sequence[GivenNode], sent: Sequence[Edge]
+) -> Iterator[NodeFacts]:
+    """The nodes, those without a section with their transforms off where another one sends them: two
+    would take the frame from each other."""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    filed = {it.name for it in nodes if _section(it, given)}
+    in_files = (it for node in nodes if node.name in filed for it in sent_by(node, ""))
+    taken = {_place(it, bodies) for it in (*sent, *in_files)}
+    for node in nodes:
+        own = {_place(it, bodies) for it in sent_by(node, "")}
+        switch = "" if node.name in filed or own.isdisjoint(taken) else _switch_of(node)
+        yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
+        taken |= set() if switch else own
+
+
+def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
+    """What a transform places, and where: a robot has one place, whichever of its frames has it."""
+    return edge.parent, "" if edge.child in bodies else edge.child
+
+
+def _switch_of(node: NodeFacts) -> str:
+    """The parameter that, alone, switches all transforms of a node off; empty for none."""
+    asked = (one for it in node.sends for terms in parse_condition(it.condition) for one in terms)
+    values = _values(node)
+    for name in dict.fromkeys(it.parameter for it in asked):
+        off = {**values, name: Given(False, NOWHERE)}
+        if not any(sent_with(node, off)):
+            return name
+    return ""
