@@ -73,7 +73,9 @@ class FleetPlan(NamedTuple):
         names = {it.name: it.name for it in specs}
         others = {word: it.name for it in specs for word in (it.namespace, it.tag, it.model)}
         robots = Counter(word for it in specs for word in {it.namespace, it.tag, it.model})
-        return names | {it: name for it, name in others.items() if robots[it] == 1 and it not in names}
+        return names | {
+            it: name for it, name in others.items() if robots[it] == 1 and it not in names
+        }
 
     def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
         """Yield the findings with the names of robots; about nodes and frames they have namespaces."""

@@ -20,7 +20,9 @@ MASS = (
     '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>'
 )
 SHAPE = '<geometry><box size="0.4 0.3 0.2"/></geometry>'
-LINK = '<link name="{}">' + MASS + f"<visual>{SHAPE}</visual><collision>{SHAPE}</collision></link>\n"
+LINK = (
+    '<link name="{}">' + MASS + f"<visual>{SHAPE}</visual><collision>{SHAPE}</collision></link>\n"
+)
 
 
 def link(name: str) -> str:
@@ -123,7 +125,9 @@ KINDS = {
     "gz rover": Kind(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), ".urdf", MOBILE),
     "plain cart": Kind(_robot("ROBOT", *BASE), ".urdf", MOBILE),
     "xacro rover": Kind(
-        _with_argument(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE, xacro=True)), ".urdf.xacro", MOBILE
+        _with_argument(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE, xacro=True)),
+        ".urdf.xacro",
+        MOBILE,
     ),
     "classic rover": Kind(_robot("ROBOT", *BASE, CLASSIC_DRIVE), ".urdf", MOBILE, ("humble",)),
     "arm": Kind(
@@ -177,7 +181,20 @@ Visualization Manager:
 
 # Plain words that a newcomer may call a robot, some of which mean something elsewhere.
 NAMES = (
-    *("r1", "r2", "r", "r1_a", "r1_b", "a", "robot1", "robot2", "robot10", "robot", "rover", "scout"),
+    *(
+        "r1",
+        "r2",
+        "r",
+        "r1_a",
+        "r1_b",
+        "a",
+        "robot1",
+        "robot2",
+        "robot10",
+        "robot",
+        "rover",
+        "scout",
+    ),
     *("burger", "waffle", "arm", "left", "right", "left_arm", "map", "base_link", "scan", "gz"),
     *("name", "world", "odom", "tf", "cmd_vel", "lidar_link", "clock", "bridge", "rviz", "launch"),
     *("start", "sim", "params", "plan", "no", "null", "true", "off", "file", "model", "Robot1"),
@@ -226,13 +243,16 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
         data["zenoh"] = {"router": "tcp/10.0.0.1:7447"}
     names = draw(st.lists(st.sampled_from(NAMES), min_size=2, max_size=4, unique=True))
     files: dict[str, str] = {}
-    kinds = [it for it, kind in KINDS.items() if release in kind.releases]
+    kinds = _kinds(draw, release, data.get("simulator", ""))
+    posed = maybe(draw, 8)
     first = draw(st.sampled_from(kinds))
     alike = draw(st.booleans())
     robots, used = [], []
     namespaced = layout != "postfix"
     free = {key: list(WORDS) for key in ("namespace", "tag", "model")}
-    tag = draw(st.sampled_from(((), (side,), ("namespace",), ("model",), (side, "namespace", "model"))))
+    tag = draw(
+        st.sampled_from(((), (side,), ("namespace",), ("model",), (side, "namespace", "model")))
+    )
     # Robots of one kind have the files of one, unless they differ in them.
     shared: Data = {}
     for at, name in enumerate(names):
@@ -244,12 +264,14 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
         robot["description"] = _described(draw, kind, name, files, names)
         if KINDS[kind].ending.endswith("xacro") and maybe(draw, 5):
             robot["arguments"] = {"mast": draw(st.sampled_from(("low", "high", name)))}
-        if maybe(draw, 8):
+        if posed:
             robot["pose"] = _pose(draw, at)
         if maybe(draw, 2):
             robot["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, at])))
         what = KINDS[kind].what
         stacks = MOBILE_STACKS if what == MOBILE else ARM_STACKS
+        if layout == "frame-prefix":
+            stacks = [it for it in stacks if "moveit" not in it]
         key = f"stack {what}"
         own = key not in shared or maybe(draw, 2)
         stack = draw(st.sampled_from(stacks)) if own else shared[key]
@@ -257,19 +279,32 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
         if stack:
             robot["stack"] = stack[0] if len(stack) == 1 else list(stack)
         if "moveit" in stack:
-            robot["srdf"] = _written(draw, files, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name)
+            robot["srdf"] = _written(
+                draw, files, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name
+            )
         key = f"companions {what}"
         own = key not in shared or maybe(draw, 2)
         given = _companions(draw, what, files, name) if own else shared[key]
         shared.setdefault(key, given)
         if given:
             robot["companions"] = dict(given)
-        if maybe(draw, 1):
+        if maybe(draw, 1) and kind != "gz arm":
             robot["simulator"] = draw(st.sampled_from(("none", "gazebo")))
         robots.append(robot)
     data["robots"] = robots
     _domains(draw, data, names)
     return DrawnFleet(data, files, tuple(used))
+
+
+def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
+    """The kinds of robots of one simulator."""
+    family = (
+        ("classic rover", "plain cart", "arm")
+        if maybe(draw, 2)
+        else tuple(KINDS)[:3] + tuple(KINDS)[4:]
+    )
+    known = [it for it in family if release in KINDS[it].releases]
+    return [it for it in known if it != "gz arm" or simulator != "none"]
 
 
 def _own_word(draw: st.DrawFn, key: str, name: str, at: int, namespaced: bool) -> str:

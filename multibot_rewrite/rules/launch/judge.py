@@ -40,7 +40,9 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
     if it.code == tf_tree_in_pieces.code and it.level == ERROR:
-        return it if is_sure(seen, it, _is_moved(it, launched, seen)) else it._replace(level=WARNING)
+        return (
+            it if is_sure(seen, it, _is_moved(it, launched, seen)) else it._replace(level=WARNING)
+        )
     return it
 
 
@@ -49,9 +51,11 @@ def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
     from another text than it publishes any such model may be the one."""
     models = [one for one in launched.models.found if one.spawned]
     edges = (one for one in seen.system.edges if not {one.parent, one.child}.isdisjoint(it.names))
-    senders = {name for one in edges for name in one.publishers}
+    senders = [name for one in edges for name in one.publishers]
+    # Each robot may have a tree with the same frames.
+    senders = [name for name in senders if seen.robot(name) == it.robot] or senders
     published = {one.full_name: one.value(DESCRIPTION) for one in launched.nodes}
-    own = {text for name, text in published.items() if name in senders and text}
+    own = {text for name in senders if (text := published.get(name))}
     found = [one for one in models if one.text in own]
     others = [one for one in models if not own or one.text not in published.values()]
     return any(has_plugin(one.text.encode()) for one in found or others)
