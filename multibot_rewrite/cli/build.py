@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     back = read_back(plan, made, os.path.abspath(options.output))
     # What is told in both is said once, at the level of the folder.
     told = (it for it in made.findings if it._replace(level=ERROR) not in back)
-    if _reported(options, plan, (*told, *back)):
+    if _reported(options, plan, (*told, *plan.with_names(back))):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
@@ -78,9 +78,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
     """Report what is wrong with the files and the remap table; does it stop the build?"""
-    both = dict.fromkeys((*found, *plan.fleet.table.problems))
+    both = dict.fromkeys((*found, *plan.with_names(plan.fleet.table.problems)))
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
-    about = About([options.fleet], plan.fleet.words, plan.file.distro)
+    about = About([options.fleet], plan.words, plan.file.distro)
     return report_beside(options, chosen(options, ordered), about)
 
 

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
@@ -63,6 +64,25 @@ class FleetPlan(NamedTuple):
         told = {(it.code, it.file, it.line) for it in self.fleet.table.problems}
         every = (it for robot in self.robots for it in robot.findings)
         return [it for it in every if (it.code, it.file, it.line) not in told]
+
+    @property
+    def words(self) -> dict[str, str]:
+        """Return the words that stand for robots in texts, each with the name of its robot: the names
+        first; another word only where it stands for one robot."""
+        specs = [it.spec for it in self.robots]
+        names = {it.name: it.name for it in specs}
+        others = {word: it.name for it in specs for word in (it.namespace, it.tag, it.model)}
+        robots = Counter(word for it in specs for word in {it.namespace, it.tag, it.model})
+        return names | {
+            it: name for it, name in others.items() if robots[it] == 1 and it not in names
+        }
+
+    def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
+        """Yield the findings with the names of robots; about nodes and frames they have namespaces."""
+        names = {it.spec.namespace: it.spec.name for it in self.robots}
+        for it in findings:
+            robots = tuple(names.get(one, one) for one in it.robots) if it.robot else it.robots
+            yield it._replace(robot=names.get(it.robot, it.robot), robots=robots)
 
 
 def plan_fleet(

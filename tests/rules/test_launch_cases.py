@@ -573,7 +573,7 @@ def test_how_sure_it_is_that_a_launch_file_leaves_a_tree_in_pieces(
     _, graph = read_example(lines)
     seen = index(graph, whose_by_guess(guess_robots(graph)))
     models: Any = SimpleNamespace(found=[SimpleNamespace(spawned=bool(spawned), text=spawned)])
-    launched: Any = SimpleNamespace(models=models)
+    launched: Any = SimpleNamespace(models=models, nodes=())
     found = Finding("MG406", "error", "m", names=("odom", "base_link"))
     assert as_sure(found, launched, seen).level == becomes
     assert as_sure(found._replace(level="note"), launched, seen).level == "note"

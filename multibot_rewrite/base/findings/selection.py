@@ -94,10 +94,10 @@ def with_members(
     findings: Iterable[Finding], names: Mapping[str, str]
 ) -> list[tuple[Finding, list[Finding]]]:
     """As ``grouped``, each with the findings that it stands for."""
-    order = {robot: at for at, robot in enumerate(names.values())}
+    order = {robot: at for at, robot in enumerate(dict.fromkeys(names.values()))}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:
-        robot = it.robot or _only_robot(it, names)
+        robot = it.robot or next(iter(it.robots), "") or _only_robot(it, names)
         groups.setdefault(_without(it, robot, names), []).append((robot, it))
     return [(_first(members, order), [it for _, it in members]) for members in groups.values()]
 

@@ -104,6 +104,9 @@ def _carries_name(name: UsedName, robot: str) -> bool:
     text = name.text.removeprefix("/")
     if text == robot:
         return name.kind == "namespace"
+    # A joint is called left_joint whatever the robot is called.
+    if robot == name.kind:
+        return False
     return text.lstrip("/").startswith(tuple(robot + it for it in BETWEEN)) or text.endswith(
         tuple(it + robot for it in BETWEEN)
     )

@@ -69,7 +69,7 @@ def not_as_planned(
     if not found:
         return
     by_plan = index(planned, whose_by_plan(planned))
-    open_, known = _open(by_plan, told), defaultdict(list)
+    open_, known = open_names(by_plan, told), defaultdict(list)
     for it in told:
         known[_key(by_plan, it)].append(it)
     for it in found:
@@ -92,8 +92,8 @@ def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
     return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 
-def _open(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
-    """What has no sender or server by the plan, or by what was told, is no fault of the folder, nor is
+def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
+    """Return the codes and names of what is open already: what has no sender or server by the plan, or by what was told, is no fault of the folder, nor is
     a client that has no server; of two that miss each other both are there."""
     lacking = [it for it in (*told, *absences(by_plan)) if it.code in ABSENCE]
     alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)

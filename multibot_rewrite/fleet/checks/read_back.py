@@ -19,7 +19,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
-from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.as_planned import not_as_planned, open_names
 from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
@@ -39,6 +39,9 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
+from multibot_rewrite.rules.system.unsent import nothing_known_sends
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
 _GIVES = (PUBLISHES, SERVES)
@@ -90,7 +93,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))
+        alone = [*_of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))]
+        wrong += _not_open(alone, made)
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
@@ -104,6 +108,17 @@ def _of_launch(found: Launched, told: Set[str], elsewhere: Set[str]) -> Iterator
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
+
+
+def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
+    """Return the findings without what nothing sends by the plan either: robots may differ."""
+    code = nothing_known_sends.code
+    if all(it.code != code for it in found):
+        return found
+    known = open_names(index(made.planned, whose_by_plan(made.planned)), made.findings)
+    return [
+        it for it in found if it.code != code or not {(code, name) for name in it.names} <= known
+    ]
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:

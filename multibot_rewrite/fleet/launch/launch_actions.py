@@ -21,7 +21,7 @@ from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_paths, path_for
 from multibot_rewrite.fleet.outputs.relays import not_bridged, relays
-from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput, window_path
+from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -341,6 +341,6 @@ def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> Iterator[t
                     "",
                     (File(given),) if given in files else (),
                     tuple(window.remaps),
-                    ("-d", File(window_path(window, it.source))),
+                    ("-d", File(it.path(window))),
                 ),
             )

@@ -5,7 +5,7 @@ files and findings."""
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -50,22 +50,25 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     Files with one name are in folders called as their own, as many as it takes to tell them apart:
     ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
     """
-    name = os.path.basename(source)
-    every = (it for its in robot.spec.companions.values() for it in its)
-    alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
-    if len(alike) > 1 and os.path.abspath(source) in alike:
-        name = _told_apart(os.path.abspath(source), alike)
+    name = name_among(source, (it for its in robot.spec.companions.values() for it in its))
     return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
 
 
+def name_among(source: str, every: Iterable[str]) -> str:
+    """Return the name of a file, with as many of its folders as tell it from others of that name."""
+    name = os.path.basename(source)
+    alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
+    one_of_several = len(alike) > 1 and os.path.abspath(source) in alike
+    return _told_apart(os.path.abspath(source), alike) if one_of_several else name
+
+
 def _told_apart(path: str, alike: Collection[str]) -> str:
-    """The shortest end of a path, in whole steps, that no other one ends with."""
-    steps = path.split(os.sep)
-    for at in range(len(steps) - 2, 0, -1):
-        end = os.sep.join(steps[at:])
-        if sum(it.endswith(f"/{end}") for it in alike) == 1:
-            return end
-    return path.lstrip(os.sep)
+    """Return the shortest end of a path below the folder of all, in whole steps, that no other one ends
+    with: where that folder is makes no difference."""
+    steps = os.path.relpath(path, os.path.commonpath(map(os.path.dirname, alike))).split(os.sep)
+    ends = (os.sep.join(steps[at:]) for at in range(len(steps) - 1, -1, -1))
+    found = (end for end in ends if sum(it.endswith(f"/{end}") for it in alike) == 1)
+    return next(found, os.sep.join(steps))
 
 
 def expanded_name(path: str) -> str:

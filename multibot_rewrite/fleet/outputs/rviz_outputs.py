@@ -22,6 +22,7 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
+    name_among,
     own_yaml,
     path_for,
 )
@@ -37,11 +38,17 @@ USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
-    """The results of one RViz config, whose path is ``source``."""
+    """The results of one RViz config, whose path is ``source``; ``name`` is that of a window for several
+    robots."""
 
     source: str
     windows: tuple[RvizText, ...]
     findings: tuple[Finding, ...]
+    name: str
+
+    def path(self, window: RvizText) -> str:
+        """Return where the config of one of its windows goes."""
+        return f"{window.robot}/{os.path.basename(self.source)}" if window.robot else self.name
 
 
 def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOutput]:
@@ -71,13 +78,14 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
             *judged_once(of_fleet(plan, read_for(document, shown, plan.file.distro), robots)),
         )
         done = ONE_TF_TOPIC.code if relayed else ""
-        yield RvizOutput(path, texts, tuple(it for it in found if it.code != done))
+        left = tuple(it for it in found if it.code != done)
+        yield RvizOutput(path, texts, left, name_among(path, robots_of).replace("/", "_"))
 
 
 def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
     """The windows of a fleet that names no config of RViz."""
     made = windows_of_plan(planned, plan.file.relayed)
-    return [RvizOutput(USUAL, made, ())] if plan.robots else []
+    return [RvizOutput(USUAL, made, (), os.path.basename(USUAL))] if plan.robots else []
 
 
 def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
@@ -114,10 +122,10 @@ def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
     """The files of the windows, and what was found."""
-    for source, windows, findings in configs:
-        yield from findings
-        read = () if source == USUAL else (source,)
-        yield from (OutputFile(window_path(it, source), it.text.encode(), read) for it in windows)
+    for config in configs:
+        yield from config.findings
+        read = () if config.source == USUAL else (config.source,)
+        yield from (OutputFile(config.path(it), it.text.encode(), read) for it in config.windows)
 
 
 def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
@@ -129,9 +137,7 @@ def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
     domains = {it.robot: f"ROS_DOMAIN_ID={it.number} " for it in plan.file.apart.domains}
     return [
         domains.get(spaces.get(window.robot, ""), "")
-        + shlex.join(
-            [*start_command(window, window_path(window, it.source)), *_given(window, given)]
-        )
+        + shlex.join([*start_command(window, it.path(window)), *_given(window, given)])
         for it in configs
         for window in it.windows
     ]
@@ -141,9 +147,3 @@ def _given(window: RvizText, given: Mapping[str, str]) -> list[str]:
     path = given.get(window.robot, "")
     lead = [] if window.namespace or window.remaps else ["--ros-args"]
     return [*lead, "--params-file", path] if path else []
-
-
-def window_path(window: RvizText, source: str) -> str:
-    """Where the config of a window goes."""
-    name = os.path.basename(source)
-    return f"{window.robot}/{name}" if window.robot else name

@@ -127,7 +127,7 @@ def errors_of(
     except MultibotError as error:
         return [("", without_dict(str(error)))]
     errors = sorted((it for it in found if it.level == ERROR), key=by_place)
-    return [(_file(it), _line(it)) for it in grouped(errors, plan.fleet.words)]
+    return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
 
 
 def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:

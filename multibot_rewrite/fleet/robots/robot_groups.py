@@ -70,7 +70,6 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
     """Findings sorted by place; what is the same for many robots is one finding."""
     specs = [it.spec for it in plan.robots]
-    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
     ordered = sorted(
         set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
     )
@@ -83,7 +82,7 @@ def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
         it._replace(robot="", robots=it.robots or (it.robot,), line=lines[it.robot])
         if it.robot
         else it
-        for it in grouped(alike, words)
+        for it in grouped(alike, plan.words)
     ]
 
 

@@ -83,7 +83,10 @@ def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str
     # prefix is told itself.
     if site.kind in (GZ_TOPIC, "group", *RUN_TIME):
         return None
+    # A robot may be called as a frame or topic is; what its description declares is judged there.
     name = f"/{site.text.strip('/')}/"
+    if site.kind != "namespace" and name.strip("/") in file.robots | declared:
+        return None
     if file.kind == RVIZ and name.count("/") < 3:
         return None
     robot = next((it for it in sorted(file.robots) if f"/{it}/" in name), "")

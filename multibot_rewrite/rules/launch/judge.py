@@ -10,6 +10,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.running import DESCRIPTION
 from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
 from multibot_rewrite.rules.pair.nodes import missing_node
 from multibot_rewrite.rules.system.interfaces import (
@@ -39,9 +40,25 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
     if it.code == tf_tree_in_pieces.code and it.level == ERROR:
-        moved = any(one.spawned and has_plugin(one.text.encode()) for one in launched.models.found)
-        return it if is_sure(seen, it, moved) else it._replace(level=WARNING)
+        return (
+            it if is_sure(seen, it, _is_moved(it, launched, seen)) else it._replace(level=WARNING)
+        )
     return it
+
+
+def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
+    """May a plugin of the model move the robot whose frames a finding names? Of a robot that is spawned
+    from another text than it publishes any such model may be the one."""
+    models = [one for one in launched.models.found if one.spawned]
+    edges = (one for one in seen.system.edges if not {one.parent, one.child}.isdisjoint(it.names))
+    senders = [name for one in edges for name in one.publishers]
+    # Each robot may have a tree with the same frames.
+    senders = [name for name in senders if seen.robot(name) == it.robot] or senders
+    published = {one.full_name: one.value(DESCRIPTION) for one in launched.nodes}
+    own = {text for name in senders if (text := published.get(name))}
+    found = [one for one in models if one.text in own]
+    others = [one for one in models if not own or one.text not in published.values()]
+    return any(has_plugin(one.text.encode()) for one in found or others)
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:

@@ -79,6 +79,7 @@ def out_of_gazebo(launched: Launched) -> set[str]:
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
     """By the names of the models, where they are in the names of their topics."""
     models = launched.simulated
+    called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
     owners = {f"/{one.gz.lstrip('/')}": it.name for it in models for one in it.topics}
     names = set(owners.values())
     rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
@@ -86,8 +87,9 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
     usual = {_plain(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}
     for it in rows:
         own, words = owners[it.gz], set(it.ros.split("/"))
-        others = sorted(names & words - {own})
-        if others and own not in words:
+        # A word that both sides have says no other robot, whatever else is called so.
+        others = sorted(names & words - {*it.gz.split("/"), *called[own]})
+        if others and words.isdisjoint(called[own]):
             message = f"{it.ros} of {others[0]} is bridged to gz topic {it.gz} of {own}"
         elif not words & {own, *spaces} and any(gz == _plain(it, own)[1] for _, gz in usual):
             message = f"{it.ros} is bridged to gz topic {it.gz} of {own}, and has no robot's name"

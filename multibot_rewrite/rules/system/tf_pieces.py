@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
@@ -118,8 +119,18 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str], set[str]]:
 def _meant(name: str, others: Collection[str]) -> str:
     """The frame that is called nearly so; names that differ in their numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
-    slip = near and near not in name and name not in near
-    return near if slip and not differ_in_numbers(name, near) else ""
+    slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
+    return near if slip and nearest(*_unlike(name, near), MISTYPED) else ""
+
+
+def _unlike(name: str, other: str) -> tuple[str, list[str]]:
+    """Return two names without the words that both begin and end with: a prefix makes all alike."""
+    one, two = (re.split(r"[/_]", it) for it in (name, other))
+    while one and two and one[0] == two[0]:
+        one, two = one[1:], two[1:]
+    while one and two and one[-1] == two[-1]:
+        one, two = one[:-1], two[:-1]
+    return "_".join(one), ["_".join(two)]
 
 
 def _slipped(

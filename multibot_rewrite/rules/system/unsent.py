@@ -11,13 +11,15 @@ from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.instead import is_needed, meant
+from multibot_rewrite.rules.system.likes import nodes_of_each
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.system.index import Index, once
-from multibot_rewrite.system.records import ACTION, TOPIC, End
+from multibot_rewrite.system.index import Index, ends_of, once
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, TOPIC, End
 
 # The server of an action sends its status.
 _STATUS = "/_action/status"
 _LISTED = 8
+_GIVES = (PUBLISHES, SERVES)
 _MISSES = (topic_names_miss, server_names_miss)
 
 
@@ -27,7 +29,7 @@ _MISSES = (topic_names_miss, server_names_miss)
     NOTE,
     absence=True,
     what="Nodes read topics, or call services, that no known node sends or serves. It is an error where"
-    " a node of the same system does for another robot of its kind.",
+    " a node of the same system does for another robot that runs the same nodes.",
     why="If nothing else does, these nodes wait for ever.",
     fix="Nothing, if a driver that the fleet does not name sends them; else name its node or stack.",
     bad="running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan as scan\n",
@@ -51,7 +53,7 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     elsewhere = {
         seen.plain(it): it
         for it in _given(seen)
-        if seen.plain(it) in wanted and _of_its_kind(seen, seen.robot(it), robot)
+        if seen.plain(it) in wanted and _of_its_kind(seen, it, robot)
     }
     lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
     rest = tuple(it for it in names if it not in lacked)
@@ -68,11 +70,16 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
         yield nothing_known_sends.finding(message, hint, robot=robot, names=tuple(rest))
 
 
-def _of_its_kind(seen: Index, other: str, robot: str) -> bool:
-    """Is it another robot of which the nodes that both have send the same frames?"""
+def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
+    """Is a name of another robot that runs nothing which the robot has not, but for what sends the name,
+    and of which the nodes that both have send the same frames?"""
+    other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
-    return other not in ("", robot) and all(theirs[it] == own[it] for it in both)
+    senders = {seen.plain(it.node) for it in ends_of(seen, name) if it.role in _GIVES}
+    more = nodes.get(other, {}).keys() - nodes.get(robot, {}).keys()
+    is_alike = more <= senders and all(theirs[it] == own[it] for it in both)
+    return other not in ("", robot) and is_alike
 
 
 @once
