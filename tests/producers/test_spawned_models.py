@@ -118,7 +118,9 @@ def test_a_drive_of_classic_with_transforms_of_wheels_sends_odometry_by_its_own_
     """gazebo_ros_pkgs ros2: PublishWheelsTf sends the wheels below their links, PublishOdometryTf
     odometry; each has its own switch."""
     robot = plugin(f"libgazebo_ros_{library}.so", inside, "drive")
-    links = '<link name="base"/><link name="wheel"/><joint name="j" type="fixed"><parent link="base"/>'
+    links = (
+        '<link name="base"/><link name="wheel"/><joint name="j" type="fixed"><parent link="base"/>'
+    )
     robot = robot.replace("<gazebo>", f'{links}<child link="wheel"/></joint><gazebo>', 1)
     sent = sent_by_plugins(spawned(robot).found)
     assert sent == ({"/drive": [("/tf", edge_of(*it)) for it in edges]} if edges else {})
