@@ -103,9 +103,9 @@ def robot_nodes(
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
-    nodes = _as_written(nodes, own, parameters, file.distro)
-    nodes = _made_by_arguments(nodes, given, topics) if topics else nodes
-    marked, shared = apart(tuple(nodes), file)
+    written = _as_written(nodes, own, parameters, file.distro)
+    named = _made_by_arguments(written, given, topics) if topics else written
+    marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     started = launched.started if launched else {}
     lost = set_by_launch(given, started, parameters)
