@@ -18,7 +18,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS, find_layout
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
 from multibot_rewrite.base.rosnames import check_robot_names
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import plain_words, xacro_args
@@ -37,6 +37,8 @@ from multibot_rewrite.fleet.proposal.trying import (
 )
 
 SIMULATORS = ("gazebo", "none")
+# Nodes of launch files that are named on the terminal.
+_NAMED = 6
 LEFT_OUT, NONE = "it was left out", "none"
 _T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -125,6 +127,10 @@ def _deliver(options: argparse.Namespace, made: Proposal) -> int:
             options,
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
+    started = [who.partition(" ")[0] for _, _, who in made.launched.started]
+    if started:
+        listed = shorten(started, _NAMED)
+        note(options, f"started by launch files and not by this fleet: {listed}")
     return STOPPED if made.notes else DONE
 
 

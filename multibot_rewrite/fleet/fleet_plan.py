@@ -124,9 +124,10 @@ def _evidence(
     """What the files say of the nodes of each kind of robot, and the namespaces of those robots that
     may be real ones, which is said once."""
     specs = {node_sources(it): it for it in reversed(file.robots)}
-    members = {node_sources(it.spec): it.member for it in robots}
+    first = {node_sources(it.spec): it for it in reversed(robots)}
     found = {
-        key: robot_nodes(spec, file, notes[spec.name], members[key]) for key, spec in specs.items()
+        key: robot_nodes(spec, file, notes[spec.name], first[key].member, first[key].names.in_full)
+        for key, spec in specs.items()
     }
     check_shared(file, {node.name: node for it in found.values() for node in it.nodes})
     real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]

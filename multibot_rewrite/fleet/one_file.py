@@ -160,7 +160,7 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
     described, own = job.inventories[0], job.own.plain or NO_OWN
     declared, words = described.declared, words_of(described.claims)
-    names = companion_names(declared, job.naming, "", own)
+    names = companion_names(declared, job.naming, "", own, words, described.topics_in_full)
     return make_context(names.declared, job.naming, (), release, names.own, words)
 
 

@@ -58,6 +58,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         types=tuple(_types(keys, (word_of(keys, "type"), *also))),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper", "by" in keys),
+        own=False,
         condition=condition_of(keys),
         above=releases_of(keys, "above"),
         releases=releases_of(keys),

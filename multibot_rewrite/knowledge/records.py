@@ -33,7 +33,8 @@ class Endpoint(NamedTuple):
     ``*`` for what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its
     own. ``types`` are conditions as ``condition``, each with the type that it has where that holds.
     ``beside`` is an endpoint of the node: the name is made of that which it has after all rules,
-    with another last word, as that of a camera_info is.
+    with another last word, as that of a camera_info is. ``own`` is true where an argument of the
+    robot's description makes the name: it is the robot's already.
     """
 
     kind: str
@@ -56,6 +57,7 @@ class Endpoint(NamedTuple):
     by: str = ""
     types: tuple[tuple[str, str], ...] = ()
     beside: str = ""
+    own: bool = False
 
 
 class FrameParameter(NamedTuple):

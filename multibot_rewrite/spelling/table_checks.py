@@ -63,6 +63,8 @@ def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]
 
 def _needed(endpoint: Endpoint, naming: Naming) -> bool:
     """Would all robots share this name? A relative name made at run time follows the namespace."""
+    if endpoint.own:
+        return False
     if "<" in endpoint.name:
         return naming.topics != NAMESPACE or endpoint.name.startswith("/")
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))

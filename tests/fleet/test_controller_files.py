@@ -86,6 +86,45 @@ def test_each_robot_loads_its_own_file(
     assert "MF708" not in capsys.readouterr().err
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("cmake", "path"),
+    [
+        ("install(DIRECTORY config DESTINATION share/my_arm/bringup)\n",
+         "{package}/bringup/config/arm.yaml"),
+        ("install(DIRECTORY config/ DESTINATION share/${{PROJECT_NAME}}/control)\n",
+         "package://my_arm/control/arm.yaml"),
+        ("install(FILES config/arm.yaml DESTINATION share/my_arm)\n", "$(find my_arm)/arm.yaml"),
+        ("install(DIRECTORY config/ DESTINATION share/my_arm/control)\n",
+         "/opt/ws/install/my_arm/share/my_arm/control/arm.yaml"),
+    ],
+)  # fmt: skip
+def test_each_robot_loads_its_own_of_what_cmake_installs_elsewhere(
+    package: Path, cmake: str, path: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (package / "CMakeLists.txt").write_text(cmake.format())
+    found = built(package, path.format(package=package))
+    assert found == [f"{package}/out/{robot}/arm.yaml" for robot in ("robot1", "robot2")]
+    assert "MF708" not in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_what_is_said_of_another_file_can_be_done(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One that is there is named under params; one that is not is none to name."""
+    built(package, "/nowhere/arm.yaml")
+    assert "write the path of the one under params into <parameters>" in capsys.readouterr().err
+    other = package / "other" / "arm.yaml"
+    other.parent.mkdir()
+    other.write_text((package / "config" / "arm.yaml").read_text())
+    built(package, str(other))
+    assert "name this very file under params" in capsys.readouterr().err
+    found = built(package, str(other), fleet=FLEET.replace("config/arm.yaml", "other/arm.yaml"))
+    assert found[0].endswith("out/robot1/arm.yaml")
+    assert "MF708" not in capsys.readouterr().err
+
+
 @pytest.mark.more
 def test_a_linked_install_is_the_same_file(package: Path, tmp_path: Path) -> None:
     (tmp_path / "install").symlink_to(package)

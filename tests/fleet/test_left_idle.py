@@ -60,9 +60,26 @@ def test_a_listed_node_without_a_bond_is_told(own: str, timeout: float | None, c
     ] * count
 
 
-@pytest.mark.parametrize(("joints", "told"), [([], ["MG725"]), (["shoulder"], [])])
-def test_a_controller_that_moves_nothing_is_told(joints: list[str], told: list[str]) -> None:
-    values = {"joints": joints, "command_interfaces": ["position"]} if joints else {}
-    own = given("arm", ARM.name, "controller_manager", **values)
-    found = list(left_idle([ARM._replace(name="arm", when="")], [own], NODES))
-    assert [it.code for it in found] == told
+@pytest.mark.parametrize(
+    ("known", "values", "idle"),
+    [
+        (ARM.name, {}, True),
+        (ARM.name, {"joints": [], "command_interfaces": ["position"]}, True),
+        (ARM.name, {"command_interfaces": ["position"], "state_interfaces": ["position"]}, True),
+        (ARM.name, {"joints": ["shoulder"], "command_interfaces": ["position"]}, False),
+        # A joint is named; that the interfaces are missing is MB115.
+        (ARM.name, {"joints": ["shoulder"]}, False),
+        (ARM.name, {"joints": [f"joint{it}" for it in range(21)], "interface_name": "position"}, False),
+        (ARM.name, {"command_joints": ["shoulder"]}, False),
+        ("forward_command_controller", {"joints": ["shoulder"]}, False),
+        ("diff_drive_controller", {"left_wheel_names": ["left"]}, False),
+        ("diff_drive_controller", {"wheel_radius": 0.1}, True),
+        ("gripper_action_controller", {"joint": "finger"}, False),
+    ],
+)  # fmt: skip
+def test_a_controller_that_no_parameter_names_a_joint_for_is_told(
+    known: str, values: dict[str, object], idle: bool
+) -> None:
+    own = given("arm", known, "controller_manager", **values)
+    found = list(left_idle([NODES[known]._replace(name="arm", when="")], [own], NODES))
+    assert [it.code for it in found] == ["MG725"] * idle

@@ -311,3 +311,70 @@ def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Pat
     assert {it.code for it in made.findings} & {"MB229", "MB854"} == set()
     text = {it.path: it.data.decode() for it in made.files}["robot2/controllers.yaml"]
     assert "joints: [robot2_A1]" in text
+
+
+LIDAR = """\
+<robot name="bot" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="own" default="{default}"/>
+  <link name="base_link">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>{topic}</topic></sensor>
+  </gazebo>
+</robot>
+"""
+AMCL = """\
+amcl:
+  ros__parameters: {{scan_topic: {0}, base_frame_id: base_link}}
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [layer]
+      layer:
+        plugin: "nav2_costmap_2d::ObstacleLayer"
+        observation_sources: scan
+        scan: {{topic: {0}, data_type: LaserScan}}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layout", ["frames-per-robot", "both"])
+@pytest.mark.parametrize(
+    ("topic", "default", "value", "named", "wanted"),
+    [
+        ("$(arg own)/scan", "bot", "{robot}", "scan", "/r1/scan"),
+        ("$(arg own)/scan", "bot", "{robot}", "bot/scan", "/r1/scan"),
+        ("/$(arg own)/scan", "", "{robot}", "scan", "/r1/scan"),
+        ("$(arg own)scan", "", "{robot}/", "/scan", "/r1/scan"),
+        # Names that the robot's namespace does not make.
+        ("$(arg own)scan", "", "{robot}_", "scan", "/r1_scan"),
+        ("$(arg own)scan", "", "{robot}_", "/scan", "/r1_scan"),
+        ("lidar/$(arg own)/scan", "bot", "{robot}", "lidar/bot/scan", "/lidar/r1/scan"),
+        # No argument: the rewrite makes it the robot's.
+        ("scan", "", "", "scan", "/r1/scan"),
+    ],
+)
+def test_a_topic_that_an_argument_has_made_the_robots(
+    topic: str, default: str, value: str, named: str, wanted: str, layout: str, tmp_path: Path
+) -> None:
+    """A topic of gz has no namespace, and amcl has one: what it reads is what the bridge sends."""
+    (tmp_path / "bot.urdf.xacro").write_text(LIDAR.format(topic=topic, default=default))
+    (tmp_path / "nav2.yaml").write_text(AMCL.format(named))
+    given = f"arguments: {{own: '{value}'}}\n" if value else ""
+    (tmp_path / "fleet.yaml").write_text(
+        f"layout: {layout}\naffix: prefix\ndistro: jazzy\ndescription: bot.urdf.xacro\n{given}"
+        "stack: localization\ncompanions: {params: nav2.yaml}\nrobots: [{name: r1}, {name: r2}]\n"
+    )
+    made = load_fleet(tmp_path / "fleet.yaml")
+    rows = yaml.safe_load(made.text("r1/bridge.yaml"))
+    assert wanted in {it["ros_topic_name"] for it in rows}
+    table = made.plan.fleet.table
+    heard = {it.name for it in table.names if it.node == "/r1/amcl" and it.endpoint.parameter}
+    assert wanted in heard
+    read = yaml.safe_load(made.node_text("r1/nav2.yaml"))["/r1/amcl"]["ros__parameters"][
+        "scan_topic"
+    ]
+    assert (read if read.startswith("/") else f"/r1/{read}") == wanted
+    assert f"scan: {{topic: {wanted}, " in made.text("r1/nav2.yaml")
+    assert not {it.code for it in made.made.findings} & {"MG102", "MG303", "MR101"}

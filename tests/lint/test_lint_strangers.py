@@ -25,6 +25,7 @@ ARGUMENT = '<xacro:arg name="file" default=""/>'
 HARDWARE = (
     '<ros2_control name="s" type="system"><hardware><plugin>%s</plugin></hardware></ros2_control>'
 )
+IMU = '<gazebo><plugin name="gz::sim::systems::Imu" filename="%s"/></gazebo>'
 OWN = "md80_hardware_interface/MD80HardwareInterface"
 TRICYCLE = """
 tricycle_controller:
@@ -73,7 +74,28 @@ CASES = {
         },
         [],
     ),
-    "hardware of no package": ("MB110", "a.urdf", robot(HARDWARE % OWN), {}, ["warning"]),
+    "hardware of no package": ("MB110", "a.urdf", robot(HARDWARE % OWN), {}, ["note"]),
+    "hardware of a known package": (
+        *("MB110", "a.urdf", robot(HARDWARE % "mock_components/GenericSystm"), {}, ["warning"]),
+    ),
+    "hardware of a package that is called as a known one": (
+        *("MB110", "a.urdf", robot(HARDWARE % "mock_component/GenericSystem"), {}, ["note"]),
+    ),
+    "a library of Gazebo": (
+        *("MB160", "a.urdf", robot(IMU % "gz-sim-imuu-system"), {}, ["error"]),
+    ),
+    "a library that is not Gazebo's": (
+        *("MB160", "a.urdf", robot(IMU % "acme-sim-imuu-system"), {}, ["note"]),
+    ),
+    "a library of Classic": (
+        *(
+            "MB110",
+            "a.urdf",
+            robot(IMU.replace("gz::sim::systems::Imu", "p") % "libgazebo_ros_diff_drve.so"),
+            {},
+            ["warning"],
+        ),
+    ),
     "the name of a <geometry>": ("MB901", "a.urdf", robot(""), {}, []),
     "a joint of a controller": ("MB877", "c.yaml", TRICYCLE, {}, []),
     "a controller without type": ("MB115", "c.yaml", MANAGER % "joints: [a]", {}, ["warning"]),

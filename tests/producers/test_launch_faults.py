@@ -137,7 +137,7 @@ FAULTS = {
         LAUNCH, *for_two("f'{name}/odom'", "'robot2/odm'"), "MG406"
     ),
     "a package that is misspelt": Fault(
-        LAUNCH, "package='ros_gz_sim',\n", "package='ros_gz_simm',\n", "MG714"
+        LAUNCH, "package='ros_gz_sim',\n", "package='ros_gz_simm',\n", "MG714", level="note"
     ),
     "a type that is misspelt": Fault(
         BRIDGE, "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/LaserScn", "MB874", BRIDGE

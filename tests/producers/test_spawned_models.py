@@ -90,6 +90,42 @@ def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
     assert sent_by_plugins(it._replace(spawned=False) for it in found) == {}
 
 
+@pytest.mark.parametrize(
+    ("library", "inside", "edges"),
+    [
+        ("diff_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
+        ("diff_drive", "<publish_odom_tf>0</publish_odom_tf><publish_wheel_tf>1</publish_wheel_tf>", []),
+        ("ackermann_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
+        ("ackermann_drive", "<publish_odom>true</publish_odom>", []),
+        ("ackermann_drive", "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>1</publish_odom_tf>",
+         [("odom", "base_footprint")]),
+        # Its transform of odometry has no switch of its own: gazebo_ros_tricycle_drive.cpp:483.
+        ("tricycle_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
+        ("tricycle_drive", "<publish_odom>true</publish_odom>", [("odom", "base_link")]),
+        # On by default: gazebo_ros_planar_move.cpp:182.
+        ("planar_move", "", [("odom", "base_footprint")]),
+        ("planar_move", "<publish_odom_tf>false</publish_odom_tf>", []),
+        # A link may be called as the frame of odometry, and no link as that of the base.
+        ("planar_move", "<odometry_frame>wheel</odometry_frame>", [("wheel", "base_footprint")]),
+        ("planar_move", "<odometry_frame>base</odometry_frame><robot_base_frame>wheel</robot_base_frame>",
+         [("base", "wheel")]),
+        ("joint_state_publisher", "", []),
+    ],
+)  # fmt: skip
+def test_a_drive_of_classic_with_transforms_of_wheels_sends_odometry_by_its_own_switch(
+    library: str, inside: str, edges: list[tuple[str, str]]
+) -> None:
+    """gazebo_ros_pkgs ros2: PublishWheelsTf sends the wheels below their links, PublishOdometryTf
+    odometry; each has its own switch."""
+    robot = plugin(f"libgazebo_ros_{library}.so", inside, "drive")
+    links = (
+        '<link name="base"/><link name="wheel"/><joint name="j" type="fixed"><parent link="base"/>'
+    )
+    robot = robot.replace("<gazebo>", f'{links}<child link="wheel"/></joint><gazebo>', 1)
+    sent = sent_by_plugins(spawned(robot).found)
+    assert sent == ({"/drive": [("/tf", edge_of(*it)) for it in edges]} if edges else {})
+
+
 def test_the_frame_that_a_plugin_of_classic_is_told() -> None:
     """gazebo_ros utils.cpp, SensorFrameID: frame_name, else the link's."""
     told = "<frame_name>f</frame_name><ros><namespace>a</namespace></ros>"

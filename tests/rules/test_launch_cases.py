@@ -218,7 +218,7 @@ def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
         (
             "nav2_amlc",
             "amcl",
-            "there is no package nav2_amlc here with amcl; did you mean nav2_amcl?",
+            "amcl is of the package nav2_amlc, which is not known; did you mean nav2_amcl?",
         ),
         ("nav2_amlc", "amclx", ""),
         # Another number is another package.

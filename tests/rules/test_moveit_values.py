@@ -61,6 +61,19 @@ def limits(joint: str, values: str) -> str:
         ("lift", "max_position: -0.5, min_position: 0.5", [("MB125", WARNING)]),
         ("lift", "has_jerk_limits: true", [("MB115", ERROR)]),
         ("$(arg prefix)a", "has_velocity_limits: true, max_velocity: 1", [("MB120", ERROR)]),
+        # Tags of PyYAML, as launch files and xacro read them: the URDF has 1 rad and 2 rad/s.
+        ("lift", "max_position: !degrees 57.0, min_position: !degrees -57", []),
+        ("lift", "max_position: !degrees 60.0", [("MB898", WARNING)]),
+        ("lift", "min_position: !degrees -60", [("MB898", WARNING)]),
+        ("lift", "max_position: !radians 0.9", []),
+        ("lift", "max_position: !radians 1.1", [("MB898", WARNING)]),
+        ("lift", "has_velocity_limits: true, max_velocity: !degrees 110", []),
+        ("lift", "has_velocity_limits: true, max_velocity: !degrees 120", [("MB898", WARNING)]),
+        ("lift", "has_velocity_limits: true, max_velocity: !!float 1", []),
+        # An expression, or a text for a launch file: there, and not known.
+        ("lift", "has_velocity_limits: true, max_velocity: !degrees 180/2", []),
+        ("lift", "has_velocity_limits: true, max_velocity: <velocity>", []),
+        ("lift", "has_velocity_limits: true", [("MB115", ERROR)]),
         # A continuous joint has no range, and the URDF no velocity for it.
         ("turn", "has_velocity_limits: true, max_velocity: 99.0, max_position: 9.0", []),
     ],

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
-from multibot_rewrite.base.naming import NOT_PLAIN, Naming, spelled
+from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
@@ -25,6 +25,7 @@ KINDS = {
     # The left part of ``elbow/position``: a joint, a sensor or a gpio.
     "component": ("joint", "sensor", "gpio"),
 }
+TOPIC = "topic"
 NO_OWN: Mapping[tuple[str, str], str] = {}
 
 
@@ -41,6 +42,12 @@ class CompanionNames(NamedTuple):
     own: Mapping[tuple[str, str], str] = NO_OWN
     words: Stems = NO_WORDS
 
+    @property
+    def in_full(self) -> dict[str, str]:
+        """Return the topics that arguments make, with their full names where nodes have a namespace."""
+        own = ((plain, text) for (kind, plain), text in self.own.items() if kind == TOPIC)
+        return {plain: text for plain, text in own if self.naming.topics == NAMESPACE}
+
 
 def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
     """The robot's version of ``value``, a name of the kind ``word``; other values stay.
@@ -55,6 +62,8 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
     kind = resolve(value, kinds, "uses", names.declared, apart=apart)
     if (kind, value) in names.own:
         return names.own[kind, value]
+    if kind == TOPIC and value.lstrip("/") in names.in_full:
+        return names.in_full[value.lstrip("/")]
     return spelled(names.naming, names.robot, kind, value, namespaced)
 
 
@@ -72,8 +81,13 @@ def companion_names(
     robot: str,
     own: Mapping[tuple[str, str], str],
     words: Stems = NO_WORDS,
+    in_full: Collection[str] = (),
 ) -> CompanionNames:
-    """The names of a robot; ``own`` are declared by either of their texts."""
+    """Return the names of a robot; ``own`` are declared by either of their texts. Nodes in the robot's
+    namespace call the topics ``in_full``, which it does not reach, by their full names."""
+    if naming.topics == NAMESPACE:
+        made = {key: text for key, text in own.items() if key[0] == TOPIC and text in in_full}
+        own = {**own, **{key: f"/{text.lstrip('/')}" for key, text in made.items()}}
     # Without its argument a name may begin with the slash behind it: /imu.
     filled = {(kind, it): text for kind, it, text in _without_argument(robot, own)}
     own = {

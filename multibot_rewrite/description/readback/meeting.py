@@ -151,12 +151,20 @@ def advice(name: RuntimeName, together: bool = False) -> str:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
-    if name.path == IN_CODE:
-        return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
-    if name.path.startswith("/") and code_of(name) in _ADVICE:
-        return f"{_FIXED}: {_ALLOWED}"
+    if name.path == IN_CODE or (name.path.startswith("/") and code_of(name) in _ADVICE):
+        return _for_code(name)
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
+
+
+def _for_code(name: RuntimeName) -> str:
+    """Return what to do about a shared name that only the code of a plugin has."""
+    if name.path == IN_CODE:
+        return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
+    if name.tag == "ros2_control":
+        rule = f"-r {name.name}:={name.name.lstrip('/')}"
+        return f"give each robot's controller manager the rule {rule}, and a namespace"
+    return f"{_FIXED}: {_ALLOWED}"
 
 
 class LostRule(NamedTuple):

@@ -7,7 +7,7 @@ plugin's name is the node's, an empty namespace is the root), gz_ros2_control_pl
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
@@ -39,6 +39,8 @@ REMAP_FLAGS = ("-r", "--remap")
 # The parameter that names the manager of a plugin of ros2_control.
 _MANAGER_NAME = "controller_manager_name"
 PUBLISHES, SERVES = "publishes", "serves"
+# Parent and child.
+PAIR = 2
 
 
 class ReadEndpoint(NamedTuple):
@@ -95,12 +97,9 @@ class ReadNode(NamedTuple):
 
 
 def node_of(
-    plugin: _Element, number: int, section: VocabularySection, links: Container[str], release: str
+    plugin: _Element, number: int, section: VocabularySection, release: str
 ) -> ReadNode | None:
-    """The ROS 2 node that a plugin starts; None where it starts none.
-
-    ``links`` are those of the description.
-    """
+    """Return the ROS 2 node that a plugin starts; None where it starts none."""
     paths = {site.path for site in section.sites}
     if "ros/namespace" not in paths:
         return None
@@ -127,7 +126,7 @@ def node_of(
         tuple(_by_themselves(endpoints, section, bare, release, plugin)),
         tuple(_stems(plugin, section, bound)),
         frames,
-        tuple(_sends(plugin, section, frames, links)),
+        tuple(_sends(plugin, section, frames)),
         helper,
         _manager(plugin, section, name, namespace),
     )
@@ -300,14 +299,9 @@ def _stems(
 
 
 def _sends(
-    plugin: _Element,
-    section: VocabularySection,
-    frames: tuple[tuple[str, str], ...],
-    links: Container[str],
+    plugin: _Element, section: VocabularySection, frames: tuple[tuple[str, str], ...]
 ) -> Iterator[tuple[str, str]]:
-    """Of a plugin that publishes tf: from its odometry frame to a link, which a prefix of frames may
-    be before."""
-    base = [path for path, frame in frames if frame in links or frame.rpartition("/")[2] in links]
-    own = [path for path, _ in frames if path not in base]
-    if "/tf" in section.publishes and own and base and sends_odometry(plugin, section):
-        yield own[0], base[0]
+    """Yield the parameters of parent and child of the transform of odometry that a plugin sends: those
+    of its first two frames."""
+    if "/tf" in section.publishes and len(frames) >= PAIR and sends_odometry(plugin, section):
+        yield frames[0][0], frames[1][0]

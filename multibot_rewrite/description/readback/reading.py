@@ -88,10 +88,9 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
 def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     """The same of one that is parsed already. Raises nothing."""
     hosts, unknown = _hosts(root, vocabulary)
-    links = [*_links(root)]
-    nodes = _nodes(hosts, links, vocabulary.release)
+    nodes = _nodes(hosts, vocabulary.release)
     with_node = {it.number for it in nodes}
-    names = [*links, *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
+    names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
     names += _of_plugins(root, hosts, with_node, vocabulary)
     names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
     names += _of_elements(root, vocabulary)
@@ -106,7 +105,7 @@ def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_E
     """The plugins that send a transform of odometry, with the frames of parent and child."""
     hosts, _ = _hosts(root, vocabulary)
     senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
-    for node in _nodes(senders.values(), _links(root), vocabulary.release):
+    for node in _nodes(senders.values(), vocabulary.release):
         frames = dict(node.frames)
         for parent, child in node.sends:
             yield senders[node.number].element, frames[parent], frames[child]
@@ -128,11 +127,8 @@ def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tu
     return hosts, unknown
 
 
-def _nodes(
-    hosts: Iterable[_Host], links: Iterable[RuntimeName], release: str
-) -> tuple[ReadNode, ...]:
-    known_links = frozenset(it.name for it in links)
-    made = (node_of(*it, known_links, release) for it in hosts)
+def _nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
+    made = (node_of(*it, release) for it in hosts)
     return tuple(node for node in made if node is not None)
 
 

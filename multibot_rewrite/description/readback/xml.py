@@ -82,3 +82,13 @@ def is_on(text: str | None, usual: bool) -> bool:
     """A boolean parameter: case does not count; any other text leaves the default."""
     known = {"true": True, "1": True, "false": False, "0": False}
     return known.get((text or "").strip().lower(), usual)
+
+
+def root_of(text: object) -> _Element | None:
+    """Return the root of a description; None where it is not known."""
+    if not isinstance(text, str) or not text.strip():
+        return None
+    try:
+        return read_xml(text.encode(), "")
+    except InputError:
+        return None

@@ -17,6 +17,9 @@ MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
 MANIFEST = "package.xml"
+# How a CMakeLists.txt calls its package, and so many letters of it are read.
+_PROJECT = ("${PROJECT_NAME}", "${CMAKE_PROJECT_NAME}", "${ament_package_name}")
+_LONGEST = 262_144
 _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and similar folders: there are no sources of meshes below them.
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
@@ -157,8 +160,11 @@ def entries(folder: str) -> frozenset[str]:
 
 
 def _manifest(folder: str, most: int) -> bytes:
-    """The start of a package.xml; empty where it cannot be read, or is a pipe, which nobody named."""
-    path = os.path.join(folder, MANIFEST)
+    return _start_of(os.path.join(folder, MANIFEST), most)
+
+
+def _start_of(path: str, most: int) -> bytes:
+    """Return the start of a file; empty where it cannot be read, or is a pipe, which nobody named."""
     try:
         with open(path if os.path.isfile(path) else os.devnull, "rb") as file:
             return file.read(most)
@@ -196,9 +202,9 @@ def find_in(folder: str, path: str) -> str:
 
 @outside
 def in_sources(path: str) -> str:
-    """The file that a build installs as ``path`` from a package's sources; empty if none is certain.
-
-    The only file of the package that ends so, as ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
+    """Return the file that a build installs as ``path`` from a package's sources; empty if none is
+    certain: what its CMakeLists.txt says, else the only file of the package that ends so, as
+    ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
     """
     folder = os.path.dirname(os.path.abspath(path))
     while not os.path.isdir(folder):
@@ -206,9 +212,40 @@ def in_sources(path: str) -> str:
     package = _own_package(folder)
     if package is None:
         return ""
-    end = os.sep + os.path.relpath(os.path.abspath(path), package[1])
+    below = os.path.relpath(os.path.abspath(path), package[1])
+    for source, installed in _installed(package[1]):
+        inside = os.path.relpath(below, installed or os.curdir)
+        there = os.path.normpath(os.path.join(source, inside))
+        if inside.split(os.sep)[0] != os.pardir and os.path.isfile(there):
+            return there
+    end = os.sep + below
     found = [it for it in _every_file(package[1]) if it.endswith(end)]
     return found[0] if len(found) == 1 else ""
+
+
+@lru_cache(maxsize=64)
+def _installed(folder: str) -> tuple[tuple[str, str], ...]:
+    """Return the files and folders of a package that its CMakeLists.txt installs below its share, each
+    with its path there."""
+    lines = _start_of(os.path.join(folder, "CMakeLists.txt"), _LONGEST).decode("utf-8", "replace")
+    text = " ".join(line.partition("#")[0] for line in lines.splitlines())
+    calls = (it.partition(")")[0].replace('"', " ").split() for it in text.split("install(")[1:])
+    return tuple(pair for words in calls for pair in _of_install(folder, words))
+
+
+def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
+    """Yield what one ``install(DIRECTORY a b/ DESTINATION c)`` puts where: of ``b/`` what is in it."""
+    if words[:1] not in (["DIRECTORY"], ["FILES"]) or words[-1:] == ["DESTINATION"]:
+        return
+    at = words.index("DESTINATION") if "DESTINATION" in words else 0
+    share, _, name = words[at + 1].partition("/") if at else ("", "", "")
+    own, _, target = name.partition("/")
+    if share != "share" or own not in (os.path.basename(folder), _package_name(folder), *_PROJECT):
+        return
+    for it in words[1:at]:
+        last = "" if it.endswith("/") else os.path.basename(it)
+        source = it.removeprefix("${CMAKE_CURRENT_SOURCE_DIR}/")
+        yield os.path.normpath(os.path.join(folder, source)), os.path.join(target, last).rstrip("/")
 
 
 @lru_cache(maxsize=64)

@@ -64,6 +64,13 @@ class Inventory(NamedTuple):
         """The hosts that have a section, with it."""
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
+    @property
+    def topics_in_full(self) -> frozenset[str]:
+        """Return the topics that no ROS namespace reaches, such as those of a simulated sensor."""
+        pairs = zip(self.claims, self.names, strict=True)
+        found = (name for claim, names in pairs if not claim.site.namespaced for name in names)
+        return frozenset(name.text for name in found if name.kind == "topic")
+
 
 def collect(
     document: Document,

@@ -76,9 +76,7 @@ def _meetings(
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """What each robot has, first by its description."""
-    found = {
-        it.robot: [name for name in it.reading.names if not name.of_controllers] for it in members
-    }
+    found = {it.robot: [*_of_description(it, table)] for it in members}
     for it in table.nodes:
         if it.robot and not it.home.written:
             found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
@@ -88,6 +86,19 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
             kind, type_ = end.endpoint.kind, end.endpoint.type
             found.setdefault(end.robot, []).append(_of_table(kind, end.name, end.node, type_))
     return found
+
+
+def _of_description(it: Member, table: Table) -> Iterator[RuntimeName]:
+    """Yield what a robot has by its description alone: the table has the rules of the nodes that its
+    hardware makes."""
+    made = {
+        node.full_name for node in table.nodes if node.robot == it.robot and node.home.of_hardware
+    }
+    ends = {end.endpoint.name for end in table.names if end.node in made}
+    for name in it.reading.names:
+        ruled = name.tag == "ros2_control" and name.name in ends
+        if not (ruled or name.of_controllers):
+            yield name
 
 
 def _of_table(kind: str, name: str, node: str, type_: str = "") -> RuntimeName:

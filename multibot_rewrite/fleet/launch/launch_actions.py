@@ -48,7 +48,7 @@ STATE, BRIDGE = "robot_state_publisher", "bridge.yaml"
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `programs:` (docs/stacks.md)"
-_NAME = "if it does, add it to a `stack:`, declare it in a parameter file, or start it here"
+_NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
 _BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
 _DOMAIN_BRIDGE = Program("domain_bridge", "domain_bridge")
 
@@ -117,7 +117,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         elif it is None:
             yield name, f"nothing is known of its program; {_DESCRIBE}"
         elif it.when and not _is_needed(given, it):
-            yield name, f"no file says that it runs: {said(it.when)}; {_NAME}"
+            yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif not given.names.is_controller(name) and program_of(it, given.release) is None:

@@ -19,7 +19,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.description.sources.packages import package_folder, package_of
+from multibot_rewrite.description.sources.packages import in_sources, package_folder, package_of
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import text_slot
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -120,6 +120,9 @@ def is_same(path: str, file: str, description: str) -> bool:
         # What stands in the fleet file itself is no file.
         if os.path.isfile(it) and os.path.isfile(file) and os.path.samefile(it, file):
             return True
+    source = next(_in_sources(plain, description), "")
+    if source and os.path.isfile(file):
+        return os.path.samefile(source, file)
     found = IN_PACKAGE.fullmatch(plain)
     if found is None:
         return False
@@ -132,6 +135,17 @@ def is_same(path: str, file: str, description: str) -> bool:
     return whole.endswith(f"/{package}/{rest}")
 
 
+def _in_sources(path: str, description: str) -> Iterator[str]:
+    """Yield the file of a package's sources that a build installs as the path, which is not there."""
+    match = IN_PACKAGE.fullmatch(path)
+    if match:
+        *names, rest = match.groups()
+        folder = package_folder(next(filter(None, names), ""), description, ())
+        path = os.path.join(folder, rest) if folder else path
+    if os.path.isabs(path) and not os.path.isfile(path) and (found := in_sources(path)):
+        yield found
+
+
 def named_alike(path: str, file: str) -> bool:
     """Has ``path`` the file name of this ``file``?"""
     return os.path.basename(path) == os.path.basename(file)
@@ -140,7 +154,10 @@ def named_alike(path: str, file: str) -> bool:
 def _unsure(robot: RewrittenRobot, path: str) -> Finding:
     made = path_for(robot, path)
     message = f"robot {robot.spec.name!r} has {made}, and its description still loads {path!r}"
-    return at_robot(OTHER_CONTROLLER_FILE, robot, message, "name this very file under params")
+    hint = "name this very file under params"
+    if not os.path.isfile(os.path.join(os.path.dirname(robot.spec.description), path)):
+        hint = f"that file is not there: write the path of the one under params into <{PARAMETERS}>"
+    return at_robot(OTHER_CONTROLLER_FILE, robot, message, hint)
 
 
 PARAMS = "params"
@@ -209,6 +226,7 @@ def _found(path: str, description: str) -> Iterator[str]:
     for it in (plain, os.path.join(os.path.dirname(description), plain)):
         if os.path.isfile(it):
             yield it
+    yield from _in_sources(plain, description)
 
 
 def _unknown(robot: RewrittenRobot, path: str) -> Finding:

@@ -67,6 +67,12 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield "# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
         rest = it.launched.rest
         yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in rest)
+    if it.launched.started:
+        yield ""
+        yield "# Launch files start nodes that this fleet does not. `launch: FILE` gives each robot the"
+        yield "# nodes of FILE with their rules; it is a program, so `multibot build` needs --trust:"
+        started = it.launched.started
+        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in started)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"

@@ -22,12 +22,23 @@ from multibot_rewrite.fleet.proposal.launch_text import (
 from multibot_rewrite.fleet.proposal.searching import text_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.system.tool_nodes import is_viewer
 
 # What a build gives each node anyway, or what is of one machine.
 _USUAL = frozenset(("use_sim_time", "autostart", "node_names", "frame_prefix"))
 # The node and its parameter that an included file gives the value of its argument of this name.
 _MAP = {"map": ("map_server", "yaml_filename")}
 _DESCRIPTION = "robot_description"
+# A fleet has them, whatever its stacks.
+_IN_EVERY_FLEET = frozenset(
+    (
+        "robot_state_publisher",
+        "joint_state_publisher",
+        "joint_state_publisher_gui",
+        "controller_manager",
+    )
+)
 # Letters of a value that is shown.
 _LONGEST = 80
 # What the values of launch files are called where they are refused.
@@ -37,10 +48,11 @@ _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
 
 class Launched(NamedTuple):
     """What launch files give: values of parameters by node, which are the same in all of them, and what
-    else there is, by file and line."""
+    else there is, by file and line; ``started`` are the nodes that the fleet does not start."""
 
     values: Mapping[str, Mapping[str, Any]] = {}
     rest: tuple[tuple[str, int, str], ...] = ()
+    started: tuple[tuple[str, int, str], ...] = ()
 
 
 class _Given(NamedTuple):
@@ -168,6 +180,34 @@ def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
         named = argument(call, "name") is None or who == own
         rules = tuple(_rules(argument(call, "remappings")))
         yield _Given(it.text.file, call.lineno, who, own if named else "", values, rules)
+
+
+def started_elsewhere(
+    read: Iterable[Reading], stacks: Iterable[str], release: str
+) -> tuple[tuple[str, int, str], ...]:
+    """Return the nodes that launch files start and a fleet of these stacks does not, each once at its
+    first place, with its rules; without programs that are in every fleet, or are none of a robot."""
+    known = {
+        name for stack in stacks for node in load_stack(stack, release) for name in _called(node)
+    }
+    found: dict[str, tuple[str, int, str]] = {}
+    for file, call in ((it.text.file, call) for it in read for call in it.text.nodes):
+        package, program = (word_of(argument(call, key)) for key in ("package", "executable"))
+        program = program or word_of(argument(call, "plugin"))
+        name = word_of(argument(call, "name"))
+        if program and not known & {name, program} and not _is_usual(package, program):
+            who = f"{name} ({package} {program})" if name else f"{program} ({package})"
+            rules = ", ".join(_rules(argument(call, "remappings")))
+            text = f"{who}: {rules}" if rules else who
+            found.setdefault(text, (file, call.lineno, text))
+    return tuple(found.values())
+
+
+def _is_usual(package: str, program: str) -> bool:
+    """Is it in every fleet, does it only look, or is it of a simulator or a tool of ros2_control?"""
+    ways = programs()
+    passes = f"{package}/{program}" in ways.passing or package in ways.simulators
+    return passes or package in _IN_EVERY_FLEET or is_viewer(program)
 
 
 def _called(node: NodeFacts) -> frozenset[str]:

@@ -20,6 +20,7 @@ from multibot_rewrite.fleet.proposal.given_by_launch import (
     Launched,
     given_by_launch,
     readings,
+    started_elsewhere,
 )
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
@@ -201,6 +202,8 @@ def propose(
     # Launch files of several robots give each its own values.
     read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
     launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
+    every = [one for it in robots for one in readings(found.launch, it.path, found.every)]
+    launched = launched._replace(started=started_elsewhere(every, stacks, release.value))
     return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
 
 

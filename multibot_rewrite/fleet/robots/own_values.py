@@ -6,17 +6,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.sources.expand import Expansion, expand_traced
+from multibot_rewrite.description.sources.expand import Expansion, expand, expand_traced
 from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.sources.read import is_xacro, read_file
-from multibot_rewrite.description.steps.document import attribute_slots
+from multibot_rewrite.description.steps.document import attribute_slots, read_document
 from multibot_rewrite.fleet.robots.member import Member
+
+# What stands for another value, and how many arguments are tried.
+_MARK, _TRIED = "multibot_mark", 12
 
 
 class Written(NamedTuple):
@@ -45,8 +49,35 @@ def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -
     except InputError:
         return []
     numbers = {it: at for at, it in enumerate(member.source.elements)}
-    pieces = (piece for it in elements for piece in read.pieces.of(numbers[it], "", it.text or ""))
-    return list(dict.fromkeys(it for piece in pieces for it in _source(read, piece)))
+    found: dict[Source, None] = {}
+    for it in elements:
+        its = read.pieces.of(numbers[it], "", it.text or "")
+        sources = [one for piece in its for one in _source(read, piece)]
+        named = [one for one in sources if one.argument]
+        if sources and not named:
+            named = [*_by_trying(written, read.sources, it, numbers[it])]
+        found.update(dict.fromkeys(named or sources))
+    return list(found)
+
+
+def _by_trying(
+    written: Written, sources: Mapping[str, bytes], element: _Element, number: int
+) -> Iterator[Source]:
+    """Yield the argument that makes the text of an element by way of a default or a property: with
+    another value the text is another one."""
+    names = (
+        it.get("name", "")
+        for file, data in sources.items()
+        for it in read_document(data, file).root.iter("{*}arg")
+    )
+    alike = sorted(dict.fromkeys(names), key=lambda it: it != element.get("name"))
+    for name in alike[:_TRIED]:
+        with suppress(InputError):
+            data = expand(written.path, {**written.arguments, name: _MARK})
+            made = read_document(data, written.path).elements
+            if number < len(made) and _MARK in (made[number].text or ""):
+                yield Source(name)
+                return
 
 
 def _source(read: Expansion, piece: Piece) -> Iterator[Source]:

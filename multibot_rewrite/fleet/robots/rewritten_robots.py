@@ -214,8 +214,9 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             simulated = _final(model, robot, jobs.simulated.naming)
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made)
-        model_claims = (model or text).template.inventory.claims
-        names = companion_names(declared, naming, robot.tag, own, words_of(model_claims))
+        simulated_parts = (model or text).template.inventory
+        more = words_of(simulated_parts.claims), simulated_parts.topics_in_full
+        names = companion_names(declared, naming, robot.tag, own, *more)
         yield RewrittenRobot(
             robot,
             data,

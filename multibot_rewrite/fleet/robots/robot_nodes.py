@@ -59,6 +59,7 @@ from multibot_rewrite.system.records import Edge
 WORLD, BRIDGE = "world", "ros_gz_bridge"
 # The stack of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
+BY_ARGUMENT = "an argument of the xacro makes it"
 # What decides the nodes of a robot.
 NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
 
@@ -87,9 +88,14 @@ class RobotEvidence(NamedTuple):
 
 
 def robot_nodes(
-    spec: RobotSpec, file: FleetFile, notes: Sequence[Finding], member: Member
+    spec: RobotSpec,
+    file: FleetFile,
+    notes: Sequence[Finding],
+    member: Member,
+    topics: Mapping[str, str],
 ) -> RobotEvidence:
-    """The nodes of a robot with this description; ``notes`` are findings about its files.
+    """The nodes of a robot with this description; ``notes`` are findings about its files. ``topics``
+    are the full names of those that arguments of its xacro make, by their names without these.
 
     Raises InputError for a parameter file that cannot be read.
     """
@@ -114,7 +120,9 @@ def robot_nodes(
     known = {name: with_frames(it, fits) for name, it in known.items()}
     fitting = fitted([with_frames(it, fits) for it in nodes], given, known, sent, spec, member)
     frames, nodes = changed_frames(fitting, nodes), fitting
-    marked, shared = apart(tuple(_as_written(nodes, own, parameters, file.distro)), file)
+    written = _as_written(nodes, own, parameters, file.distro)
+    named = _made_by_arguments(written, given, topics) if topics else written
+    marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
     started = launched.started if launched else {}
     lost = set_by_launch(given, started, parameters)
@@ -135,6 +143,23 @@ def _as_written(
         moved = outside.get(it.name, frozenset())
         ends = (_absolute(end) if end.parameter in moved else end for end in it.endpoints)
         yield it._replace(endpoints=tuple(ends)) if moved else it
+
+
+def _made_by_arguments(
+    nodes: Iterable[NodeFacts], given: Iterable[GivenNode], topics: Mapping[str, str]
+) -> Iterator[NodeFacts]:
+    """Yield the nodes with the topics of their parameters that arguments of the xacro make, by their
+    full names, as the robot's files will have them: they are the robot's already."""
+    values = {it.name: it.values for it in given}
+    for it in nodes:
+        own = values.get(it.name, {})
+        ends = (_in_full(end, topics) if end.parameter in own else end for end in it.endpoints)
+        yield it._replace(endpoints=tuple(ends))
+
+
+def _in_full(end: Endpoint, topics: Mapping[str, str]) -> Endpoint:
+    name = topics.get(end.name) or topics.get(end.name.lstrip("/"))
+    return end._replace(name=name, fixed=BY_ARGUMENT, own=True) if name else end
 
 
 def _outside(it: GivenNode, known: KnownNodes, release: str) -> Iterator[str]:

@@ -20,7 +20,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.parameters import MODEL
-from multibot_rewrite.description.readback.reading import FRAME, Reading, RuntimeName, read
+from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.sources.read import read_file
@@ -35,8 +35,8 @@ _GIVEN = ParameterText(
 )
 # Frames of systems of gz that send odometry, with the last word of their topic where the description
 # names none (gz-sim src/systems: diff_drive, ackermann_steering, mecanum_drive, tracked_vehicle;
-# OdometryPublisher.cc:283), and of Classic's drives.
-_PARENTS = {"frame_id": "tf", "odom_frame": "pose", "odometry_frame": "tf"}
+# OdometryPublisher.cc:283).
+_PARENTS = {"frame_id": "tf", "odom_frame": "pose"}
 _CHILDREN = ("child_frame_id", "robot_base_frame")
 _TF, _CLASSIC_TF = "tf_topic", "/tf"
 _FRAME = "frame_name"
@@ -164,23 +164,17 @@ def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
 
 
 def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]]:
-    """The transforms that nodes of plugins send, by the node, each with its topic in ROS
+    """Return the transforms of odometry that nodes of plugins send, by the node, each with its topic
     (gazebo_ros_pkgs ros2 gazebo_plugins/src/gazebo_ros_diff_drive.cpp, PublishOdometryTf)."""
     found: dict[str, list[tuple[str, Edge]]] = {}
-    for reading in (it.reading for it in models if it.spawned):
-        for node in (it for it in reading.nodes if not it.manager):
-            own = {it.path: it.name for it in reading.names if _of(it, node)}
-            parent, child = (
-                next((own[it] for it in way if it in own), "") for way in (_PARENTS, _CHILDREN)
-            )
-            if _CLASSIC_TF in own and parent and child:
-                name = expand(node.name, node.namespace or "/", "")
-                found.setdefault(name, []).append((own[_CLASSIC_TF], edge_of(parent, child)))
+    for node in (node for it in models if it.spawned for node in it.reading.nodes):
+        topic = next((it.full for it in node.endpoints if it.name == _CLASSIC_TF), "")
+        frames = dict(node.frames)
+        for parent, child in node.sends if topic else ():
+            name = expand(node.name, node.namespace or "/", "")
+            sent = (topic, edge_of(frames[parent], frames[child]))
+            found.setdefault(name, []).append(sent)
     return found
-
-
-def _of(it: RuntimeName, node: ReadNode) -> bool:
-    return (it.tag, it.number) == ("plugin", node.number)
 
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:

@@ -5,11 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from lxml import etree
-
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
-from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import DESCRIPTION
@@ -77,13 +74,3 @@ def tree_of(it: RunningNode) -> list[Edge] | None:
     prefix = str(it.value("frame_prefix") or "")
     root = root_of(it.value(DESCRIPTION))
     return None if root is None else _below(prefix, edges_in(root))
-
-
-def root_of(text: object) -> etree._Element | None:
-    """The root of a description; None where it is not known."""
-    if not isinstance(text, str) or not text.strip():
-        return None
-    try:
-        return read_xml(text.encode(), "")
-    except InputError:
-        return None

@@ -24,10 +24,12 @@ from multibot_rewrite.base.rosnames import (
     read_remap,
     resolve_bound,
 )
+from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
+from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
 from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
@@ -110,6 +112,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
         found += [one for it in wanted for one in _started(it, None, SIMULATED, known)]
         found += (*_plugins(model), *_helpers(model, known)) if model.spawned else ()
         started += wanted
+    found += _made_by_hardware(found, {it.topic: it.text for it in descriptions}, known)
     found += _clock(graph)
     by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
     controllers = _controllers(spawned, by_name, started, known)
@@ -177,6 +180,38 @@ def _helpers(model: Model, known: Knowledge) -> Iterator[RunningNode]:
         home, facts = above or "/", known.nodes.get(name)
         names = (name, home, (), (), home)
         yield RunningNode(*names, facts, {}, SIMULATED, (), it.section.names[0], model.place)
+
+
+def _made_by_hardware(
+    nodes: Sequence[RunningNode], published: Mapping[str, str], known: Knowledge
+) -> Iterator[RunningNode]:
+    """Yield the nodes that the hardware of a description makes in the process of its manager: they have
+    no name of their own in the launch file, so the rules of the whole process are theirs."""
+    for it in nodes:
+        if it.facts is None or it.facts.known != MANAGER or it.process == SIMULATED:
+            continue
+        root = root_of(it.value(DESCRIPTION) or _described(it, published))
+        facts = (
+            with_hardware((it.facts,), root, it.place.file, known.nodes) if root is not None else ()
+        )
+        for one in facts[1:]:
+            names = (
+                one.name,
+                it.namespace,
+                it.process_rules,
+                it.process_rules,
+                it.process_namespace,
+            )
+            yield RunningNode(*names, one, {}, it.process, (), it.program, it.place)
+
+
+def _described(manager: RunningNode, published: Mapping[str, str]) -> str:
+    """Return the description on the topic of a manager, which is private in Humble; empty for none."""
+    with suppress(UsageError):
+        bound = bound_of(manager.name, manager.namespace, manager.rules)
+        topics = (resolve_bound(it, TOPIC, bound) for it in (DESCRIPTION, f"~/{DESCRIPTION}"))
+        return next((published[it] for it in topics if it in published), "")
+    return ""
 
 
 def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:

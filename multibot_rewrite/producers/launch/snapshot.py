@@ -16,6 +16,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
+from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.declared import is_known
 from multibot_rewrite.knowledge.records import Endpoint
@@ -39,7 +40,6 @@ from multibot_rewrite.producers.launch.node_transforms import (
     passed_on,
     prefix_of,
     publishes_a_tree,
-    root_of,
     tree_of,
 )
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode

@@ -92,7 +92,7 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
             ]
             limits = [_beyond(joint, found["what"], it.value) for joint in joints]
             if limits and all(limit is not None for limit in limits):
-                message = f"{found['what']} of {found['joint']} is {it.value}"
+                message = f"{found['what']} of {found['joint']} is {it.value:g}"
                 hint = "MoveIt plans beyond what the joint takes"
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
 

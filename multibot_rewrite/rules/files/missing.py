@@ -23,7 +23,8 @@ def missing_parameters(file: NamedFile) -> Iterator[Remark]:
     for section in sections(file):
         yield from _missing(file, section)
     for it in demands(file, "needs"):
-        if it.given.value is True and value_of(it.section, it.words[0]) is None:
+        # A value that only a launch file fills in is there, too.
+        if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
 

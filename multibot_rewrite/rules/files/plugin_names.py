@@ -123,7 +123,9 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
         return "which its package does not have", hint, ERROR if slip else NOTE
     slip = nearest(package, packages(), MISTYPED)
     alike = next((it for it in there if canonical(it) == f"{slip}::{last}"), "")
-    return ("which no known package has", f"did you mean {alike}?", "") if alike else ("", "", "")
+    # A package that is not known may have it, whatever its name is like.
+    unknown = f"a class of {package}, which is not known"
+    return (unknown, f"did you mean {alike}?", NOTE) if alike else ("", "", "")
 
 
 def _slip(last: str, known: Sequence[str]) -> str:

@@ -5,6 +5,8 @@ file of MoveIt as the parameters that it becomes."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import radians
+from typing import cast
 
 import yaml
 
@@ -29,6 +31,8 @@ from multibot_rewrite.rules.files.parameter_facts import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
 
 ASKED = "asked"
+_FLOAT, _DEGREES = "tag:yaml.org,2002:float", "!degrees"
+_ANGLES = (_DEGREES, "!radians")
 
 
 class Given(NamedTuple):
@@ -90,7 +94,8 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     node = built_in_nodes(file.context.distro).nodes[node_of(kind)]
     above = parameter_above(kind, file.document)
     root = file.document.root
-    given = tuple(_given(file.document, root, above)) if root is not None else ()
+    read = tuple(_given(file.document, root, above)) if root is not None else ()
+    given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
     yield _section(node.name, node, given, facts, _by_name(given))
 
@@ -185,6 +190,22 @@ def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
             yield from _given(document, below, f"{name}.")
         else:
             yield Given(name, key, value, _value(document, value))
+
+
+def _tagged(node: yaml.Node, value: Value | None) -> Value | None:
+    """Return a value of MoveIt's files as launch files read them, which is by PyYAML with two more tags
+    (launch_param_builder utils.py, load_yaml; moveit2 moveit_configs_utils). An angle that is an
+    expression, which xacro alone evaluates, is not known."""
+    if isinstance(node, yaml.SequenceNode) and isinstance(value, list):
+        each = [_tagged(it, one) for it, one in zip(node.value, value, strict=True)]
+        return None if None in each else cast("Value", each)
+    if node.tag not in _ANGLES and not (node.tag == _FLOAT and isinstance(value, int)):
+        return value
+    try:
+        number = float(str(node.value))
+    except ValueError:
+        return None
+    return radians(number) if node.tag == _DEGREES else number
 
 
 def _value(document: YamlText, node: yaml.Node) -> Value | None:

@@ -254,10 +254,12 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
 
 
 def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
-    """Claims a controller interfaces of the joints that its parameters name, and these name none?"""
+    """Does a controller command the joints that its parameters name, and do these name none? A joint
+    without an interface is named."""
     commands = [claim for claim in facts.claims if claim.kind == COMMAND]
     by_joint = bool(commands) and all(claim.template.startswith("<") for claim in commands)
-    return by_joint and not any(True for _ in claims_of(commands, given))
+    owners = (it._replace(template=it.template.partition("/")[0], condition="") for it in commands)
+    return by_joint and not any(True for _ in claims_of(owners, given))
 
 
 @launch_rule(

@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import isclose, pi
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
@@ -229,7 +229,7 @@ def _named_files(it: LaunchedNode) -> Iterator[str]:
     "MG714",
     "program-misspelt",
     what="A launch file starts a program that its package does not have, but it has a similar one. "
-    "Or the package is not there, and one with a similar name has the program.",
+    "Or the package is not known, and one with a similar name has the program: a note.",
     why="launch ends there: the executable, or the package, is not found.",
     fix="Write the name of the program, or of its package.",
     bad=launch_of(
@@ -255,8 +255,8 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
         if not it.executable or "::" in it.executable or it.executable in every:
             continue
         if other := _package_meant(it, known):
-            message = f"there is no package {it.package} here with {it.executable}"
-            yield at(misspelt, it.place, message, f"did you mean {other}?")
+            message = f"{it.executable} is of the package {it.package}, which is not known"
+            yield at(misspelt, it.place, message, f"did you mean {other}?", level=NOTE)
             continue
         near = nearest(it.executable, sorted(every), SLIP)
         if near and _differ(it.executable, near):

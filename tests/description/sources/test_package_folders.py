@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -154,3 +155,45 @@ def test_a_file_that_a_build_installs_elsewhere(tree: Path) -> None:
     assert in_sources(str(home / "urdf" / "rm.xacro")) == ""
     assert in_sources(str(home / "rviz" / "view.rviz")) == ""
     assert in_sources(str(tree / "urdf" / "arm.xacro")) == ""
+
+
+CMAKE = """\
+# install(DIRECTORY b/config DESTINATION share/${PROJECT_NAME})
+install(DIRECTORY bringup/conf/ DESTINATION share/${PROJECT_NAME}/config)
+install(
+  DIRECTORY bringup/launch a/config
+  DESTINATION share/arm/)
+install(FILES one.yaml DESTINATION "share/${PROJECT_NAME}/params")
+install(DIRECTORY description/ DESTINATION share/${PROJECT_NAME})
+install(DIRECTORY other/maps DESTINATION share/other)
+install(TARGETS own DESTINATION lib/${PROJECT_NAME})
+install(DIRECTORY DESTINATION)
+install(DIRECTORY b
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "source"),
+    [
+        ("config/c.yaml", "bringup/conf/c.yaml"),
+        # Two end so: the one that is installed.
+        ("config/d.yaml", "a/config/d.yaml"),
+        ("launch/a.launch.py", "bringup/launch/a.launch.py"),
+        ("params/one.yaml", "one.yaml"),
+        ("urdf/arm.xacro", "description/urdf/arm.xacro"),
+        # Another package's share, and what is nowhere.
+        ("maps/m.yaml", "other/maps/m.yaml"),
+        ("maps/n.yaml", ""),
+        ("config/none.yaml", ""),
+        ("config", ""),
+    ],
+)
+def test_what_a_cmake_file_installs_under_another_name(path: str, source: str, tree: Path) -> None:
+    home = package(tree / "arm", "arm")
+    (home / "CMakeLists.txt").write_text(CMAKE)
+    for name in ("bringup/conf/c", "a/config/d", "b/config/d", "one", "other/maps/m"):
+        written(home / f"{name}.yaml")
+    for name in ("bringup/launch/a.launch.py", "description/urdf/arm.xacro"):
+        written(home / name)
+    found = in_sources(str(home / path))
+    assert (os.path.relpath(found, home) if found else "") == source

@@ -8,11 +8,14 @@ from typing import Any
 
 import pytest
 
+from multibot_rewrite import load_fleet
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.given_by_launch import (
     Launched,
     files_given,
     given_by_launch,
     readings,
+    started_elsewhere,
 )
 
 RULE = "remappings=[('odometry/filtered', '/odom'), ('/tf', 'tf')]"
@@ -182,3 +185,92 @@ def test_arguments_of_included_files_are_followed(
     read = readings(paths, "robot.urdf", ())
     assert given_by_launch(read, ["robot_localization"], "jazzy") == Launched(RATE, ())
     assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read).keys()
+
+
+FILTER = (
+    "Node(package='imu_filter_madgwick', executable='imu_filter_madgwick_node', name='imu_filter', {})"
+)
+OWN = "Node(package='acme', executable='wheels.py')"
+STARTED = [
+    (OWN, ["wheels.py (acme)"]),
+    (f"{OWN}; {OWN}", ["wheels.py (acme)"]),
+    (FILTER.format("remappings=[('/imu/data', '/imu/out'), ('/tf', 'tf')]"),
+     ["imu_filter (imu_filter_madgwick imu_filter_madgwick_node): /imu/data:=/imu/out"]),
+    ("ComposableNode(package='acme', plugin='acme::Wheels')", ["acme::Wheels (acme)"]),
+    ("LifecycleNode(package='acme', executable='base', name='b')", ["b (acme base)"]),
+    ("Node(package='tf2_ros', executable='static_transform_publisher')",
+     ["static_transform_publisher (tf2_ros)"]),
+    # Its program is not plain; it may be anything.
+    ("Node(package='acme', executable=program())", []),
+    # What the fleet has by its stack, every fleet has, only looks, or is no node of a robot.
+    (EKF + ")", []), (NODE + "name='second')", []),
+    ("Node(package='robot_state_publisher', executable='robot_state_publisher')", []),
+    ("Node(package='controller_manager', executable='spawner', arguments=['arm'])", []),
+    ("Node(package='ros_gz_bridge', executable='parameter_bridge')", []),
+    ("Node(package='rviz2', executable='rviz2')", []), ("", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "started"), STARTED)
+def test_the_nodes_that_launch_files_start_and_a_fleet_does_not(
+    text: str, started: list[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "a.launch.py"
+    file.write_text(f"\n{text}\n")
+    read = readings([str(file)], "robot.urdf", ("robot.urdf",))
+    found = started_elsewhere(read, ["robot_localization"], "jazzy")
+    assert found == tuple((str(file), 2, it) for it in started)
+
+
+BASE = """\
+<robot name="base"><link name="base_link"/><link name="imu_link"/>
+<joint name="i" type="fixed"><parent link="base_link"/><child link="imu_link"/></joint></robot>
+"""
+FILES = {
+    "package.xml": "<package><name>acme</name></package>",
+    "urdf/base.urdf": BASE,
+    "config/ekf.yaml": "ekf_node:\n  ros__parameters: {imu0: imu/out, world_frame: odom}\n",
+    "config/imu.yaml": "imu_filter:\n  ros__parameters: {use_mag: false, publish_tf: false}\n",
+    "launch/base.launch.py": f"""\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([
+        {FILTER.format("remappings=[('/imu/data', '/imu/out')]")},
+        {NODE} name='ekf_node'),
+    ])
+""",
+}
+
+
+@pytest.mark.slow
+def test_what_init_says_of_such_a_node_is_true_and_helps(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The rule is lost where the fleet does not start the node, and is there with ``launch:``."""
+    for path, text in FILES.items():
+        file = tmp_path / "src" / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    fleet = tmp_path / "fleet.yaml"
+    args = [
+        "init",
+        str(tmp_path / "src"),
+        "-n",
+        "2",
+        "--yes",
+        "--distro",
+        "humble",
+        "-o",
+        str(fleet),
+    ]
+    assert main(args) == 0
+    assert "started by launch files and not by this fleet: imu_filter" in capfd.readouterr().err
+    text = fleet.read_text()
+    assert "src/launch/base.launch.py:5: imu_filter (imu_filter_madgwick" in text
+    assert "/imu/data:=/imu/out" in text
+    launch = load_fleet(fleet).text("fleet.launch.py")
+    assert "Not started: imu_filter (nothing in the fleet file starts it" in " ".join(launch.split())
+    fleet.write_text(f"launch: src/launch/base.launch.py\n{text}")
+    mended = load_fleet(fleet, trust=True)
+    assert "('imu/data', 'imu/out')" in mended.text("fleet.launch.py")

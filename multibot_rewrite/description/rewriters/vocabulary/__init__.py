@@ -86,7 +86,8 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
                            ``={PATH:TYPE}`` that it is the one written there, or TYPE; a topic below
                            the value at a path is ``{camera_name}/image_raw``, or with ``../`` in
                            front of the path below that of the element around; ``a=x,../@b=y|z?TOPIC``
-                           is there on that condition
+                           is there on that condition; of what publishes /tf the first frame is the
+                           parent, the second the child
     subscribes: TOPIC...   the same
     serves: SERVICE...     the same
     switches: P=TOPIC...   parameter P turns that topic on, P=TOPIC=on: it is on unless P says false;

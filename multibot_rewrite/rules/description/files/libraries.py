@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.description.checks.problem import Problem
@@ -80,7 +80,8 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
 def _misspelt_library(
     subject: Subject, plugin: _Element, library: str, name: str
 ) -> Iterator[Problem]:
-    """A library that is not known, of a class that is: that of another one, nearly spelt so."""
+    """Yield a library that is not known, of a class that is: that of another one, nearly spelt so. A
+    library that is not called as those of Gazebo may be anybody's."""
     vocabulary = subject.tree.vocabulary
     if "::" not in name or vocabulary.values(library) is not None:
         return
@@ -88,7 +89,8 @@ def _misspelt_library(
     near = nearest(library, [it for it in section.names if "::" not in it] if section else [])
     if near and near != library:
         message = f"no library of Gazebo is called {library!r}; {name} is in another one"
-        yield Problem(plugin, message, "filename", f"did you mean {near!r}?")
+        level = "" if library.startswith(FAMILIES[0][0]) else NOTE
+        yield Problem(plugin, message, "filename", f"did you mean {near!r}?", level=level)
 
 
 def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
@@ -101,27 +103,26 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
         near = _slip_of_library(key, subject.tree.vocabulary.names("plugin"))
         if near:
             message = f"no known plugin is called {name!r}"
-            yield Problem(host.element, message, "filename", f"did you mean {near!r}?")
+            level = "" if key.startswith(tuple(start for start, _ in FAMILIES)) else NOTE
+            yield Problem(host.element, message, "filename", f"did you mean {near!r}?", level=level)
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Classes in no vocabulary and in none of the sources."""
+    """Yield the classes that are in no vocabulary and in none of the sources; another package may have
+    what the known ones do not."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
             known = [*subject.tree.vocabulary.names("hardware")]
             near = "" if name in known or "$" in name else _slip(name, known)
-            if near and not _is_own(subject, name, known):
-                yield Problem(
-                    it, f"no known hardware is called {name!r}", "", f"did you mean {near!r}?"
-                )
+            package = name.partition("/")[0]
+            level = "" if any(it.startswith(f"{package}/") for it in known) else NOTE
+            if near and not (level and _is_in_sources(subject, package)):
+                message = f"no known hardware is called {name!r}"
+                yield Problem(it, message, "", f"did you mean {near!r}?", level=level)
 
 
-def _is_own(subject: Subject, name: str, known: Iterable[str]) -> bool:
-    """Is a class of a package that is in the sources, and has no class that is known?"""
-    package = name.partition("/")[0]
-    if any(it.startswith(f"{package}/") for it in known):
-        return False
+def _is_in_sources(subject: Subject, package: str) -> bool:
     file = subject.document.file
     around = packages_below((sources_around(file), *subject.settings.roots))
     return package in around or bool(package_folder(package, file, subject.settings.roots))
