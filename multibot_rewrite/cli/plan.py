@@ -116,10 +116,11 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
-    carried, left = bridged_topics(made.inventories, made.naming, made.table.names)
+    carried, left = bridged_topics(made.inventories, made.naming, made.models, made.table.names)
     for item in left:
-        message = f"line {item.line}: {item.what} has no topic, its default depends on the world"
-        note(options, f"{item.robot}: warning: {message} (write the element)")
+        message = f"line {item.line}: {item.what} is not bridged: {item.why}"
+        hint = f" ({item.hint})" if item.hint else ""
+        note(options, f"{item.robot}: warning: {message}{hint}")
     return as_yaml(carried)
 
 

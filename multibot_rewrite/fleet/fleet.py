@@ -32,7 +32,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
-from multibot_rewrite.spelling.bridged_topics import bridged_as, bridged_topics
+from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
 from multibot_rewrite.spelling.records import Table
@@ -58,7 +58,8 @@ class Fleet(NamedTuple):
     ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
-    robots whose simulator gets another file, ``apart`` the domains of robots that are not in one."""
+    robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
+    ``models`` what each robot's model is spawned as, if not as the robot is called."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -75,6 +76,7 @@ class Fleet(NamedTuple):
     clocks: tuple[tuple[str, bool], ...] = ()
     described: Mapping[str, Inventory] = ALIKE
     apart: Apart = TOGETHER
+    models: Models = AS_ROBOTS
 
     @property
     def words(self) -> dict[str, str]:
@@ -136,7 +138,7 @@ def _with_bridge_and_findings(
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming, table.names)
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.names)
     own = topics if any(it.robot for it in topics) else ()
     return fleet._replace(table=table, bridged=bridged_as(own))
 

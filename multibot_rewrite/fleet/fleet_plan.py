@@ -114,7 +114,8 @@ def plan_fleet(
         fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
-        fleet = with_relays(fleet._replace(clocks=clocks, apart=file.apart), file)
+        models = {it.spec.namespace: it.spec.model for it in robots}
+        fleet = with_relays(fleet._replace(clocks=clocks, apart=file.apart, models=models), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
-from typing import Any, cast
+from types import MappingProxyType
+from typing import cast
 
 from lxml import etree
 
-from multibot_rewrite import knowledge
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
@@ -18,15 +18,40 @@ from multibot_rewrite.description.rewriters.model_namespaces import is_model_nam
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.spelling.bridge_rows import (
+    PLUGINS,
+    SENSORS,
+    BridgeRow,
+    bridge_data,
+    default_topics,
+    given_topic,
+    is_there,
+    rows_of,
+)
 from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, Topic
 
 # How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
 GZ_LIBRARIES, CLASSIC_LIBRARY = ("gz-", "gz_", "ign_", "ignition-"), "gazebo_ros"
 # Types of sensors that Gazebo Classic has, too; it calls the others otherwise (``gpu_ray``).
-OF_BOTH = frozenset({"camera", "imu", "magnetometer", "altimeter", "force_torque"})
+OF_BOTH = frozenset({"camera", "depth", "imu", "magnetometer", "altimeter", "force_torque"})
+OF_BOTH |= {"contact", "gps", "gpu_ray", "logical_camera"}
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"
+# The element of a system whose transforms are those of tf.
+TF_ELEMENT = "tf_topic"
+IMAGE = "gz.msgs.Image"
+_MODELS = "/model/"
+# Cameras whose info is below their topic, and no name that they are given.
+_INFO_BELOW = frozenset({"rgbd_camera", "rgbd", "segmentation_camera", "segmentation"})
+# Robot -> what its model is spawned as, if not as the robot is called.
+Models = Mapping[str, str]
+AS_ROBOTS: Models = MappingProxyType({})
+OF_WORLD = "the default topic has the name of the world in it"
+OF_SPAWNER = "the namespace of its model is made of the name that it is spawned by"
+GIVE_TOPIC = "give it a topic in the description, so that a bridge can name it"
+# What a ROS name cannot have, and a word that begins with a digit.
+_NOT_ROS, _NUMBER = lazy_compile(r"[^A-Za-z0-9_/]"), lazy_compile(r"/(?=[0-9])")
 
 
 class BridgedTopic(NamedTuple):
@@ -39,35 +64,36 @@ class BridgedTopic(NamedTuple):
     ros_type: str
     gz_type: str
     direction: str
-
     is_free: bool = False
 
 
 class UnbridgedTopic(NamedTuple):
-    """A topic that cannot be bridged: its gz name depends on the world or the spawner. ``part`` is what
-    that name holds all the same, ``type`` its type where that tells it from others."""
+    """A topic that is not bridged: why, and what to do. ``part`` is what its gz name holds where that
+    is not known, ``type`` its type where that tells it from others."""
 
     robot: str
     line: int
     what: str
+    why: str
+    hint: str = ""
     part: str = ""
     type: str = ""
 
 
-@lru_cache(maxsize=1)
-def bridge_data() -> Mapping[str, Any]:
-    """The data of ``bridge.yaml``."""
-    data: Mapping[str, Any] = load_yaml(own_text(knowledge.__file__, "bridge.yaml"))
-    return data
+Found = BridgedTopic | UnbridgedTopic
 
 
 def bridged_topics(
-    inventories: Mapping[str, Inventory], naming: Naming, names: Sequence[EndpointName] = ()
+    inventories: Mapping[str, Inventory],
+    naming: Naming,
+    models: Models = AS_ROBOTS,
+    names: Sequence[EndpointName] = (),
 ) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
     """Return the bridged topics of a fleet, and those that cannot be bridged.
 
-    ``inventories`` are those of the rewritten descriptions, ``names`` the ends of the robots' nodes: a
-    topic has the type and, where the description does not say it, the name that these have.
+    ``inventories`` are those of the rewritten descriptions, ``models`` what they are spawned as,
+    ``names`` the ends of the robots' nodes: a topic has the type and, where the description does not
+    say it, the name that these have.
     """
     bridged = [
         BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
@@ -75,9 +101,9 @@ def bridged_topics(
     ]
     left: list[UnbridgedTopic] = []
     for robot, inventory in inventories.items():
-        for item in _robot_topics(inventory, robot, naming):
+        for item in _robot_topics(inventory, robot, models.get(robot, robot), naming):
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return [_fitting(it, names) for it in dict.fromkeys(bridged)], left
+    return [_fitting(it, names) for it in dict.fromkeys(bridged)], list(dict.fromkeys(left))
 
 
 def _fitting(topic: BridgedTopic, names: Iterable[EndpointName]) -> BridgedTopic:
@@ -105,7 +131,7 @@ def _pairs(ros_type: str) -> Sequence[str]:
 
 def is_bridged(inventory: Inventory) -> bool:
     """Has a description a topic that is bridged?"""
-    found = _robot_topics(inventory, "robot", make_naming("tf-per-robot"))
+    found = _robot_topics(inventory, "robot", "robot", make_naming("tf-per-robot"))
     return any(isinstance(it, BridgedTopic) for it in found)
 
 
@@ -129,84 +155,135 @@ def is_for_classic(inventory: Inventory) -> bool:
     )
 
 
-def _robot_topics(
-    inventory: Inventory, robot: str, naming: Naming
-) -> Iterator[BridgedTopic | UnbridgedTopic]:
+def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) -> Iterator[Found]:
     elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
-            yield from _sensor(sensor, robot)
-    # With bare frames the spawner must give the model the robot's name, or two models collide.
-    model = model_name(inventory) if "model" in naming.separators else robot
+            yield from _sensor(sensor, robot, inventory.release)
+    made = [it for one in plugin_topics(inventory, robot, model, naming) for it in one.topics]
+    gz_of: dict[str, set[str]] = defaultdict(set)
+    for it in made:
+        if isinstance(it, BridgedTopic):
+            gz_of[it.ros].add(it.gz)
+    for it in made:
+        yield _apart(it, gz_of, model, naming) if isinstance(it, BridgedTopic) else it
+
+
+def _apart(
+    it: BridgedTopic, gz_of: Mapping[str, set[str]], model: str, naming: Naming
+) -> BridgedTopic:
+    """Return a topic with a ROS name of its own where only a system's namespace in Gazebo tells it from
+    another one of the robot."""
+    below = it.gz.removeprefix(_MODELS)
+    is_word = below != it.gz and not below.startswith(f"{model}/")
+    if not is_word or len(gz_of[it.ros]) < 2 or it.ros == _tf_name(it.robot, naming):
+        return it
+    return it._replace(ros=_robot_name(below, it.robot, naming))
+
+
+class PluginTopics(NamedTuple):
+    """A plugin of gz-sim with the topics that it has."""
+
+    plugin: etree._Element
+    topics: tuple[Found, ...]
+
+
+def plugin_topics(
+    inventory: Inventory, robot: str, model: str, naming: Naming
+) -> Iterator[PluginTopics]:
+    """Return the plugins of a description that have topics in Gazebo, each with them."""
     read = any(is_model_namespace(claim.site) for claim in inventory.claims)
+    sections = {it.node.section.names[0] for it in inventory.hosts if it.node.section is not None}
     for host in inventory.hosts:
         section = host.node.section
         below = read and section is not None and bool(section.model_namespace)
         space = scoped_namespace(host.element) if below else ""
-        topics = bridge_data()["plugins"].get(section.names[0] if section else "", ())
-        yield from _plugin(host.element, topics, robot, model, naming, space)
+        rows = rows_of(PLUGINS, section.names[0] if section else "", inventory.release)
+        found = [
+            topic
+            for row in rows
+            if row.unless not in sections and is_there(row, host.element)
+            for topic in _plugin(host.element, row, robot, model, naming, space, inventory.release)
+        ]
+        if found:
+            yield PluginTopics(host.element, tuple(found))
 
 
-def _sensor(sensor: etree._Element, robot: str) -> Iterator[BridgedTopic | UnbridgedTopic]:
+def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]:
     kind = sensor.get("type", "")
-    topics = bridge_data()["sensors"].get(kind, ())
+    rows = rows_of(SENSORS, kind, release)
     loaded = (library_key(it.get("filename", "")) for it in sensor.iterchildren("plugin"))
-    if not topics or not all(it.startswith(GZ_LIBRARIES) for it in loaded if it):
+    if not rows or not all(it.startswith(GZ_LIBRARIES) for it in loaded if it):
         return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
-    base = text_at(sensor, "topic")
+    base, what = text_at(sensor, rows[0].at), f"sensor {sensor.get('name')}"
     if not base:
-        name = sensor.get("name")
-        yield UnbridgedTopic(robot, _line(sensor), f"sensor {name}", f"/sensor/{name}/")
+        part = f"/sensor/{sensor.get('name')}/"
+        yield UnbridgedTopic(robot, _line(sensor), what, OF_WORLD, GIVE_TOPIC, part)
         return
-    for ending, ros_type, gz_type, way in topics:
-        name = f"{base}{ending}"
-        yield BridgedTopic(robot, _ros_name(name), name, ros_type, gz_type, DIRECTIONS[way])
-    yield from _camera_info(sensor, robot, base)
+    for row in (row for row in rows if is_there(row, sensor)):
+        name = f"{base}{row.element}"
+        if why := _why_not(row, release):
+            yield UnbridgedTopic(robot, _line(sensor), what, why, "", name, row.gz_type)
+        else:
+            yield _bridged(row, robot, _ros_name(name), name)
+    if any(row.gz_type == IMAGE for row in rows):
+        yield _camera_info(sensor, robot, base)
 
 
-def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[BridgedTopic]:
-    if "camera" in sensor.get("type", ""):
-        beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
-        name = text_at(sensor, "camera/camera_info_topic") or beside
-        if sensor.get("type") == "rgbd_camera":  # its code uses no other name
-            name = f"{base}/camera_info"
-        types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
-        yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+def _camera_info(sensor: etree._Element, robot: str, base: str) -> BridgedTopic:
+    beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
+    name = text_at(sensor, "camera/camera_info_topic") or beside
+    if sensor.get("type") in _INFO_BELOW:
+        name = f"{base}/camera_info"
+    types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
+    return BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+
+
+def _why_not(row: BridgeRow, release: str) -> str:
+    """Return why a topic is not bridged, empty if it is."""
+    unknown = f"ros_gz_bridge of {release} converts no {row.gz_type}"
+    return row.why or ("" if row.ros_type else unknown)
+
+
+def _bridged(row: BridgeRow, robot: str, ros: str, gz: str) -> BridgedTopic:
+    return BridgedTopic(robot, ros, gz, row.ros_type, row.gz_type, DIRECTIONS[row.way])
 
 
 def _plugin(
     plugin: etree._Element,
-    topics: Iterable[Sequence[str]],
+    row: BridgeRow,
     robot: str,
     model: str,
     naming: Naming,
     space: str | None,
-) -> Iterator[BridgedTopic | UnbridgedTopic]:
-    for element, default, ros_type, gz_type, way in topics:
-        given = _given(plugin, element, default)
-        name = (
-            _below(space, given, default) if space != "" else given or default.format(model=model)
-        )
-        if not name:
-            what = f"<{element}> of {plugin.get('filename')}"
-            yield UnbridgedTopic(robot, _line(plugin), what, type=gz_type)
+    release: str,
+) -> Iterator[Found]:
+    given = given_topic(row, plugin, release)
+    names: Iterable[tuple[str, str]] = [(given, "")]
+    if space != "":
+        below, last = _below(space, given, row.default), row.default.rpartition("/")[2]
+        names = [(below, "" if given else last)]
+    elif not given and row.default:
+        names = default_topics(row, plugin, model)
+    for name, rest in names:
+        unnamed = OF_WORLD if space == "" else OF_SPAWNER
+        if why := _why_not(row, release) if name else unnamed:
+            what = f"{name or f'<{row.element}>'} of {plugin.get('filename')}"
+            hint = "" if name else GIVE_TOPIC
+            yield UnbridgedTopic(robot, _line(plugin), what, why, hint, type=row.gz_type)
             continue
-        ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
-        is_free = not given and ros_type != TF_TYPE
-        if is_free:
-            ros = _robot_name(default.rpartition("/")[2], robot, naming)
+        ros = _ros_of(row, name, rest, robot, naming)
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
-        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way], is_free)
+        is_free = bool(rest) and row.element != TF_ELEMENT
+        yield _bridged(row, whose, ros, name)._replace(is_free=is_free)
 
 
-def _given(plugin: etree._Element, element: str, default: str) -> str:
-    """The topic that a plugin is given; below what another element says where it is made of both."""
-    above, slash, own = element.rpartition("/")
-    if not slash:
-        return text_at(plugin, element)
-    front = text_at(plugin, above)
-    return f"{front}/{text_at(plugin, own) or default}" if front else ""
+def _ros_of(row: BridgeRow, name: str, rest: str, robot: str, naming: Naming) -> str:
+    """Return the ROS name: the robot's own, of what stands below its model, or that of the file."""
+    if row.element == TF_ELEMENT:
+        return _tf_name(robot, naming)
+    return _robot_name(rest, robot, naming) if rest else _ros_name(name)
 
 
 def _below(space: str | None, given: str, default: str) -> str:
@@ -231,7 +308,8 @@ def _tf_name(robot: str, naming: Naming) -> str:
 
 
 def _robot_name(name: str, robot: str, naming: Naming) -> str:
-    """A name as the robot's own topic."""
+    """A name as the robot's own topic, with what ROS takes in one."""
+    name = _NUMBER.sub("_", _NOT_ROS.sub("_", name))
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
     return spelled(naming, robot, "topic", f"/{name}")

@@ -14,7 +14,6 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.bridge_outputs import as_spawned
 from multibot_rewrite.fleet.outputs.given_world import world_topics
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
 from multibot_rewrite.fleet.robots.member import line_of
@@ -71,13 +70,13 @@ def _beside(plan: FleetPlan, robot: RewrittenRobot, own: Sequence[OutputFile]) -
 
 def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
     own = {robot.spec.namespace: robot.member.inventory}
-    topics, _ = bridged_topics(own, plan.fleet.naming)
+    topics, _ = bridged_topics(own, plan.fleet.naming, plan.fleet.models)
     lines = _sensor_lines(robot)
     world = world_topics(plan.file.simulator_world).items()
     of_world = {it: GzTopic(type_, DIRECTIONS["in"] if type_ else "") for it, type_ in world}
     return of_world | {
         (name := f"/{it.gz.lstrip('/')}"): GzTopic(it.gz_type, it.direction, _place(name, lines))
-        for it in as_spawned(topics, [robot])
+        for it in topics
     }
 
 

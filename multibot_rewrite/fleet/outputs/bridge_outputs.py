@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
 import yaml
@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
+from multibot_rewrite.companions.bridge_entry import BOTH, GZ, MODEL_SLOT, ROS
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_blocks import blocks, cut_out, moved
@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     yaml_of,
 )
-from multibot_rewrite.fleet.outputs.spawn import simulators, written_out
+from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
@@ -37,7 +37,6 @@ from multibot_rewrite.spelling.bridged_topics import (
     UnbridgedTopic,
     as_yaml,
     bridged_topics,
-    model_name,
 )
 
 BRIDGE = "bridge.yaml"
@@ -56,8 +55,9 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     Raises InputError for a bridge file that cannot be read or rewritten.
     """
     fleet = plan.fleet
-    topics, unbridged = bridged_topics(fleet.inventories, fleet.naming, fleet.table.names)
-    topics = as_spawned(topics, plan.robots)
+    topics, unbridged = bridged_topics(
+        fleet.inventories, fleet.naming, fleet.models, fleet.table.names
+    )
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:
         for file in files.values():
@@ -120,10 +120,11 @@ NO_TOPIC = declare(
     "MF509",
     "sensor-without-gz-topic",
     WARNING,
-    what="A sensor or plugin of gz-sim has no topic in the description, and its default topic has the "
-    "name of the world in it.",
-    why="The bridge cannot name the topic, so the sensor's data does not arrive in ROS.",
-    fix="Give it a topic in the description.",
+    what="A topic of a sensor or plugin of gz-sim is not bridged. It has none in the description, and "
+    "the default has the name of the world in it. Or ros_gz_bridge of the release does not convert "
+    "its type, or Gazebo of the release never sends anything on it.",
+    why="The bridge cannot name or convert the topic, so the data does not arrive in ROS.",
+    fix="Give it a topic in the description. Otherwise use a sensor or plugin that the bridge knows.",
     bad="""\
 <robot name="rover">
   <link name="base_link"/>
@@ -173,12 +174,9 @@ def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:
 
 
 def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
-    message = (
-        f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
-    )
-    hint = "give it a topic in the description, so that a bridge can name it"
+    message = f"{topic.what} of {topic.robot} is not bridged: {topic.why}"
     line = _line(robot, topic)
-    return NO_TOPIC.finding(message, hint, file=robot.spec.description, line=line)
+    return NO_TOPIC.finding(message, topic.hint, file=robot.spec.description, line=line)
 
 
 # Topics that several gz topics may come out on.
@@ -195,27 +193,6 @@ def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) ->
             f"model {model!r} cannot be part of a gz topic; use letters, digits, _ . and - only"
         )
     return text.replace(MODEL_SLOT, model)
-
-
-def as_spawned(
-    topics: Iterable[BridgedTopic], robots: Iterable[RewrittenRobot]
-) -> list[BridgedTopic]:
-    """The bridged topics of descriptions, with the names that the models are spawned with.
-
-    ``ros_gz_sim create -name`` gives a model another name than its description has; a topic that is
-    written out in it stays.
-    """
-    names = {it.spec.namespace: (it, written_out(it)) for it in robots}
-    return [_spawned(it, *names[it.robot]) if it.robot in names else it for it in topics]
-
-
-def _spawned(it: BridgedTopic, robot: RewrittenRobot, fixed: Container[str]) -> BridgedTopic:
-    # If frames stay bare, the generated name is the robot's, not that of the description.
-    inner = model_name(robot.member.inventory)
-    found = GZ_MODEL.fullmatch(it.gz)
-    if it.gz in fixed or not found or found["model"] not in (inner, robot.spec.namespace):
-        return it
-    return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
 
 
 def merge_bridges(

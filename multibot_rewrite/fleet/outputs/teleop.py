@@ -98,8 +98,9 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
         for end in bridge_ends(yaml_of(path), robot.spec.bridge_namespace_of(path)):
             if end.role == SUBSCRIBES:
                 yield robot_topic(robot.topics, end.name), end.type
-    own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
-    made, _ = bridged_topics(own, plan.fleet.naming, plan.fleet.table.names)
+    fleet = plan.fleet
+    own = {robot.spec.namespace: fleet.inventories[robot.spec.namespace]}
+    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.names)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
 
 

@@ -32,7 +32,8 @@ from multibot_rewrite.fleet.robots.start_pose_rules import (
     POSE_ON_WORLD,
 )
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE, bridge_data
+from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
+from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
 from multibot_rewrite.spelling.table import joined, names_of, node_table
 from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.spelling.ways import ros_arguments
@@ -213,8 +214,8 @@ def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
     """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
     for host in inventory.hosts:
         name = host.node.section.names[0] if host.node.section else ""
-        topics = bridge_data()["plugins"].get(name, ())
-        if any(row[2] == TF_TYPE for row in topics):
+        rows = rows_of(PLUGINS, name, inventory.release)
+        if any(row.element == TF_ELEMENT and not row.why for row in rows):
             given = (text_at(host.element, tag) for tag in ODOMETRY)
             yield next(filter(None, given), f"{model}/odom")
             return

@@ -33,7 +33,7 @@ from multibot_rewrite.companions.yaml_text import items
 from multibot_rewrite.rules.files.examples import a_row
 from multibot_rewrite.rules.files.given import did_you_mean_at
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
-from multibot_rewrite.spelling.bridged_topics import bridge_data
+from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place
 
 _BOTH_WAYS, _IN = DIRECTIONS[:2]

@@ -152,10 +152,10 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
 
     told = into_gazebo(launched)
     models = launched.simulated
-    reached = {kind for it in models for kind, gz in _read(it) if gz in told}
+    reached = {_plain(model, one) for model in models for one in _read(model) if one[1] in told}
     for it in models:
         for kind, gz in _read(it):
-            if gz not in told and kind in reached:
+            if gz not in told and _plain(it, (kind, gz)) in reached:
                 message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
                 hint = "add a row to Gazebo for it, as another model has one"
                 yield at(not_bridged, it.place, message, hint, names=(gz,))
