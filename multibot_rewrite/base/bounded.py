@@ -12,9 +12,10 @@ import errno
 import os
 import re
 import stat
-from collections.abc import Callable, Iterable
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache, partial
 from itertools import accumulate
+from math import radians
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from multibot_rewrite.base.outside import outside
@@ -42,6 +43,9 @@ _TRUTH = [it for word in ("yes", "no", "true", "false", "on", "off") for it in
 _NOTHING = ("", "~", "null", "Null", "NULL")
 # What PyYAML converts without a look at what Python cannot.
 _CONVERTED = ("int", "float", "bool", "timestamp")
+# Tags that launch files and xacro give PyYAML (launch_param_builder utils.py, xacro __init__.py) -> the
+# number that a text is.
+ANGLES: Mapping[str, Callable[[float], float]] = {"!degrees": radians, "!radians": float}
 # A block list or mapping is indented more than the one around it, or the one around that.
 _INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
 _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
@@ -146,7 +150,13 @@ def _loader() -> type[yaml.SafeLoader]:
     for kind in _CONVERTED:
         construct = base.yaml_constructors[_TAG + kind]
         loader.add_constructor(_TAG + kind, _checked(construct, kind))
+    for tag, read in ANGLES.items():
+        loader.add_constructor(tag, _checked(partial(_angle, read), tag))
     return loader  # type: ignore[no-any-return]
+
+
+def _angle(read: Callable[[float], float], loader: Any, node: yaml.Node) -> float:
+    return read(float(loader.construct_scalar(node)))
 
 
 @cache

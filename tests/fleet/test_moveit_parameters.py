@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
 
+from multibot_rewrite import InputError
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
     _plain,
     move_group_parameters,
@@ -125,3 +127,19 @@ def test_values_are_those_that_rcl_takes(value: object, plain: object) -> None:
     """rcl_yaml_param_parser: no null, and a list of one type that is no list."""
     found = _plain(value)
     assert (found, repr(found)) == (plain, repr(plain))
+
+
+def test_an_angle_in_degrees_is_in_radians_as_launch_files_read_it() -> None:
+    """launch_param_builder utils.py: PyYAML has !degrees and !radians; rcl has neither of them."""
+    text = "joint_limits:\n  a: {max_position: !degrees 180, min_position: !radians -1, x: !!float 2}\n"
+    found = parameters_from("", {"config/joint_limits.yaml": text}, "jazzy")
+    limits = found["robot_description_planning"]["joint_limits"]["a"]
+    assert limits == {"max_position": math.pi, "min_position": -1.0, "x": 2.0}
+    assert all(isinstance(it, float) for it in limits.values())
+
+
+@pytest.mark.parametrize("value", ["!foo 3", "!degrees x", "!degrees [1]"])
+def test_a_tag_that_no_launch_file_reads_has_its_line(value: str) -> None:
+    text = f"joint_limits:\n  a:\n    max_position: {value}\n"
+    with pytest.raises(InputError, match="joint_limits.yaml:3: "):
+        parameters_from("", {"joint_limits.yaml": text}, "jazzy")

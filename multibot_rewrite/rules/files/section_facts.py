@@ -5,11 +5,11 @@ file of MoveIt as the parameters that it becomes."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import radians
 from typing import cast
 
 import yaml
 
+from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -31,8 +31,7 @@ from multibot_rewrite.rules.files.parameter_facts import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
 
 ASKED = "asked"
-_FLOAT, _DEGREES = "tag:yaml.org,2002:float", "!degrees"
-_ANGLES = (_DEGREES, "!radians")
+_FLOAT = "tag:yaml.org,2002:float"
 
 
 class Given(NamedTuple):
@@ -199,13 +198,11 @@ def _tagged(node: yaml.Node, value: Value | None) -> Value | None:
     if isinstance(node, yaml.SequenceNode) and isinstance(value, list):
         each = [_tagged(it, one) for it, one in zip(node.value, value, strict=True)]
         return None if None in each else cast("Value", each)
-    if node.tag not in _ANGLES and not (node.tag == _FLOAT and isinstance(value, int)):
-        return value
+    read = float if node.tag == _FLOAT and isinstance(value, int) else ANGLES.get(node.tag)
     try:
-        number = float(str(node.value))
+        return read(float(str(node.value))) if read else value
     except ValueError:
         return None
-    return radians(number) if node.tag == _DEGREES else number
 
 
 def _value(document: YamlText, node: yaml.Node) -> Value | None:
