@@ -196,22 +196,35 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]
             target = f"/{wanted}" if naming.topics == NAMESPACE else moved
         else:
             target = _below(wanted, naming, others)
-            target = target or target_of(wanted, kind, robot, naming) or moved
+            target = target or _renamed_target(wanted, kind, place) or moved
             target = target or _shared(wanted, place)
         if target:
             yield source, f"{'' if target[0] == '/' else root}{target}", moved
         # What a node joins with the namespace above is no name of its own namespace.
         for joined in asked_for(source, endpoint, namespace)[1:]:
             if naming.topics != NAMESPACE:
-                yield from [(joined, f"/{target.lstrip('/')}", moved)] * bool(target)
+                above = target_of(wanted, kind, robot, naming) or target
+                yield from [(joined, f"/{above.lstrip('/')}", moved)] * bool(target)
             elif (target or wanted).startswith("/") and joined != (target or wanted):
                 yield joined, target or wanted, moved
 
 
+def _renamed_target(name: str, kind: str, place: _Place) -> str:
+    """Return the target with the robot's name; of a name below the node's own place that of the whole
+    name, as other nodes have it."""
+    if not _is_below_root(name, place):
+        return target_of(name, kind, place.robot, place.naming)
+    found = target_of(f"{place.root[1:]}{name}", kind, place.robot, place.naming)
+    return found and f"/{found}"
+
+
 def _shared(name: str, place: _Place) -> str:
     """A name that all robots share, for a node that would look for it in its robot's namespace."""
-    inside = place.root and place.naming.topics != NAMESPACE
-    return name if inside and name[0] not in "~/" else ""
+    return name if _is_below_root(name, place) else ""
+
+
+def _is_below_root(name: str, place: _Place) -> bool:
+    return bool(place.root) and place.naming.topics != NAMESPACE and name[0] not in "~/"
 
 
 def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
