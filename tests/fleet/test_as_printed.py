@@ -68,7 +68,7 @@ def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
 OTHER = RobotStarts(
     "arm", "arm.urdf", "the root namespace", (),
     (Start("slam_toolbox", "async", brought_up=True), Start("p", "e", arguments=("it's", '"{x}"'))),
-    (), (),
+    (), (), clock=False,
 )  # fmt: skip
 ALL = FleetStarts(
     "Three robots.",
@@ -216,6 +216,24 @@ def test_robots_may_be_called_like_a_word_of_the_file(
     assert differences(made.starts, launch_of(made), tmp_path / "out") == []
     models = [it.spawned[0].arguments[1] for it in made.starts.robots]
     assert models == [f"{it}_m{at}" for at, it in enumerate(names)]
+
+
+@pytest.mark.more
+def test_a_robot_has_its_own_clock_where_not_all_have_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = "  - {name: r1, use_sim_time: false}\n  - {name: r2, pose: {x: 3}}\n"
+    text = f"layout: tf-per-robot\ndistro: jazzy\ndescription: rover.urdf\nrobots:\n{rows}"
+    made = in_folder(tmp_path, text)
+    assert [it.clock for it in made.starts.robots] == [False, None]
+    assert differences(made.starts, launch_of(made), tmp_path / "made") == []
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    assert "MG132" not in capsys.readouterr().err
+    python = (out / "fleet.launch.py").read_text()
+    of_first = python[python.index("def start_r1") : python.index("def start_r2")]
+    assert "CLOCK" not in of_first and "{'use_sim_time': False}" in of_first
+    assert "CLOCK" in python[python.index("def start_r2") :]
 
 
 @pytest.mark.deep

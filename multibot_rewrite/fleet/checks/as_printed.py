@@ -90,6 +90,13 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     ]
 
 
+class _Around(NamedTuple):
+    """What the processes of a robot have in common: their environment and their clock."""
+
+    environment: Mapping[str, str]
+    clock: bool
+
+
 class _Planned(NamedTuple):
     """What a fleet is to start in one launch; ``home`` is the folder of the build."""
 
@@ -114,15 +121,15 @@ class _Planned(NamedTuple):
         others = [it for it in self.starts.shared if not self.is_bridge(it)]
         shared = [*(of_simulator if simulated else ()), *others]
         opened = self.starts.windows if self.is_on("rviz") else ()
-        environment, number = self.environment(""), 0
+        of_all, number = self.around("", None), 0
         for it in shared:
-            yield from self.process(it, environment, number)
+            yield from self.process(it, of_all, number)
         for robot in self.chosen():
             for one in self.of_robot(robot, number):
                 number += one.kind == "LifecycleNode"
                 yield one
         for it in opened:
-            yield from self.process(it, environment, number)
+            yield from self.process(it, of_all, number)
 
     def is_on(self, argument: str) -> bool:
         """Is a launch argument that switches something true?"""
@@ -140,24 +147,25 @@ class _Planned(NamedTuple):
         wanted = word.split(",")
         return [it for it in self.starts.robots if not word or it.name in wanted]
 
-    def environment(self, robot: str) -> dict[str, str]:
-        """Return the environment of a robot's processes, or of those for all (empty)."""
+    def around(self, robot: str, clock: bool | None) -> _Around:
+        """Return what the processes of a robot have, or those for all (empty)."""
         domains = self.starts.domains
-        return {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
+        environment = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
+        return _Around(environment, self.is_on("use_sim_time") if clock is None else clock)
 
     def of_robot(self, it: RobotStarts, number: int) -> Iterator[Action]:
         """Yield what one robot does; ``number`` is that of its first node with a life cycle."""
-        environment = self.environment(it.name)
+        around = self.around(it.name, it.clock)
         bridged = it.bridged_tf if self.launch.installed else ()
         spawned = it.spawned if self.is_on("simulator") else ()
         opened = it.windows if self.is_on("rviz") else ()
         for start in it.starts:
-            yield from self.process(start, environment, number)
+            yield from self.process(start, around, number)
             number += start.brought_up
         if it.bridged_tf and not self.launch.installed:
             yield Action("LogInfo", {"msg": it.not_bridged})
         for start in (*bridged, *spawned, *opened):
-            yield from self.process(start, environment, number)
+            yield from self.process(start, around, number)
 
     def simulator(self, name: str) -> Action:
         """Return the include that starts a simulator."""
@@ -170,19 +178,21 @@ class _Planned(NamedTuple):
         values = {"launch_description_source": source, "launch_arguments": given}
         return Action("IncludeLaunchDescription", values)
 
-    def process(self, it: Start, environment: Mapping[str, str], number: int) -> Iterator[Action]:
+    def process(self, it: Start, around: _Around, number: int) -> Iterator[Action]:
         """Yield a process; one that is brought up is configured, then activated."""
         kind = "ComposableNodeContainer" if it.components else "Node"
         values = {
             "package": it.package,
             "executable": it.executable,
-            **self.node(it),
+            **self.node(it, around.clock),
             "arguments": [self.value(word) for word in it.arguments],
             "output": "screen",
-            "composable_node_descriptions": [self.component(one) for one in it.components],
+            "composable_node_descriptions": [
+                self.component(one, around.clock) for one in it.components
+            ],
         }
         told = {name: one for name, one in values.items() if one}
-        told["environment"] = dict(environment)
+        told["environment"] = dict(around.environment)
         yield Action("LifecycleNode" if it.brought_up else kind, told)
         if it.brought_up:
             entities = [{"event": _change(number, _ACTIVATE)}]
@@ -190,19 +200,18 @@ class _Planned(NamedTuple):
             yield Action("RegisterEventHandler", {**target, **_CONFIGURED})
             yield Action("EmitEvent", {"event": _change(number, _CONFIGURE)})
 
-    def component(self, it: Component) -> dict[str, Any]:
+    def component(self, it: Component, clock: bool) -> dict[str, Any]:
         """Return the values of a component."""
         names = {"namespace": "node_namespace", "name": "node_name"}
-        own = {names.get(key, key): one for key, one in self.node(it).items()}
+        own = {names.get(key, key): one for key, one in self.node(it, clock).items()}
         return {"package": it.package, "node_plugin": it.plugin, **own}
 
-    def node(self, it: Start | Component) -> dict[str, Any]:
+    def node(self, it: Start | Component, clock: bool) -> dict[str, Any]:
         """Return what a process and a component have in common."""
-        clock = {"use_sim_time": self.is_on("use_sim_time")}
         values = {
             "namespace": it.namespace,
             "name": it.name,
-            "parameters": [*(self.value(one) for one in it.parameters), clock],
+            "parameters": [*(self.value(one) for one in it.parameters), {"use_sim_time": clock}],
             "remappings": [[old, new] for old, new in it.remappings],
         }
         return {name: one for name, one in values.items() if one}

@@ -77,7 +77,7 @@ def of_any(text: str, robot: str) -> str:
 def _kind(it: RobotStarts) -> object:
     """Return all of a robot but for the texts of its own."""
     left = tuple((name, of_any(why, it.name)) for name, why in it.left)
-    return left, _shape([getattr(it, field) for field in _VALUES])
+    return left, it.clock, _shape([getattr(it, field) for field in _VALUES])
 
 
 def _shape(it: Any, field: str = "") -> object:

@@ -36,8 +36,11 @@ def fleet_starts(
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
     simulators = spawn.simulators(plan)
-    clocks = {it.spec.use_sim_time for it in plan.robots}
-    clock = clocks.pop() if len(clocks) == 1 else None
+    clocks = {it.spec.name: it.spec.use_sim_time for it in plan.robots}
+    first, *others = {*clocks.values()}
+    if others:
+        robots = [it._replace(clock=clocks[it.name]) for it in robots]
+    clock = None if others else first
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
     opened = list(launch_actions.windows(configs, paths))

@@ -8,7 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from textwrap import wrap
 
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
-from multibot_rewrite.fleet.launch.python_actions import comment, group, lines, process, value
+from multibot_rewrite.fleet.launch.python_actions import (
+    OF_ALL,
+    comment,
+    group,
+    lines,
+    process,
+    value,
+)
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
@@ -211,9 +218,12 @@ def _robot(it: RobotStarts) -> Iterator[str]:
             text = comment(f"Not started: {name} ({why})")
             rows = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
             yield from (f"    # {row}" for row in rows)
-    own = tuple(File(path) for path in it.files)
-    if own:
-        yield from (f"    {line}" for line in lines("params = ", [*own]))
+    files = tuple(File(path) for path in it.files)
+    if files:
+        yield from (f"    {line}" for line in lines("params = ", [*files]))
+    own = OF_ALL._replace(files=files)
+    if it.clock is not None:
+        own = own._replace(clock={"use_sim_time": it.clock})
     yield "    return ["
     for start in it.starts:
         yield from process(start, 8, own)
@@ -223,11 +233,11 @@ def _robot(it: RobotStarts) -> Iterator[str]:
         yield f"            {value(it.not_bridged)},"
         yield "            ["
         for start in it.bridged_tf:
-            yield from process(start, 16)
+            yield from process(start, 16, own)
         yield "            ],"
         yield "        ),"
-    yield from group(it.spawned, "simulator", 8)
-    yield from group(it.windows, "rviz", 8)
+    yield from group(it.spawned, "simulator", 8, own)
+    yield from group(it.windows, "rviz", 8, own)
     yield "    ]"
 
 

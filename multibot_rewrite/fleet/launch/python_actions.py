@@ -7,15 +7,28 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
 from multibot_rewrite.fleet.launch.starts import Component, File, Start, Text
 
-_Files = tuple[File, ...]
 # What stays in one line.
 _SHORT = 66
 
 
-def group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
+class OfRobot(NamedTuple):
+    """What the nodes of a robot have in common: the files that its function calls ``params``, and the
+    parameter of their clock."""
+
+    files: tuple[File, ...] = ()
+    clock: Any = Code("CLOCK")
+
+
+OF_ALL = OfRobot()
+
+
+def group(
+    starts: Sequence[Start], argument: str, indent: int, own: OfRobot = OF_ALL
+) -> Iterator[str]:
     """Yield what is started where a launch argument is true."""
     if not starts:
         return
@@ -23,14 +36,14 @@ def group(starts: Sequence[Start], argument: str, indent: int) -> Iterator[str]:
     yield f"{space}GroupAction("
     yield f"{space}    ["
     for start in starts:
-        yield from process(start, indent + 8)
+        yield from process(start, indent + 8, own)
     yield f"{space}    ],"
     yield f"{space}    condition=IfCondition(LaunchConfiguration({value(argument)})),"
     yield f"{space}),"
 
 
-def process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> Iterator[str]:
-    """Yield a node; ``own`` are the files that the robot's function calls ``params``."""
+def process(it: Start, indent: int, own: OfRobot = OF_ALL, action: str = "Node") -> Iterator[str]:
+    """Yield a node."""
     space = " " * indent
     if it.brought_up:
         yield f"{space}*brought_up("
@@ -47,7 +60,7 @@ def process(it: Start, indent: int, own: _Files = (), action: str = "Node") -> I
     yield f"{space}),"
 
 
-def _keywords(it: Start, own: _Files) -> Iterator[str]:
+def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
     yield f"package={value(it.package)},"
     yield f"executable={value(it.executable)},"
     yield from _names(it.namespace, it.name)
@@ -67,12 +80,12 @@ def _names(namespace: str, name: str) -> Iterator[str]:
 def _given(
     parameters: Sequence[File | Mapping[str, Any]],
     remappings: Iterable[tuple[str, str]],
-    own: _Files,
+    own: OfRobot,
 ) -> Iterator[str]:
-    common = bool(own) and tuple(parameters[: len(own)]) == own
+    common = bool(own.files) and tuple(parameters[: len(own.files)]) == own.files
     first = [Code("*params")] if common else []
-    rest = parameters[len(own) * common :]
-    yield from lines("parameters=", [*first, *rest, Code("CLOCK")], ",")
+    rest = parameters[len(own.files) * common :]
+    yield from lines("parameters=", [*first, *rest, own.clock], ",")
     pairs = list(remappings)
     if pairs:
         yield "remappings=["
@@ -114,7 +127,7 @@ def _pairs(words: Iterable[str | File]) -> Iterator[Code]:
         yield Code(flag)
 
 
-def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
+def _component(it: Component, indent: int, own: OfRobot) -> Iterator[str]:
     space = " " * indent
     yield f"{space}ComposableNode("
     yield f"{space}    package={value(it.package)},"

@@ -71,7 +71,8 @@ class RobotStarts(NamedTuple):
     ``files`` are its parameter files, ``spawned`` is what brings it into the simulator,
     ``left`` are nodes that are not started, each with the reason. ``bridged_tf`` brings its tf to
     ``/tf`` where tf_namespace_bridge is installed, otherwise ``not_bridged`` is said. ``windows`` show
-    this robot alone. ``nodes`` are the full names of those that are started."""
+    this robot alone. ``nodes`` are the full names of those that are started, ``clock`` is its
+    ``use_sim_time`` where not all robots have the same."""
 
     name: str
     description: str
@@ -84,6 +85,7 @@ class RobotStarts(NamedTuple):
     not_bridged: str = ""
     windows: tuple[Start, ...] = ()
     nodes: tuple[str, ...] = ()
+    clock: bool | None = None
 
     @property
     def every(self) -> tuple[Start, ...]:
