@@ -14,8 +14,8 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.settings import LEFT_OUT
 
-# What has no effect in this simulator and this ROS, and a joint that is not found there.
-_NO_EFFECT = ("MB163", "MB211")
+# What has no effect in this simulator and this ROS, a joint that is not found there, and two senders.
+_NO_EFFECT = ("MB163", "MB211", "MB243")
 # Names, inertias and systems that only a simulator refuses.
 _OF_SIMULATOR = ("MB160", "MB305", "MB306", "MB606", "MB624")
 # A robot without a shape runs, and whether its file is there depends on the machine.

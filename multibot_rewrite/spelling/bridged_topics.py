@@ -160,13 +160,17 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
             yield from _sensor(sensor, robot, inventory.release)
-    made = [it for one in plugin_topics(inventory, robot, model, naming) for it in one.topics]
+    plugins = list(plugin_topics(inventory, robot, model, naming))
     gz_of: dict[str, set[str]] = defaultdict(set)
-    for it in made:
-        if isinstance(it, BridgedTopic):
-            gz_of[it.ros].add(it.gz)
-    for it in made:
-        yield _apart(it, gz_of, model, naming) if isinstance(it, BridgedTopic) else it
+    # Two systems with one topic have one row, that for tf where one of them is for it; MB243 warns.
+    row_of: dict[str, BridgedTopic] = {}
+    for topic in (it for plugin in plugins for it in plugin.topics):
+        gz_of[topic.ros].add(topic.gz)
+        if topic.gz not in row_of or topic.ros == _tf_name(robot, naming):
+            row_of[topic.gz] = topic
+    yield from (_apart(it, gz_of, model, naming) for it in row_of.values())
+    for plugin in plugins:
+        yield from plugin.left
 
 
 def _apart(
@@ -182,16 +186,17 @@ def _apart(
 
 
 class PluginTopics(NamedTuple):
-    """A plugin of gz-sim with the topics that it has."""
+    """A plugin of gz-sim with its topics that are bridged, and those that are not."""
 
     plugin: etree._Element
-    topics: tuple[Found, ...]
+    topics: tuple[BridgedTopic, ...]
+    left: tuple[UnbridgedTopic, ...]
 
 
 def plugin_topics(
     inventory: Inventory, robot: str, model: str, naming: Naming
 ) -> Iterator[PluginTopics]:
-    """Return the plugins of a description that have topics in Gazebo, each with them."""
+    """Yield the plugins of a description that have topics in Gazebo."""
     read = any(is_model_namespace(claim.site) for claim in inventory.claims)
     sections = {it.node.section.names[0] for it in inventory.hosts if it.node.section is not None}
     for host in inventory.hosts:
@@ -205,8 +210,10 @@ def plugin_topics(
             if row.unless not in sections and is_there(row, host.element)
             for topic in _plugin(host.element, row, robot, model, naming, space, inventory.release)
         ]
+        bridged = tuple([it for it in found if isinstance(it, BridgedTopic)])
+        left = tuple([it for it in found if isinstance(it, UnbridgedTopic)])
         if found:
-            yield PluginTopics(host.element, tuple(found))
+            yield PluginTopics(host.element, bridged, left)
 
 
 def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]:

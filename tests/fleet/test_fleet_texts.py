@@ -25,7 +25,7 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
-from multibot_rewrite.fleet.outputs.bridge_outputs import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic
 from multibot_rewrite.spelling.bridged_topics import bridged_topics as generated_bridge
@@ -205,8 +205,9 @@ def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> None:
     plan = fleet(layout, body=DRIVE)
-    carried, _ = generated_bridge(plan.fleet.inventories, plan.fleet.naming)
-    found = [it.gz for it in as_spawned(carried, plan.robots) if it.gz.startswith("/model/")]
+    made = plan.fleet
+    carried, _ = generated_bridge(made.inventories, made.naming, made.models)
+    found = [it.gz for it in carried if it.gz.startswith("/model/")]
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
@@ -222,8 +223,9 @@ def test_topics_of_a_model_of_sdf_follow_it_too(
     robots = "robots:\n- {name: r1}\n- {name: r2, namespace: two, model: second}\n"
     Path("fleet.yaml").write_text(f"layout: {layout}\naffix: {side}\ndescription: x1.sdf\n{robots}")
     plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
-    carried, _ = generated_bridge(plan.fleet.inventories, plan.fleet.naming)
-    found = [it.gz for it in as_spawned(carried, plan.robots) if it.gz.startswith("/model/")]
+    made = plan.fleet
+    carried, _ = generated_bridge(made.inventories, made.naming, made.models)
+    found = [it.gz for it in carried if it.gz.startswith("/model/")]
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 

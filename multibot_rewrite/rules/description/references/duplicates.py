@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     "duplicate-name",
     ERROR,
     what="Two things of one kind have the same name: links, joints and materials of a robot, "
-    "sensors of a link, <ros2_control> elements, nodes of plugins. It is a warning for "
+    "sensors of a link and of the links that fixed joints merge into it, <ros2_control> elements, nodes of plugins. It is a warning for "
     "transmissions, and for the joints, sensors and gpios of one <ros2_control>. So it is for a "
     "system of Gazebo that is loaded again with the same parameters.",
     why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
@@ -108,18 +108,21 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
 
 
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
-    """Sensors in blocks for one link."""
+    """Sensors in blocks for one link, or for links that fixed joints merge into one in Gazebo."""
     root = subject.document.root
     inside = ((it.getparent(), it) for it in subject.elements.every("sensor"))
+    bodies = subject.robot.body
     sensors = (
-        ((block.get("reference"), name_of(it)), it)
+        ((bodies.get(link := block.get("reference", ""), link), name_of(it)), it)
         for block, it in inside
         if block is not None and block.tag == "gazebo" and block.getparent() is root
         if block.get("reference") and name_of(it)
     )
     for it in _repeated(sensors):
-        link = it.getparent().get("reference")  # type: ignore[union-attr]
-        message = f"{link!r} has another sensor {name_of(it)!r}"
+        link = it.getparent().get("reference", "")  # type: ignore[union-attr]
+        body = bodies.get(link, link)
+        merged = "" if body == link else f", into which fixed joints merge {link!r},"
+        message = f"{body!r}{merged} has another sensor {name_of(it)!r}"
         yield Problem(it, message, "name", "rename one")
 
 

@@ -10,10 +10,12 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous
 from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.rules.description.examples import a_link
 from multibot_rewrite.rules.description.examples import block as a_block
 from multibot_rewrite.rules.subject import Subject
 
+_SYSTEM = '<plugin filename="gz-sim-{0}-system" name="gz::sim::systems::{1}">{2}</plugin>'
 _OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags.
@@ -155,3 +157,40 @@ def topic_of_two_sensors(subject: Subject) -> Iterator[Problem]:
         other = first.setdefault(topic, name)
         if other != name:
             yield Problem(element, f"sensors {other!r} and {name!r} have one topic, {topic!r}", "")
+
+
+def _two_systems(topic: str) -> str:
+    one = _SYSTEM.format("diff-drive", "DiffDrive", "")
+    two = _SYSTEM.format("odometry-publisher", "OdometryPublisher", topic)
+    return a_link("a") + a_block("<gazebo>", one, two)
+
+
+@rule(
+    "MB243",
+    "topic-of-two-systems",
+    WARNING,
+    what="Two systems of Gazebo in a robot send on the same topic, one that they are given or their "
+    "default.",
+    why="Readers get the data of both in turn: the odometry of one jumps to that of the other, or tf has "
+    "the poses of links among the odometry. If the two send different types, gz-transport refuses one.",
+    fix="Give one of them a topic of its own.",
+    bad=_two_systems(""),
+    good=_two_systems("<odom_topic>ground_truth</odom_topic>"),
+    line=4,
+)
+def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
+    """Yield each system that sends on a topic which an earlier one has."""
+    from multibot_rewrite.base.naming import make_naming
+    from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, model_name, plugin_topics
+
+    inventory = subject.inventory
+    model = model_name(inventory) or "MODEL"
+    senders: dict[str, str] = {}
+    for plugin, topics, _ in plugin_topics(inventory, model, model, make_naming("tf-per-robot")):
+        own = {f"/{it.gz.lstrip('/')}" for it in topics if it.direction == DIRECTIONS["in"]}
+        who = library_key(plugin.get("filename", ""))
+        for topic in sorted(own):
+            if topic in senders:
+                message = f"{who} sends on {topic!r}, and so does {senders[topic]}"
+                yield Problem(plugin, message, None, "give one of them a topic of its own")
+            senders.setdefault(topic, who)
