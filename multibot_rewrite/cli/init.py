@@ -14,6 +14,7 @@ from io import StringIO
 from itertools import pairwise
 from typing import TypeVar
 
+from multibot_rewrite.base.editors import FLEET
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS, find_layout
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
@@ -60,8 +61,8 @@ def run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
-    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it.trust))
-    done = _deliver(options, whole)
+    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
+    done = _deliver(options, whole, wanted.file)
     if made.others:
         note(options, _one_of_several(made))
     return done
@@ -80,7 +81,7 @@ def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
 
 def _wanted(options: argparse.Namespace) -> Wanted:
     """What the options say."""
-    return Wanted(
+    wanted = Wanted(
         tuple(plain_words(options)) or (os.curdir,),
         len(options.robots) or options.count or 0,
         xacro_args(options),
@@ -91,6 +92,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         tuple(options.robots),
         simulator=options.simulator or "",
     )
+    return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 
 def _check_names(options: argparse.Namespace) -> None:
@@ -108,13 +110,11 @@ def _check_output(options: argparse.Namespace) -> None:
         )
 
 
-def _deliver(options: argparse.Namespace, made: Proposal) -> int:
-    folder = os.path.dirname(options.output) if goes_to_file(options) else ""
-    name = os.path.basename(options.output) if goes_to_file(options) else "fleet.yaml"
-    text = text_of(made, folder or os.curdir, name)
+def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
+    text = text_of(made, file)
     if options.verbose and goes_to_file(options):
         sys.stdout.write(text)
-    deliver(options, text.encode())
+    deliver(options, text.encode(), FLEET)
     for line in made.notes:
         say(line, PROGRAM)
     robots = sum(len(it.names) for it in made.members)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A proposal -> the text of its fleet file, with the reason of each key as a comment, and as data."""
+"""A proposal -> the text of its fleet file, with the reason of each key as a comment."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 from typing import Any
 
-from multibot_rewrite.base.editors import FLEET, schema_line
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
@@ -19,21 +19,14 @@ from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 MOST = 10
 
 
-def data_of(it: Proposal, folder: str) -> dict[str, Any]:
-    """The fleet as the file has it; ``folder`` is where the file will be, paths are relative to it."""
-    keys = {key: choice.value for key, choice in it.keys.items()}
-    common = {key: value for key, (value, _) in _common(it, folder).items()}
-    return {**keys, **common, "robots": list(_robots(it, folder))}
-
-
-def text_of(it: Proposal, folder: str, name: str) -> str:
-    """The text of the file, which will be called ``name``."""
-    lines = _lines(it, folder, name)
+def text_of(it: Proposal, file: str) -> str:
+    """Return the text of the fleet file that will be at the path ``file``: what it names is relative to
+    its folder."""
+    lines = _lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 
 
 def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
-    yield schema_line(FLEET, folder)
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"
@@ -107,9 +100,7 @@ def _block(key: str, value: Any) -> Iterator[str]:
 
 
 def _flow(value: Any) -> str:
-    import yaml
-
-    text = yaml.safe_dump(value, default_flow_style=True, width=inf, sort_keys=False)
+    text = fleet_yaml(value, default_flow_style=True, width=inf)
     return text.removesuffix("\n").removesuffix("\n...")
 
 

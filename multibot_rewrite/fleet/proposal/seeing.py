@@ -51,7 +51,8 @@ class Wanted(NamedTuple):
     """What is asked for: files and folders, robots of each description or their names, values of xacro
     arguments, the release and whether somebody named it, a layout if not the one that the files are
     made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
-    simulator or "none" if not what the files are for. ``tell`` is told what is looked at."""
+    simulator or "none" if not what the files are for. ``file`` is the fleet file to be written,
+    ``tell`` is told what is looked at."""
 
     paths: tuple[str, ...]
     each: int
@@ -63,6 +64,7 @@ class Wanted(NamedTuple):
     names: tuple[str, ...] = ()
     apart: float = 0.0
     simulator: str = ""
+    file: str = "fleet.yaml"
     tell: Callable[[str], None] = _silent
 
 
