@@ -38,6 +38,8 @@ from multibot_rewrite.fleet.proposal.trying import (
 )
 
 SIMULATORS = ("gazebo", "none")
+# Descriptions that cannot be read, and are named on the terminal; the fleet file has all.
+MOST_BROKEN = 3
 LEFT_OUT, NONE = "it was left out", "none"
 _T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -62,9 +64,13 @@ def run(options: argparse.Namespace) -> int:
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
     whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
+    others = tuple(it for it in whole.others if it not in seen.broken)
+    whole = whole._replace(broken=seen.broken, others=others)
     done = _deliver(options, whole, wanted.file)
-    if made.others:
-        note(options, _one_of_several(made))
+    for path, fault in [*seen.broken.items()][:MOST_BROKEN]:
+        say(f"{path} was not used: {fault}", PROGRAM)
+    if others:
+        note(options, _one_of_several(whole))
     return done
 
 

@@ -51,11 +51,13 @@ class Undecided(UsageError):
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many launch files load it, how many of its names the
-    files beside it have; ``part`` is whether it is called like a part."""
+    """A description and what speaks for it: how many launch files load it, whether its package is named
+    after it, how many of its names the files beside it have; ``part`` is whether it is called like a
+    part."""
 
     robot: Looked
     launched: int
+    of_package: bool
     named: int
     part: bool
     links: frozenset[str]
@@ -137,24 +139,44 @@ def acts(it: Looked) -> bool:
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
     links, moving = frozenset(_links(it)), frozenset(_moving(it))
-    part = _PART.search(_stem(it.path).lower()) is not None
     return Candidate(
-        it, launches_of(it.path, found), len(said & (links | moving)), part, links, moving
+        it,
+        launches_of(it.path, found),
+        names_its_package(it.path),
+        len(said & (links | moving)),
+        is_called_like_a_part(it.path),
+        links,
+        moving,
     )
 
 
+def is_called_like_a_part(path: str) -> bool:
+    """Return whether the name of a description is that of a part of a robot, such as a gripper."""
+    return _PART.search(_stem(path).lower()) is not None
+
+
+def names_its_package(path: str) -> bool:
+    """Return whether the package of a description is named after it, as tetra_description or acme_tetra
+    after tetra.xacro."""
+    words = _package(path).lower().split("_")
+    inner = (words, words[:-1], words[1:], words[1:-1])
+    return _stem(path).lower() in {"_".join(it) for it in inner} - {""}
+
+
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, launched, named; then what is no copy, for a simulator, has ``<ros2_control>``, a short
-    path."""
+    """By kind, launched, of its package, named; then what is no copy, for a simulator, has
+    ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
-    return *it.kind, not it.launched, -it.named, *more
+    return *it.kind, not it.launched, not it.of_package, -it.named, *more
 
 
 def _is_behind(it: Candidate, best: Candidate) -> bool:
     if it.kind != best.kind or (it.moving < best.moving and not it.launched):
         return True
+    if it.of_package != best.of_package and it.launched == best.launched:
+        return best.of_package
     if best.launched and not it.launched:
         return True
     return best.launched >= it.launched and best.share > _MORE * it.share

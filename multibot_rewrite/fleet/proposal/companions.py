@@ -88,7 +88,7 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     files["params"] = tuple(sections)
     srdf = next(iter(_best_known(robot, found.srdf)), "")
     left |= {it: "another SRDF was taken" for it in found.srdf if it != srdf}
-    others = moveit_of_others(srdf, every) if srdf else {}
+    others = moveit_of_others(robot, srdf, every) if srdf else {}
     left |= others
     files["moveit"] = tuple(_moveit(robot, found, srdf, left)) if srdf else ()
     nodes = {name: path for path, names in sections.items() for name in names}

@@ -10,6 +10,7 @@ from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
@@ -44,14 +45,14 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
-    refused = {_shown(path, folder) for path in it.refused}
+    first = {_shown(path, folder) for path in (*it.refused, *it.broken)}
     if left:
         yield ""
         yield "# Found beside them and not taken:"
         home = os.path.relpath(it.members[0].looked.path, folder)
         rows = sorted(
             left.items(),
-            key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
+            key=lambda row: (row[0] not in first, os.path.relpath(row[0], home).count(".."), row),
         )
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
     if it.launched.rest:
@@ -74,13 +75,20 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
-    for path, why in it.refused.items():
+    """Yield what was refused, what cannot be read, and the files of the robots' packages that no robot
+    has, each with the reason."""
+    for path, why in {**it.refused, **it.broken}.items():
         yield _shown(path, folder), why
-    for path in it.others:
-        yield os.path.relpath(path, folder), "another description"
+    taken = {
+        path for member in it.members for path in (*member.looked.files, *member.companions.paths)
+    }
+    packages = {*map(package_of, taken)}
+    left = dict.fromkeys(it.others, "another description")
     for member in it.members:
-        for path, why in member.companions.left.items():
-            yield os.path.relpath(path, folder), why
+        left |= member.companions.left
+    for path in left.keys() - taken - it.broken.keys():
+        if package_of(path) in packages:
+            yield os.path.relpath(path, folder), left[path]
 
 
 def _shown(path: str, folder: str) -> str:

@@ -34,7 +34,9 @@ IN_FLEET = os.path.join("some", "fleet.yaml", "values.yaml")
 )  # fmt: skip
 def test_the_file_that_has_an_error(file: str, line: str, blamed: tuple[str, str] | None) -> None:
     """A description is the robot itself."""
-    assert list(trying._blamed(MADE, [(file, line)], "some/fleet.yaml")) == ([blamed] if blamed else [])
+    assert list(trying._blamed(MADE, [(file, line)], "some/fleet.yaml")) == (
+        [blamed] if blamed else []
+    )
 
 
 @pytest.mark.parametrize(
