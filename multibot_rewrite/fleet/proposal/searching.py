@@ -144,7 +144,7 @@ def _files(folder: str) -> Iterator[str]:
             if seen > MOST_FILES:
                 hint = "name the folder of one package"
                 raise UsageError(f"{folder}: it has more than {MOST_FILES} files; {hint}")
-            if name.endswith(_ENDS):
+            if name.endswith(_ENDS) and name[0] != ".":
                 yield os.path.normpath(os.path.join(above, name))
 
 
