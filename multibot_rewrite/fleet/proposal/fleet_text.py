@@ -59,12 +59,20 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield ""
         yield "# Launch files give nodes more than this fleet has: write the values into params;"
         yield "# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
-        rest = it.launched.rest
-        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in rest)
+        yield from _placed(it.launched.rest, folder)
+    if it.launched.not_started:
+        yield ""
+        yield "# Launch files start nodes that this fleet does not. With `launch: FILE` in place of"
+        yield "# `stack`, each robot runs all that the file starts:"
+        yield from _placed(it.launched.not_started, folder)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+
+
+def _placed(rows: Iterable[tuple[str, int, str]], folder: str) -> Iterator[str]:
+    return _capped(f"{os.path.relpath(file, folder)}:{at}: {text}" for file, at, text in rows)
 
 
 def _capped(lines: Iterable[str]) -> Iterator[str]:

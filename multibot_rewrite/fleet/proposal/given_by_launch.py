@@ -32,15 +32,21 @@ _DESCRIPTION = "robot_description"
 _LONGEST = 80
 # What the values of launch files are called where they are refused.
 VALUES = "values of launch files"
+# Programs that a build starts itself, and those that only show something.
+_USUAL_PROGRAMS = frozenset((
+    "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "create", "spawner",
+    "spawn_entity.py", "parameter_bridge", "gzserver", "gzclient", "rviz2", "rqt", "rqt_gui",
+))  # fmt: skip
 _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
 
 
 class Launched(NamedTuple):
     """What launch files give: values of parameters by node, which are the same in all of them, and what
-    else there is, by file and line."""
+    else, by file and line; ``not_started`` are nodes that they start and the fleet does not."""
 
     values: Mapping[str, Mapping[str, Any]] = {}
     rest: tuple[tuple[str, int, str], ...] = ()
+    not_started: tuple[tuple[str, int, str], ...] = ()
 
 
 class _Given(NamedTuple):
@@ -118,7 +124,7 @@ def _elements(it: ast.expr | None) -> Sequence[ast.expr]:
 
 
 def given_by_launch(
-    read: Iterable[Reading], stacks: Iterable[str], release: str, carried: bool = True
+    read: Sequence[Reading], stacks: Iterable[str], release: str, carried: bool = True
 ) -> Launched:
     """What launch files give to the nodes of these stacks; nothing is ``carried`` where that does not
     build."""
@@ -132,7 +138,29 @@ def given_by_launch(
     for (node, name), its in said.items():
         if carried and node and its[0] is not UNKNOWN and all(it == its[0] for it in its):
             values.setdefault(node, {})[name] = its[0]
-    return Launched(values, tuple(_rest(every, values)))
+    idle = {text: (file, line) for file, line, text in _not_started(read, nodes)}
+    rows = ((file, line, text) for text, (file, line) in idle.items())
+    return Launched(values, tuple(_rest(every, values)), tuple(rows))
+
+
+def _not_started(
+    read: Iterable[Reading], nodes: Sequence[NodeFacts]
+) -> Iterator[tuple[str, int, str]]:
+    """Yield the place of each node that launch files start and none of ``nodes`` is, with its name, its
+    package and its remap rules."""
+    for file, call in ((it.text.file, call) for it in read for call in it.text.nodes):
+        program = word_of(argument(call, "executable")) or word_of(argument(call, "plugin"))
+        who = word_of(argument(call, "name")) or program
+        if not who or program in _USUAL_PROGRAMS or _fact(nodes, who, program):
+            continue
+        package = word_of(argument(call, "package"))
+        rules = _rules(argument(call, "remappings"))
+        text = ", ".join((f"{who} of {package}" if package else who, *rules))
+        yield file, call.lineno, text
+
+
+def _fact(nodes: Iterable[NodeFacts], who: str, program: str) -> NodeFacts | None:
+    return next((one for one in nodes if {who, program} & _called(one)), None)
 
 
 def _rest(
@@ -160,7 +188,7 @@ def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
     for call in it.text.nodes:
         program = word_of(argument(call, "executable"))
         who = word_of(argument(call, "name")) or program
-        node = next((one for one in nodes if {who, program} & _called(one)), None)
+        node = _fact(nodes, who, program)
         if node is None:
             continue
         values = dict(_parameters(it, call))
