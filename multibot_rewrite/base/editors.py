@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 
-from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.bounded import load_json, read_bytes
 
 _PACKAGE = os.path.dirname(os.path.dirname(__file__))
 # The schemas of what people edit, below this package.
@@ -16,19 +16,34 @@ FLEET, NODES, PLAN = (
 )
 
 
-def schema_line(schema: str, folder: str) -> str:
-    """The comment by which yaml-language-server (VS Code, Vim, Emacs) finds a schema of this package:
-    relative where it is installed below ``folder``, in which the file will be."""
-    path = os.path.join(_PACKAGE, schema)
-    below = os.path.relpath(path, folder or os.curdir)
-    return line_of(path if below.startswith(os.pardir) else below)
+def schema_line(schema: str) -> str:
+    """Return the comment by which yaml-language-server (VS Code, Vim, Emacs) finds the schema beside a
+    file, which is there on every machine that has the file."""
+    return f"# yaml-language-server: $schema={schema_name(schema)}"
 
 
-def line_of(path: str) -> str:
-    """The comment that names the schema at a path, which is relative to the file or absolute."""
-    return f"# yaml-language-server: $schema={path}"
+def schema_name(schema: str) -> str:
+    """Return what a schema of this package is called beside a file that it is for."""
+    return f".{os.path.basename(schema)}"
 
 
 def schema_text(schema: str) -> bytes:
-    """A schema of this package, to be written beside a file that is the same on every machine."""
+    """Return the bytes of a schema of this package."""
     return read_bytes(os.path.join(_PACKAGE, schema))
+
+
+def may_be_written(schema: str, path: str) -> bool:
+    """Is the path free for a schema of this package: nothing is there, or the same schema of another
+    version?"""
+    if not os.path.lexists(path):
+        return True
+    return _name_in(path) == _name_in(os.path.join(_PACKAGE, schema))
+
+
+def _name_in(path: str) -> object:
+    """Return the ``$id`` of a schema; None for a file that is none or cannot be read."""
+    try:
+        read = load_json(read_bytes(path))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return read.get("$id") if isinstance(read, dict) else None

@@ -14,6 +14,7 @@ from io import StringIO
 from itertools import pairwise
 from typing import TypeVar
 
+from multibot_rewrite.base.editors import FLEET
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import LAYOUTS, find_layout
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
@@ -22,6 +23,7 @@ from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import plain_words, xacro_args
+from multibot_rewrite.description.sources.expand import kept_expansions
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
@@ -39,6 +41,8 @@ from multibot_rewrite.fleet.proposal.trying import (
 SIMULATORS = ("gazebo", "none")
 # Nodes of launch files that are named on the terminal.
 _NAMED = 6
+# Descriptions that cannot be read, and are named on the terminal; the fleet file has all.
+MOST_BROKEN = 3
 LEFT_OUT, NONE = "it was left out", "none"
 _T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -46,6 +50,11 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 def run(options: argparse.Namespace) -> int:
     """Look, ask, try, write; returns the exit code."""
+    with kept_expansions():
+        return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     if options.count == 0:
         raise UsageError("--count 0: a fleet has at least one robot")
     _check_names(options)
@@ -62,10 +71,14 @@ def run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
-    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it.trust))
-    done = _deliver(options, whole)
-    if made.others:
-        note(options, _one_of_several(made))
+    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
+    others = tuple(it for it in whole.others if it not in seen.broken)
+    whole = whole._replace(broken=seen.broken, others=others)
+    done = _deliver(options, whole, wanted.file)
+    for path, fault in [*seen.broken.items()][:MOST_BROKEN]:
+        say(f"{path} was not used: {fault}", PROGRAM)
+    if others:
+        note(options, _one_of_several(whole))
     return done
 
 
@@ -82,7 +95,7 @@ def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
 
 def _wanted(options: argparse.Namespace) -> Wanted:
     """What the options say."""
-    return Wanted(
+    wanted = Wanted(
         tuple(plain_words(options)) or (os.curdir,),
         len(options.robots) or options.count or 0,
         xacro_args(options),
@@ -93,6 +106,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         tuple(options.robots),
         simulator=options.simulator or "",
     )
+    return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 
 def _check_names(options: argparse.Namespace) -> None:
@@ -110,13 +124,11 @@ def _check_output(options: argparse.Namespace) -> None:
         )
 
 
-def _deliver(options: argparse.Namespace, made: Proposal) -> int:
-    folder = os.path.dirname(options.output) if goes_to_file(options) else ""
-    name = os.path.basename(options.output) if goes_to_file(options) else "fleet.yaml"
-    text = text_of(made, folder or os.curdir, name)
+def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
+    text = text_of(made, file)
     if options.verbose and goes_to_file(options):
         sys.stdout.write(text)
-    deliver(options, text.encode())
+    deliver(options, text.encode(), FLEET)
     for line in made.notes:
         say(line, PROGRAM)
     robots = sum(len(it.names) for it in made.members)

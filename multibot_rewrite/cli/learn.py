@@ -54,8 +54,7 @@ def write(options: argparse.Namespace, graph: System) -> int:
     if as_nodl:
         remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
     else:
-        line = editors.schema_line(editors.NODES, os.path.dirname(options.output or ""))
-        deliver(options, f"{line}\n{to_yaml(learned, stack, library)}".encode())
+        deliver(options, to_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
         note(options, f"note: {remark}")
     shape = "NoDL" if as_nodl else f"stack {stack}"

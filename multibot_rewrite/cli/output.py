@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TextIO, TypeGuard, TypeVar
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.printable import for_terminal, one_line
 from multibot_rewrite.cli.walk import check_link, check_target
@@ -48,14 +49,25 @@ def is_coloured(when: str, stream: TextIO | None) -> bool:
     return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def deliver(options: argparse.Namespace, data: bytes) -> None:
-    """Write a command's result where ``-o`` says, else print it."""
+def deliver(options: argparse.Namespace, data: bytes, schema: str = "") -> None:
+    """Write a command's result where ``-o`` says, or print it; ``schema`` is that of a YAML file."""
     if options.output in (None, STANDARD):
         print_bytes(data)
     else:
         check_target(options.output, (it for _, it in _given(options)))
         check_link(options.output)
-        write_files(options, [(options.output, data)])
+        write_files(options, with_schema(options.output, data, schema))
+
+
+def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
+    """Return the files to write for a YAML file: its own with a comment for editors, and the schema
+    that the comment names. A device has none, nor a file beside another one of the schema's name."""
+    beside = os.path.join(os.path.dirname(path), editors.schema_name(schema))
+    is_file = os.path.isfile(path) or not os.path.exists(path)
+    if not (schema and is_file and editors.may_be_written(schema, beside)):
+        return [(path, data)]
+    line = f"{editors.schema_line(schema)}\n".encode()
+    return [(path, line + data), (beside, editors.schema_text(schema))]
 
 
 def _given(options: argparse.Namespace) -> Iterator[tuple[str, str]]:

@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 from collections.abc import Iterator
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
-from multibot_rewrite.base.editors import schema_line
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_told
 from multibot_rewrite.cli import check_launch, fleet
@@ -72,12 +70,9 @@ def _is_alone(options: argparse.Namespace) -> bool:
 
 def _write(options: argparse.Namespace, plan: System) -> None:
     if (options.output or "").endswith(".json"):
-        text = to_json(plan)
-    elif goes_to_file(options):
-        text = f"{schema_line(PLAN_SCHEMA, os.path.dirname(options.output))}\n{to_yaml(plan)}"
+        deliver(options, to_json(plan).encode())
     else:
-        text = to_yaml(plan)
-    deliver(options, text.encode())
+        deliver(options, to_yaml(plan).encode(), PLAN_SCHEMA)
 
 
 def _of_launch(options: argparse.Namespace) -> int:

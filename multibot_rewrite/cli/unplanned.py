@@ -6,13 +6,14 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import chain
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.output import note, say, write_files
+from multibot_rewrite.cli.output import note, say, with_schema, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
     About,
@@ -156,19 +157,16 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
     """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
     if not options.suggest:
         return
-    from multibot_rewrite.base.editors import schema_line
     from multibot_rewrite.knowledge.stacks import built_in
     from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
     library = built_in(release_here(options.distro))
     for folder, seen in zip(_folders(options, each), each.values(), strict=True):
-        lines = {it: f"{schema_line(schema, folder)}\n" for it, schema in SCHEMAS.items()}
-        files = {
-            os.path.join(folder, name): f"{lines.get(name, '')}{text}".encode()
-            for name, text in suggestion(seen, library).items()
-        }
-        write_files(options, files.items())
-        note(options, f"wrote {', '.join(files)}: see {next(iter(files))}")
+        texts = {os.path.join(folder, it): one for it, one in suggestion(seen, library).items()}
+        schemas = {os.path.join(folder, it): one for it, one in SCHEMAS.items()}
+        files = (with_schema(it, one.encode(), schemas.get(it, "")) for it, one in texts.items())
+        write_files(options, chain.from_iterable(files))
+        note(options, f"wrote {', '.join(texts)}: see {next(iter(texts))}")
 
 
 def _listed(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:

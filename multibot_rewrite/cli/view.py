@@ -15,7 +15,7 @@ from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.file.fleet_data import without_dict
+from multibot_rewrite.fleet.file.fleet_data import without_place
 from multibot_rewrite.fleet.file.fleet_file import (
     input_files,
     read_fleet,
@@ -139,7 +139,7 @@ def _plan(options: argparse.Namespace) -> FleetPlan:
     try:
         return _fleet(options, {key: value for key, value in data.items() if value})
     except InputError as error:
-        raise InputError(without_dict(str(error))) from None
+        raise InputError(without_place(str(error))) from None
 
 
 def _fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:

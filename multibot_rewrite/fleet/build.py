@@ -35,7 +35,6 @@ from multibot_rewrite.fleet.outputs.free_fleet import configurations as free_fle
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames, moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
-    PLAN_SCHEMA,
     FilesAndFindings,
     OutputFile,
     expanded_name,
@@ -191,8 +190,8 @@ def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
 
 
 def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFile]:
-    yield OutputFile(PLAN, f"{editors.line_of(PLAN_SCHEMA)}\n{to_yaml(planned)}".encode())
-    yield OutputFile(PLAN_SCHEMA, editors.schema_text(editors.PLAN))
+    yield OutputFile(PLAN, f"{editors.schema_line(editors.PLAN)}\n{to_yaml(planned)}".encode())
+    yield OutputFile(editors.schema_name(editors.PLAN), editors.schema_text(editors.PLAN))
     if plan.file.sros2:
         yield OutputFile(POLICY, to_policy(planned, possible(fleet)).encode())
     if layout := to_layout(planned):

@@ -6,9 +6,12 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from types import MappingProxyType
+from typing import Any, TypeVar
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
@@ -21,6 +24,8 @@ from multibot_rewrite.description.sources.trace import Origins, Trace, alike
 from multibot_rewrite.description.steps.document import start_offsets, tag_end
 
 __all__ = ["Expanded", "Expansion", "Find", "Reach", "expand", "expand_traced", "expand_whole"]
+_T = TypeVar("_T")
+_KEPT: ContextVar[dict[object, Any] | None] = ContextVar("expansions", default=None)
 # Of a longer message no repetition is looked for.
 LONG = 1000
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
@@ -80,6 +85,32 @@ class Expansion(NamedTuple):
     pieces: Pieces
 
 
+@contextmanager
+def kept_expansions() -> Iterator[None]:
+    """Expand a file with the same arguments once in the block, while nobody changes it."""
+    before = _KEPT.set({})
+    try:
+        yield
+    finally:
+        _KEPT.reset(before)
+
+
+def _once(key: object, expanded: Callable[[], _T]) -> _T:
+    """Return what was expanded for this key before, or raise the same error."""
+    kept = _KEPT.get()
+    if kept is None:
+        return expanded()
+    if key not in kept:
+        try:
+            kept[key] = expanded()
+        except InputError as error:
+            kept[key] = error
+    found: Any = kept[key]
+    if isinstance(found, InputError):
+        raise found.with_traceback(None)
+    return found  # type: ignore[no-any-return]
+
+
 def expand(
     path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
 ) -> bytes:
@@ -94,11 +125,15 @@ def expand_whole(
     path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
 ) -> Expanded:
     """The same with the files that were read."""
-    check_file(path)
-    sources = Sources(Access(path, reach, find), {})
-    result = converse(arguments, sources, traced=False)
-    _tell_missing(reach, result.fences)
-    return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
+
+    def expanded() -> Expanded:
+        check_file(path)
+        sources = Sources(Access(path, reach, find), {})
+        result = converse(arguments, sources, traced=False)
+        _tell_missing(reach, result.fences)
+        return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
+
+    return _once((path, frozenset(arguments.items()), find, reach), expanded)
 
 
 def expand_traced(
@@ -112,14 +147,20 @@ def expand_traced(
 ) -> Expansion:
     """The same for a file that holds ``data``, with the origins of the elements, and of the pieces of
     their values where they are asked for. Files that are ``changed`` have these texts, by real path."""
-    sources = Sources(Access(path, reach, find), {path: data}, changed)
-    result = converse(arguments, sources, True, in_pieces)
-    _tell_missing(reach, result.fences)
-    trace = Trace(result, sources, path)
-    text = _text(path, result, trace)
-    if len(result.origins) != 3 * len(start_offsets(text)):
-        raise InputError(f"{path}: xacro failed: the places that its process reported are wrong")
-    return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
+
+    def expanded() -> Expansion:
+        sources = Sources(Access(path, reach, find), {path: data}, changed)
+        result = converse(arguments, sources, True, in_pieces)
+        _tell_missing(reach, result.fences)
+        trace = Trace(result, sources, path)
+        text = _text(path, result, trace)
+        if len(result.origins) != 3 * len(start_offsets(text)):
+            what = "the places that its process reported are wrong"
+            raise InputError(f"{path}: xacro failed: {what}")
+        return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
+
+    given = frozenset(arguments.items()), frozenset(changed.items())
+    return _once((path, data, *given, find, reach, in_pieces), expanded)
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:

@@ -9,7 +9,7 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import yaml
 
@@ -57,9 +57,14 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
 def texts_of(values: Sequence[Any], file: str) -> dict[str, str]:
     """The texts of parameters that stand in the fleet file itself, by the path that each has then."""
     given = [it for it in values if not isinstance(it, str)]
-    paths = (os.path.join(file, f"values{at or ''}.yaml") for at in range(len(given)))
+    paths = (values_path(file, at) for at in range(len(given)))
     full = ({node: {"ros__parameters": own} for node, own in it.items()} for it in given)
     return {path: yaml.safe_dump(it, sort_keys=False) for path, it in zip(paths, full, strict=True)}
+
+
+def values_path(file: str, at: int = 0) -> str:
+    """Return the path that one of the values in a fleet file has."""
+    return os.path.join(file, f"values{at or ''}.yaml")
 
 
 def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
@@ -129,9 +134,20 @@ EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 DICT = "the fleet's dict as YAML"
 
 
-def without_dict(message: str) -> str:
-    """A message about a dict without its place in the dict, which nobody has seen as YAML."""
-    return re.sub(rf"^{DICT}(:\d+)*: ", "", message)
+class FleetText(NamedTuple):
+    """The text of a fleet file that is not written yet, and the path that it will have."""
+
+    path: str
+    text: str
+
+
+FleetSource: TypeAlias = str | Mapping[str, Any] | FleetText
+
+
+def without_place(message: str, file: str = DICT) -> str:
+    """Return a message about a dict, or a text that is not written yet, without the place in it, which
+    nobody has seen."""
+    return re.sub(rf"^{re.escape(file)}(:\d+)*: ", "", message)
 
 
 class FleetData(NamedTuple):
@@ -143,17 +159,38 @@ class FleetData(NamedTuple):
     files: tuple[str, ...]
 
 
-def read_data(source: str | Mapping[str, Any]) -> FleetData:
+class _Dumper(yaml.SafeDumper):
+    """Writes out what several keys share: a fleet file may have no alias."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Return whether a value is written out again; all are."""
+        return True
+
+
+def fleet_yaml(value: Any, **options: Any) -> str:
+    """Return a value as a fleet file has it; raises YAMLError for what is no data, RecursionError for
+    what holds itself."""
+    return str(yaml.dump(value, Dumper=_Dumper, sort_keys=False, **options))
+
+
+def read_data(source: FleetSource) -> FleetData:
     """The data of a fleet; paths in a dict are relative to the working directory. Raises InputError."""
     if isinstance(source, str):
         return _with_includes(_of_file(source), ())
+    path, text = source if isinstance(source, FleetText) else (DICT, _text_of(source))
+    checked = text_checked(text.encode(), path, _wanted(), f"write {EXAMPLE}")
+    folder = "" if path == DICT else os.path.dirname(path)
+    return _with_includes(_placed(path, folder, checked)._replace(files=()), ())
+
+
+def _text_of(source: Mapping[str, Any]) -> str:
+    hint = "write texts, numbers, lists and dicts"
     try:
-        text = yaml.safe_dump(dict(source), sort_keys=False)
+        return fleet_yaml(dict(source))
     except yaml.YAMLError as error:
-        hint = "write texts, numbers, lists and dicts"
         raise InputError(f"{DICT}: {str(error).splitlines()[0]}; {hint}") from None
-    checked = text_checked(text.encode(), DICT, _wanted(), f"write {EXAMPLE}")
-    return _with_includes(_placed(DICT, "", checked)._replace(files=()), ())
+    except RecursionError:
+        raise InputError(f"{DICT}: a value holds itself; {hint}") from None
 
 
 def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:

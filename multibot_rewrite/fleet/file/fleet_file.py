@@ -16,6 +16,7 @@ from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
     FleetData,
+    FleetSource,
     listed,
     nodl_files,
     read_data,
@@ -74,13 +75,13 @@ class FleetFile(NamedTuple):
 
 
 def read_fleet(
-    source: str | Mapping[str, Any],
+    source: FleetSource,
     distro: str,
     environment: Mapping[str, str],
     choice: Choice = ALL,
 ) -> FleetFile:
-    """Read a fleet file and those it includes, or the same as a dict; raises InputError with file and
-    line.
+    """Read a fleet file and those it includes, or the same as a dict or a text; raises InputError with
+    file and line.
 
     The release is ``distro``, else that of the file, else that of the environment, else the one that
     the robots' descriptions are for. ``choice`` says which robots there are, where that is decided

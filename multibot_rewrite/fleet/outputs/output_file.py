@@ -17,8 +17,8 @@ from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 
-# The plan of a built fleet, and the schema that it names for editors.
-PLAN, PLAN_SCHEMA = "plan.yaml", ".plan.schema.json"
+# The plan of a built fleet.
+PLAN = "plan.yaml"
 # The parameter file of a robot that has none, with what its nodes need.
 DEFAULTS = "params.yaml"
 

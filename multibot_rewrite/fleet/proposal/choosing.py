@@ -26,6 +26,9 @@ _PART = lazy_compile(
 )
 # What a file manager calls a copy of a file.
 _COPY = lazy_compile(r"(?<![ (_-])[ (_-]+copy\b\)?|(?<!\s)\s*\(\d+\)")
+_BUILDER = "MoveItConfigsBuilder"
+_BUILT = lazy_compile(_BUILDER + r"""\(\s*(?:robot_name\s*=\s*)?["'](\w+)["']""")
+_BUILT_PACKAGE = lazy_compile(r"""\bpackage_name\s*=\s*["'](\w+)["']""")
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6
 # With a share of its names that is so many times as large, files are for this description.
@@ -51,11 +54,13 @@ class Undecided(UsageError):
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many launch files load it, how many of its names the
-    files beside it have; ``part`` is whether it is called like a part."""
+    """A description and what speaks for it: how many launch files load it, whether its package is named
+    after it, how many of its names the files beside it have; ``part`` is whether it is called like a
+    part."""
 
     robot: Looked
     launched: int
+    of_package: bool
     named: int
     part: bool
     links: frozenset[str]
@@ -137,24 +142,44 @@ def acts(it: Looked) -> bool:
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
     links, moving = frozenset(_links(it)), frozenset(_moving(it))
-    part = _PART.search(_stem(it.path).lower()) is not None
     return Candidate(
-        it, launches_of(it.path, found), len(said & (links | moving)), part, links, moving
+        it,
+        launches_of(it.path, found),
+        names_its_package(it.path),
+        len(said & (links | moving)),
+        is_called_like_a_part(it.path),
+        links,
+        moving,
     )
 
 
+def is_called_like_a_part(path: str) -> bool:
+    """Return whether the name of a description is that of a part of a robot, such as a gripper."""
+    return _PART.search(_stem(path).lower()) is not None
+
+
+def names_its_package(path: str) -> bool:
+    """Return whether the package of a description is named after it, as tetra_description or acme_tetra
+    after tetra.xacro."""
+    words = _package(path).lower().split("_")
+    inner = (words, words[:-1], words[1:], words[1:-1])
+    return _stem(path).lower() in {"_".join(it) for it in inner} - {""}
+
+
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, launched, named; then what is no copy, for a simulator, has ``<ros2_control>``, a short
-    path."""
+    """By kind, launched, of its package, named; then what is no copy, for a simulator, has
+    ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
-    return *it.kind, not it.launched, -it.named, *more
+    return *it.kind, not it.launched, not it.of_package, -it.named, *more
 
 
 def _is_behind(it: Candidate, best: Candidate) -> bool:
     if it.kind != best.kind or (it.moving < best.moving and not it.launched):
         return True
+    if it.of_package != best.of_package and it.launched == best.launched:
+        return best.of_package
     if best.launched and not it.launched:
         return True
     return best.launched >= it.launched and best.share > _MORE * it.share
@@ -174,13 +199,41 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
 def launches_of(path: str, found: Found) -> int:
     """How many launch files load this description, or worlds have this model. Of files of one base name
     it is that of the package that the launch file names or is in, of models that of the folder."""
+    worlds = found.worlds if path.endswith(".sdf") else ()
+    return len(launched_by(path, found)) + sum(
+        f"model://{_own(path)}" in text_of(it) for it in worlds
+    )
+
+
+def launched_by(path: str, found: Found) -> list[str]:
+    """Return the launch files that load a description."""
     base = os.path.basename(path)
     alike = [it for it in found.every if os.path.basename(it) == base]
-    # A model is called by its folder.
-    own = os.path.basename(os.path.dirname(path)) if base.endswith(".sdf") else _package(path)
     pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
-    worlds = (f"model://{own}" in text_of(it) for it in found.worlds if base.endswith(".sdf"))
-    return sum(_loads(it, pattern, own, len(alike) > 1) for it in found.launch) + sum(worlds)
+    return [it for it in found.launch if _loads(it, pattern, _own(path), len(alike) > 1)]
+
+
+def _own(path: str) -> str:
+    """Return what a description is in: its package, or the folder after which a model is called."""
+    return os.path.basename(os.path.dirname(path)) if path.endswith(".sdf") else _package(path)
+
+
+def is_srdf_launched(path: str, found: Found) -> bool:
+    """Return whether a launch file loads an SRDF: it gives the package to MoveItConfigsBuilder, or
+    names the file in a folder of the package."""
+    folder, base = os.path.split(os.path.abspath(path))
+    package, end = _package(path), f"{os.path.basename(folder)}/{base}"
+    texts = [text_of(it) for it in found.launch]
+    return any(package in _built_packages(it) or (package in it and end in it) for it in texts)
+
+
+def _built_packages(text: str) -> set[str]:
+    """Return the packages whose files MoveItConfigsBuilder takes; it is ROBOT_moveit_config where no
+    other one is named (moveit_configs_utils/moveit_configs_builder.py)."""
+    if _BUILDER not in text:
+        return set()
+    usual = (f"{it}_moveit_config" for it in _BUILT.findall(text))
+    return {*_BUILT_PACKAGE.findall(text)} or {*usual}
 
 
 def _loads(launch: str, pattern: re.Pattern[str], own: str, several: bool) -> bool:

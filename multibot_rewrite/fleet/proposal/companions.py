@@ -15,6 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, launched_by
 from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
 from multibot_rewrite.fleet.proposal.given_by_launch import files_given, readings
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
@@ -79,16 +80,20 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     left |= _with_others_names(robot, every)
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
-    files = {kind: tuple(_of_kind(kind, robot, getattr(found, kind), left)) for kind in kinds}
+    own = {package_of(it) for it in (robot.path, *launched_by(robot.path, found))}
+    files = {
+        kind: tuple(_of_kind(kind, robot, getattr(found, kind), left, packages=own))
+        for kind in kinds
+    }
     sections = dict(_sections(_fitting(robot, found, release, left), left))
     idle = _controllers_of_others(robot, sections)
     left |= idle | _bridges_of_others(robot, found)
     files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
     sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
-    srdf = next(iter(_best_known(robot, found.srdf)), "")
+    srdf = _best_srdf(robot, found)
     left |= {it: "another SRDF was taken" for it in found.srdf if it != srdf}
-    others = moveit_of_others(srdf, every) if srdf else {}
+    others = moveit_of_others(robot, srdf, every) if srdf else {}
     left |= others
     files["moveit"] = tuple(_moveit(robot, found, srdf, left)) if srdf else ()
     nodes = {name: path for path, names in sections.items() for name in names}
@@ -99,7 +104,13 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
 def srdf_of(robot: Looked, found: Found) -> str:
     """The SRDF with most of the robot's names; empty for none."""
     named = without(found, {**of_others(robot, found), **_with_others_names(robot, found)})
-    return next(iter(_best_known(robot, named.srdf)), "")
+    return _best_srdf(robot, named)
+
+
+def _best_srdf(robot: Looked, found: Found) -> str:
+    """Return the SRDF that launch files load, or the one with most of the robot's names."""
+    near = _best_known(robot, found.srdf)
+    return max(near, key=lambda it: is_srdf_launched(it, found), default="")
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
@@ -133,11 +144,14 @@ def _of_kind(
     every: Sequence[str],
     left: dict[str, str],
     rank: Callable[[str], int] = lambda _: 0,
+    packages: Container[object] = (),
 ) -> Iterator[str]:
     """The files of a kind by their rank, nearest first; of equal base names, or where one is enough,
-    only one."""
+    only one. An RViz config of the ``packages`` of the robot goes before others."""
     taken: dict[str, str] = {}
-    near = _best_known(robot, every) if kind == "rviz" else _nearest(robot, every)
+    near = _nearest(robot, every)
+    if kind == "rviz":
+        near = sorted(_best_known(robot, every), key=lambda it: package_of(it) not in packages)
     for path in sorted(near, key=rank):
         key = kind if kind in ONE else os.path.basename(path)
         if key in taken:

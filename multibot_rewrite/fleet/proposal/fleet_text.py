@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A proposal -> the text of its fleet file, with the reason of each key as a comment, and as data."""
+"""A proposal -> the text of its fleet file, with the reason of each key as a comment."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 from typing import Any
 
-from multibot_rewrite.base.editors import FLEET, schema_line
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
@@ -19,21 +20,14 @@ from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 MOST = 10
 
 
-def data_of(it: Proposal, folder: str) -> dict[str, Any]:
-    """The fleet as the file has it; ``folder`` is where the file will be, paths are relative to it."""
-    keys = {key: choice.value for key, choice in it.keys.items()}
-    common = {key: value for key, (value, _) in _common(it, folder).items()}
-    return {**keys, **common, "robots": list(_robots(it, folder))}
-
-
-def text_of(it: Proposal, folder: str, name: str) -> str:
-    """The text of the file, which will be called ``name``."""
-    lines = _lines(it, folder, name)
+def text_of(it: Proposal, file: str) -> str:
+    """Return the text of the fleet file that will be at the path ``file``: what it names is relative to
+    its folder."""
+    lines = _lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 
 
 def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
-    yield schema_line(FLEET, folder)
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"
@@ -51,32 +45,34 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
-    refused = {_shown(path, folder) for path in it.refused}
+    first = {_shown(path, folder) for path in (*it.refused, *it.broken)}
     if left:
         yield ""
         yield "# Found beside them and not taken:"
         home = os.path.relpath(it.members[0].looked.path, folder)
         rows = sorted(
             left.items(),
-            key=lambda row: (row[0] not in refused, os.path.relpath(row[0], home).count(".."), row),
+            key=lambda row: (row[0] not in first, os.path.relpath(row[0], home).count(".."), row),
         )
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
     if it.launched.rest:
         yield ""
         yield "# Launch files give nodes more than this fleet has: write the values into params;"
         yield "# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
-        rest = it.launched.rest
-        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in rest)
+        yield from _placed(it.launched.rest, folder)
     if it.launched.started:
         yield ""
         yield "# Launch files start nodes that this fleet does not. `launch: FILE` gives each robot the"
         yield "# nodes of FILE with their rules; it is a program, so `multibot build` needs --trust:"
-        started = it.launched.started
-        yield from _capped(f"{os.path.relpath(f, folder)}:{at}: {s}" for f, at, s in started)
+        yield from _placed(it.launched.started, folder)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+
+
+def _placed(rows: Iterable[tuple[str, int, str]], folder: str) -> Iterator[str]:
+    return _capped(f"{os.path.relpath(file, folder)}:{at}: {text}" for file, at, text in rows)
 
 
 def _capped(lines: Iterable[str]) -> Iterator[str]:
@@ -87,13 +83,20 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
-    for path, why in it.refused.items():
+    """Yield what was refused, what cannot be read, and the files of the robots' packages that no robot
+    has, each with the reason."""
+    for path, why in {**it.refused, **it.broken}.items():
         yield _shown(path, folder), why
-    for path in it.others:
-        yield os.path.relpath(path, folder), "another description"
+    taken = {
+        path for member in it.members for path in (*member.looked.files, *member.companions.paths)
+    }
+    packages = {*map(package_of, taken)}
+    left = dict.fromkeys(it.others, "another description")
     for member in it.members:
-        for path, why in member.companions.left.items():
-            yield os.path.relpath(path, folder), why
+        left |= member.companions.left
+    for path in left.keys() - taken - it.broken.keys():
+        if package_of(path) in packages:
+            yield os.path.relpath(path, folder), left[path]
 
 
 def _shown(path: str, folder: str) -> str:
@@ -113,9 +116,7 @@ def _block(key: str, value: Any) -> Iterator[str]:
 
 
 def _flow(value: Any) -> str:
-    import yaml
-
-    text = yaml.safe_dump(value, default_flow_style=True, width=inf, sort_keys=False)
+    text = fleet_yaml(value, default_flow_style=True, width=inf)
     return text.removesuffix("\n").removesuffix("\n...")
 
 

@@ -130,7 +130,7 @@ def _elements(it: ast.expr | None) -> Sequence[ast.expr]:
 
 
 def given_by_launch(
-    read: Iterable[Reading], stacks: Iterable[str], release: str, carried: bool = True
+    read: Sequence[Reading], stacks: Iterable[str], release: str, carried: bool = True
 ) -> Launched:
     """What launch files give to the nodes of these stacks; nothing is ``carried`` where that does not
     build."""
@@ -145,6 +145,10 @@ def given_by_launch(
         if carried and node and its[0] is not UNKNOWN and all(it == its[0] for it in its):
             values.setdefault(node, {})[name] = its[0]
     return Launched(values, tuple(_rest(every, values)))
+
+
+def _fact(nodes: Iterable[NodeFacts], who: str, program: str) -> NodeFacts | None:
+    return next((one for one in nodes if {who, program} & _called(one)), None)
 
 
 def _rest(
@@ -172,7 +176,7 @@ def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
     for call in it.text.nodes:
         program = word_of(argument(call, "executable"))
         who = word_of(argument(call, "name")) or program
-        node = next((one for one in nodes if {who, program} & _called(one)), None)
+        node = _fact(nodes, who, program)
         if node is None:
             continue
         values = dict(_parameters(it, call))

@@ -65,6 +65,11 @@ class Looked(NamedTuple):
     model: str = ""
     fault: str = ""
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The files that it is taken from; raises nothing."""
+        return tuple(filter(None, (self.path, self.model)))
+
 
 def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
     """Its arguments as they are for one robot; raises nothing."""

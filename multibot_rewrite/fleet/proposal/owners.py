@@ -44,6 +44,24 @@ def of_others(robot: Looked, found: Found) -> dict[str, str]:
     return {**near, **dict(_naming_others(robot, found, rest))}
 
 
+def of_other_robots(robot: Looked, robots: Iterable[Looked], found: Found) -> set[str]:
+    """Return the files that are of another one of the robots of a fleet: they are in its folders, or in
+    folders of both and called like it alone."""
+    return {file for file in _companions(found) if robot not in _owners(file, robots)}
+
+
+def _owners(file: str, robots: Iterable[Looked]) -> list[Looked]:
+    near = {it: _near(os.path.dirname(it.path), file) for it in robots}
+    nearest = [it for it in robots if near[it] == max(near.values())]
+    return [it for it in nearest if _is_called_like(file, it)] or nearest
+
+
+def _is_called_like(file: str, robot: Looked) -> bool:
+    """Does the name of a file begin with that of the description, as a word of its own?"""
+    name, front = os.path.basename(file), os.path.basename(robot.path).partition(".")[0]
+    return name.startswith(front) and not name[len(front) : len(front) + 1].isalnum()
+
+
 def _companions(found: Found) -> Iterator[str]:
     for kind in ("params", "rviz", "bridge", "moveit", "behavior_trees", "srdf"):
         yield from getattr(found, kind)
@@ -189,10 +207,15 @@ def _words(path: str) -> _Words:
     return _Words(*found)
 
 
-def moveit_of_others(srdf: str, found: Found) -> Mapping[str, str]:
-    """MoveIt's files that are nearer to another SRDF than to the one that is taken."""
+def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str]:
+    """Return MoveIt's files that are nearer to another SRDF than to the one that is taken, or are for
+    the kinematics of groups that it has not."""
     left = {}
+    groups = semantic_names(robot, srdf)[1]
     for file in found.moveit:
+        is_kinematics = os.path.splitext(os.path.basename(file))[0] == "kinematics"
+        if is_kinematics and groups and not _words(file).all & groups:
+            left[file] = f"it names no group of {os.path.basename(srdf)}"
         best = max(found.srdf, key=lambda it: _near(os.path.dirname(it), file))
         if _near(os.path.dirname(best), file) > _near(os.path.dirname(srdf), file):
             left[file] = f"it is beside {os.path.basename(best)}"

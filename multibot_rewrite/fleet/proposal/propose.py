@@ -30,6 +30,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     is_placed,
     with_controllers,
 )
+from multibot_rewrite.fleet.proposal.owners import of_other_robots
 from multibot_rewrite.fleet.proposal.release_of_files import release_of_files
 from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.fleet.proposal.seeing import Wanted
@@ -64,8 +65,8 @@ class Choice(NamedTuple):
 class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
-    ``refused`` files that do not go with the robots, and why; ``launched`` is what launch files give
-    its nodes."""
+    ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
+    each with the reason; ``launched`` is what launch files give its nodes."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -74,6 +75,7 @@ class Proposal(NamedTuple):
     others: tuple[str, ...] = ()
     refused: Mapping[str, str] = {}
     launched: Launched = Launched()
+    broken: Mapping[str, str] = {}
 
 
 def layout_of(members: Sequence[Member]) -> Choice:
@@ -103,7 +105,8 @@ def simulator_of(members: Sequence[Member]) -> Choice:
     """Whether the robots are simulated, by what their descriptions have."""
     kinds = {it.looked.simulator for it in members} - {NO_SIMULATOR}
     if not kinds:
-        return Choice("none", "no description has anything for a simulator")
+        have = "the description has" if len(members) == 1 else "the descriptions have"
+        return Choice("none", f"{have} nothing for a simulator")
     names = {"gz": "gz-sim", "classic": "Gazebo Classic"}
     return Choice(
         "gazebo",
@@ -182,9 +185,10 @@ def propose(
         names = [wanted.names]
     release = release_of(robots, found, wanted)
     kept = without(found, refused)
+    shared_out = [without(kept, of_other_robots(it, robots, kept)) for it in robots]
     members = [
-        _member(it, companions_of(it, kept, release.value), own, Reach(trust=wanted.trust))
-        for it, own in zip(robots, names, strict=True)
+        _member(it, companions_of(it, own, release.value), called, Reach(trust=wanted.trust))
+        for it, own, called in zip(robots, shared_out, names, strict=True)
     ]
     layout = layout_of(members)
     if wanted.layout:
@@ -213,7 +217,7 @@ def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach
 
 
 def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
-    taken = {path for it in robots for path in (it.path, it.model)}
+    taken = {path for it in robots for path in it.files}
     return tuple(it for it in found.descriptions if it not in taken)
 
 

@@ -146,7 +146,7 @@ def _files(folder: str) -> Iterator[str]:
             if seen > MOST_FILES:
                 hint = "name the folder of one package"
                 raise UsageError(f"{folder}: it has more than {MOST_FILES} files; {hint}")
-            if name.endswith(_ENDS):
+            if name.endswith(_ENDS) and name[0] != ".":
                 yield os.path.normpath(os.path.join(above, name))
 
 
@@ -210,9 +210,16 @@ def _of_xacro(stem: str, data: bytes) -> str:
 def _of_yaml(stem: str, data: bytes) -> str:
     if b"ros__parameters" in data:
         return "params"
-    if _BRIDGE.search(data):
+    if _BRIDGE.search(data) and _is_list(data):
         return "bridge"
     return "moveit" if stem in _MOVEIT else ""
+
+
+def _is_list(data: bytes) -> bool:
+    """Is a YAML text a list, as those of bridges are?"""
+    lines = (it.strip() for it in data.splitlines())
+    first = next((it for it in lines if it and not it.startswith((b"#", b"%", b"---"))), b"")
+    return first.startswith((b"-", b"["))
 
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}

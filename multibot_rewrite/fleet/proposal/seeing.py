@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 
@@ -12,14 +13,17 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
+from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.choosing import (
-    Chosen,
+    Candidate,
     Undecided,
     acts,
     chosen,
+    is_called_like_a_part,
     launches_of,
     may_be_partners,
+    names_its_package,
     partner,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
@@ -51,7 +55,8 @@ class Wanted(NamedTuple):
     """What is asked for: files and folders, robots of each description or their names, values of xacro
     arguments, the release and whether somebody named it, a layout if not the one that the files are
     made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
-    simulator or "none" if not what the files are for. ``tell`` is told what is looked at."""
+    simulator or "none" if not what the files are for. ``file`` is the fleet file to be written,
+    ``tell`` is told what is looked at."""
 
     paths: tuple[str, ...]
     each: int
@@ -63,19 +68,21 @@ class Wanted(NamedTuple):
     names: tuple[str, ...] = ()
     apart: float = 0.0
     simulator: str = ""
+    file: str = "fleet.yaml"
     tell: Callable[[str], None] = _silent
 
 
 class Seen(NamedTuple):
     """What there is: the files, and descriptions that may be meant, the likeliest first; ``named`` is
     true for those that were asked for, all of which count. ``rivals`` are as likely as the first,
-    ``alike`` are other files of it."""
+    ``alike`` are other files of it, ``broken`` those that cannot be read, each with the reason."""
 
     found: Found
     robots: Sequence[Looked]
     named: bool
     rivals: Sequence[Looked] = ()
     alike: Sequence[Looked] = ()
+    broken: Mapping[str, str] = {}
 
 
 def see(wanted: Wanted) -> Seen:
@@ -120,10 +127,11 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
         where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
         raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
     best = chosen(usable, found)
-    _refuse(
-        _rather(best, looked, found), "; the launch files load it, name another one if you mean it"
-    )
     likeliest = best.order[0]
+    rather = _rather(likeliest, looked, found)
+    launched = any(launches_of(it.path, found) for it in rather[:1])
+    other = f"for another one: multibot init {shlex.quote(likeliest.robot.path)}"
+    _refuse(rather, f"; the launch files load it; {other}" if launched else f"; {other}")
     # The name of a model tells what it carries: x500_lidar.
     if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
         said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
@@ -134,7 +142,14 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     first = _with_partner(order[0], beside, wanted)
     left = [] if first == order[0] else [order[0]]
     rivals = [it for it in rivals if it.path not in (first.path, first.model)]
-    return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike])
+    unread = (it for it in looked if it.fault and _may_be_meant(it, first, found))
+    broken = {it.path: it.fault.removeprefix(f"{it.path}: ") for it in unread}
+    return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike], broken)
+
+
+def _may_be_meant(it: Looked, first: Looked, found: Found) -> bool:
+    """Is a description of the same package, or do launch files load it?"""
+    return package_of(it.path) == package_of(first.path) or launches_of(it.path, found) > 0
 
 
 def _partners(it: Looked, found: Found) -> list[str]:
@@ -153,12 +168,17 @@ def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looke
     return with_model(other, it) if it.tag == "sdf" else with_model(it, other)
 
 
-def _rather(best: Chosen, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Descriptions that cannot be read, and that more launch files load than the likeliest; any where
-    that one cannot move."""
-    least = best.order[0].launched if best.order[0].moving else -1
+def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
+    """Return the descriptions that cannot be read, and are as likely to be the robot: as many launch
+    files load them; all where the likeliest cannot move."""
+    least = max(1, likeliest.launched), likeliest.of_package
     broken = _by_launches([it for it in looked if it.fault], found)
-    return [it for it in broken if launches_of(it.path, found) > least]
+    if not likeliest.moving:
+        return broken
+    whole = (it for it in broken if not is_called_like_a_part(it.path))
+    return [
+        it for it in whole if (launches_of(it.path, found), names_its_package(it.path)) >= least
+    ]
 
 
 def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:

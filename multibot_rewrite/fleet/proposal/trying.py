@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place
 from multibot_rewrite.base.findings.formats.shared import said
@@ -15,11 +14,16 @@ from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_data import DICT, without_dict
+from multibot_rewrite.fleet.file.fleet_data import (
+    FleetSource,
+    FleetText,
+    values_path,
+    without_place,
+)
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.choosing import Undecided
-from multibot_rewrite.fleet.proposal.fleet_text import data_of
+from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked, without_names
 from multibot_rewrite.fleet.proposal.propose import Choice, Proposal, affix_of, propose
@@ -28,8 +32,6 @@ from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
 MOST_ROUNDS, MOST_TRIED = 10, 5
-# Where parameters stand that are in the fleet itself.
-_LAUNCHED = os.path.join(DICT, "values.yaml")
 
 
 def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
@@ -78,7 +80,7 @@ def that_builds(
     if bare != own:
         other, wrong = _without_blamed(bare, found, wanted, refused or {})
         made, errors = (made, errors) if wrong else (other, wrong)
-    return in_a_layout_that_builds(made, errors, wanted.trust)
+    return in_a_layout_that_builds(made, errors, wanted)
 
 
 def _without_blamed(
@@ -88,15 +90,22 @@ def _without_blamed(
     out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
-        errors = errors_of(data_of(made, os.curdir), wanted.trust)
-        blamed = dict(_blamed(made, errors))
+        errors = errors_of(_written(made, wanted), wanted.trust)
+        blamed = dict(_blamed(made, errors, wanted.file))
         if not blamed:
             break
         out |= blamed
     return made, errors
 
 
-def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+def _written(it: Proposal, wanted: Wanted) -> FleetText:
+    """Return the fleet file as it will be written."""
+    return FleetText(wanted.file, text_of(it, wanted.file))
+
+
+def _blamed(
+    it: Proposal, errors: Iterable[tuple[str, str]], fleet: str
+) -> Iterator[tuple[str, str]]:
     """The files that were found beside a description and have one of the errors, and which."""
     paths = (path for member in it.members for path in member.companions.paths)
     files = {os.path.abspath(path): path for path in paths}
@@ -105,19 +114,19 @@ def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[s
         own = file or os.path.abspath(place.partition(":")[0])
         if own in files:
             yield files[own], line if file else why
-        elif own == os.path.abspath(_LAUNCHED):
+        elif own == os.path.abspath(values_path(fleet)):
             yield VALUES, line if file else why
 
 
 def errors_of(
-    data: Mapping[str, Any], trust: bool = False, of_sources: bool = False
+    source: FleetSource, trust: bool = False, of_sources: bool = False
 ) -> list[tuple[str, str]]:
-    """Why a fleet does not build: the file, if one is at fault, and a line each; paths are relative to
-    the working directory. What else is right is read back, as a build does: what that finds of the
-    sources (``of_sources``) is in any layout."""
+    """Return why a fleet does not build: the file, if one is at fault, and a line each. What else is
+    right is read back, as a build does: what that finds of the sources (``of_sources``) is in any
+    layout."""
     folder = os.path.abspath("out")
     try:
-        plan = plan_fleet(read_fleet(data, "", os.environ), trust=trust)
+        plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
         made = make_outputs(plan, folder)
         found = {*made.findings, *plan.fleet.table.problems}
         if not any(it.level == ERROR for it in found):
@@ -125,7 +134,8 @@ def errors_of(
             asked = (it for it in back if of_sources or not _is_of_sources(it, found))
             found |= {*asked}
     except MultibotError as error:
-        return [("", without_dict(str(error)))]
+        place = (source.path,) if isinstance(source, FleetText) else ()
+        return [("", without_place(str(error), *place))]
     errors = sorted((it for it in found if it.level == ERROR), key=by_place)
     return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
 
@@ -144,7 +154,7 @@ def _file(it: Finding) -> str:
 
 
 def in_a_layout_that_builds(
-    it: Proposal, own: Sequence[tuple[str, str]], trust: bool = False
+    it: Proposal, own: Sequence[tuple[str, str]], wanted: Wanted
 ) -> Proposal:
     """The proposal in its own layout if it has no errors (``own``) so, else in the first that builds.
 
@@ -156,14 +166,16 @@ def in_a_layout_that_builds(
     for layout in (one.name for one in LAYOUTS if one.name != first):
         why = f"layout {first} does not work for these files: {own[0][1]}"
         other = in_layout(it, Choice(layout, why))
-        if not errors_of(data_of(other, os.curdir), trust):
+        if not errors_of(_written(other, wanted), wanted.trust):
             return other
     return _with_notes(it, own)
 
 
-def with_faults_of_sources(it: Proposal, trust: bool = False) -> Proposal:
+def with_faults_of_sources(it: Proposal, wanted: Wanted) -> Proposal:
     """The proposal that was chosen; what no choice mends is a note as well."""
-    return it if it.notes else _with_notes(it, errors_of(data_of(it, os.curdir), trust, True))
+    if it.notes:
+        return it
+    return _with_notes(it, errors_of(_written(it, wanted), wanted.trust, True))
 
 
 def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:

@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 
 BESIDE = Companions({"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("v.rviz",)}, "w/r.srdf", {}, {})
 MADE = Proposal({}, [Member(Looked("w/r.urdf"), BESIDE, ("robot1",), 0.5)], {})
-IN_FLEET = os.path.join("the fleet's dict as YAML", "values.yaml")
+IN_FLEET = os.path.join("some", "fleet.yaml", "values.yaml")
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,9 @@ IN_FLEET = os.path.join("the fleet's dict as YAML", "values.yaml")
 )  # fmt: skip
 def test_the_file_that_has_an_error(file: str, line: str, blamed: tuple[str, str] | None) -> None:
     """A description is the robot itself."""
-    assert list(trying._blamed(MADE, [(file, line)])) == ([blamed] if blamed else [])
+    assert list(trying._blamed(MADE, [(file, line)], "some/fleet.yaml")) == (
+        [blamed] if blamed else []
+    )
 
 
 @pytest.mark.parametrize(

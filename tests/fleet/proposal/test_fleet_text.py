@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The text of a proposed fleet, whole and by hand; what it holds is read back as data."""
+"""The text of a proposed fleet, whole and by hand."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import yaml
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.proposal.companions import Companions
-from multibot_rewrite.fleet.proposal.fleet_text import data_of, text_of
+from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES, Launched
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
@@ -109,20 +109,18 @@ robots:
 
 
 def test_the_whole_text_of_one_description() -> None:
-    head, _, text = text_of(ONE, "w", "fleet.yaml").partition("\n")
-    assert head.startswith("# yaml-language-server: $schema=")
-    assert text == TEXT
-    data = {"layout": "tf-per-robot", "distro": "jazzy", **COMMON, "robots": [
+    assert text_of(ONE, "w/fleet.yaml") == TEXT
+    assert yaml.safe_load(TEXT) == {
+        "layout": "tf-per-robot", "distro": "jazzy", **COMMON, "robots": [
         {"name": "robot1", "pose": {"x": 0, "y": 0}}, {"name": "robot2"},
     ]}  # fmt: skip
-    assert data_of(ONE, "w") == data == yaml.safe_load(text)
 
 
 def test_robots_of_several_descriptions_have_their_own_keys() -> None:
     bare = Member(ARM, Companions({}, "", {}, {}), ("arm1",), 0.5)
     two = ONE._replace(members=[*ONE.members, bare], launched=Launched())
     own = {**COMMON, "companions": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"}}
-    assert data_of(two, "w") == {
+    assert yaml.safe_load(text_of(two, "w/fleet.yaml")) == {
         "layout": "tf-per-robot",
         "distro": "jazzy",
         "robots": [
@@ -132,13 +130,13 @@ def test_robots_of_several_descriptions_have_their_own_keys() -> None:
         ],
     }
     small = ONE._replace(members=[bare], refused={}, others=(), launched=Launched(), notes=())
-    assert "not taken" not in (text := text_of(small, "w", "f")) and "Launch files" not in text
+    assert "not taken" not in (text := text_of(small, "w/f")) and "Launch files" not in text
 
 
 @pytest.mark.parametrize(("count", "more"), [(10, ""), (12, "#   and 2 more\n")])
 def test_of_many_that_are_left_ten_are_named(count: int, more: str) -> None:
     many = ONE._replace(others=tuple(f"w/o{at:02}.urdf" for at in range(count)), refused={})
     none = [it._replace(companions=BESIDE._replace(left={})) for it in ONE.members]
-    text = text_of(many._replace(members=none), "w", "f")
+    text = text_of(many._replace(members=none), "w/f")
     rows = "".join(f"#   o{at:02}.urdf: another description\n" for at in range(10))
     assert f"not taken:\n{rows}{more}\n" in text

@@ -15,6 +15,7 @@ import yaml
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal import trying
@@ -215,8 +216,8 @@ def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
 def test_a_layout_that_does_not_work_is_replaced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def errors(data: Mapping[str, Any], *_: object) -> list[tuple[str, str]]:
-        return [] if data["layout"] == "both" else [("", "MG320 they would meet")]
+    def errors(source: FleetText, *_: object) -> list[tuple[str, str]]:
+        return [] if "\nlayout: both\n" in source.text else [("", "MG320 they would meet")]
 
     monkeypatch.setattr(trying, "errors_of", errors)
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)

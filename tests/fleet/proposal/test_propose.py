@@ -52,7 +52,7 @@ def test_the_layout_is_that_of_the_files(members: list[Member], layout: str, why
 @pytest.mark.parametrize(
     ("kinds", "simulator", "why"),
     [
-        ("", "none", "no description has anything for a simulator"),
+        ("", "none", "the description has nothing for a simulator"),
         ("gz", "gazebo", "plugins and sensors for gz-sim; write none for real robots"),
         ("classic", "gazebo", "plugins and sensors for Gazebo Classic; write none for real robots"),
         (
