@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What pages, help texts and docstrings name is there: files, options, headings, the top of the repository."""
+"""What pages, help texts and docstrings name is there; what stands at the top of the repository."""
 
 from __future__ import annotations
 

@@ -44,8 +44,8 @@ HEADERS = switch(
 )
 WATCH = switch(
     "--watch",
-    about="show every change until Ctrl-C or --timeout; no message of a sensor is received; with --state,"
-    " nodes are asked when nothing has changed for a while, and again every 10 s",
+    about="show every change until Ctrl-C or --timeout, without the frames of sensors' messages; with"
+    " --state, nodes are asked when nothing has changed for a while, and again every 10 s",
 )
 # Of robots that are in several.
 DOMAINS = several(

@@ -58,6 +58,12 @@ NAMING = OptionGroup(
     ),
 )
 ROBOTS = several("--robots", "A,B", "names of robots", [])
+COUNT = value(
+    *("-n", "--count"),
+    metavar="COUNT",
+    about="as many robots: robot1, robot2 and so on; of a fleet file the first ones, or more like them",
+    type=values.count,
+)
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
