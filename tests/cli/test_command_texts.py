@@ -652,7 +652,8 @@ def test_a_paragraph_is_wrapped() -> None:
          " did you mean '--form'?"),
         (["--changed"], "unknown option --changed"),
         (["--dry-run"],
-         "unknown option --dry-run; --diff does that, which urdf-postfix, urdf-lint, multibot rename take"),
+         "unknown option --dry-run; --diff does that,"
+         " which urdf-postfix, urdf-lint, multibot rename take"),
         (["--xyzabc"], "unknown option --xyzabc"),
         # Dashes are not counted.
         (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),

@@ -295,14 +295,14 @@ def test_files_below_folders_are_each_once_and_in_order(tmp_path: Path) -> None:
     (tmp_path / "dead.urdf").symlink_to(tmp_path / "none")
     os.mkfifo(tmp_path / "pipe.urdf")
     suffixes = (".urdf", ".sdf")
-    found = walk.find_files([str(tmp_path / "b.urdf"), str(tmp_path)], suffixes)
+    found = walk.find_files([str(tmp_path / "b.urdf"), str(tmp_path)], suffixes).files
     assert [os.path.relpath(it, tmp_path) for it in found] == [
         "b.urdf", "A.URDF", "dead.urdf", "sub/d.sdf", "sub/x.urdf",
     ]  # fmt: skip
-    wanted = walk.find_files([str(tmp_path)], suffixes, wanted=lambda it: it.endswith(".sdf"))
+    wanted = walk.find_files([str(tmp_path)], suffixes, wanted=lambda it: it.endswith(".sdf")).files
     assert wanted == [str(tmp_path / "sub" / "d.sdf")]
     # A file that is named is taken whatever it is called.
-    assert walk.find_files([str(tmp_path / "c.txt")], suffixes) == [str(tmp_path / "c.txt")]
+    assert walk.find_files([str(tmp_path / "c.txt")], suffixes).files == [str(tmp_path / "c.txt")]
     gone, empty = str(tmp_path / "gone"), tmp_path / "empty"
     empty.mkdir()
     assert said(walk.find_files, [gone], suffixes) == f"{gone}: there is no such file or folder"

@@ -8,6 +8,7 @@ from multibot_rewrite.base.naming import WORLD_SYSTEMS
 from multibot_rewrite.cli.declared.shared import (
     COUNT,
     DISTRO,
+    EVERYTHING,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -154,6 +155,7 @@ LINT = Command(
                 value(
                     "--changed-since", metavar="REV", about="only files that git shows as changed"
                 ),
+                EVERYTHING,
                 ROOTS._replace(keywords={**ROOTS.keywords, "default": None}),
                 URDF,
                 VOCABULARY,

@@ -67,6 +67,11 @@ COUNT = value(
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
+EVERYTHING = switch(
+    "--no-default-excludes",
+    about="in folders, read build/, install/, log/ and what has a COLCON_IGNORE or AMENT_IGNORE or is"
+    " ignored by git, too",
+)
 URDF = path_option("--urdf", "the URDF of an SRDF or of another file")
 DISTRO = choice(
     "--distro",

@@ -73,6 +73,7 @@ complete -c multibot -n '__fish_seen_subcommand_from init' -s v -l verbose -d 'e
 complete -c multibot -n '__fish_seen_subcommand_from init' -l color -r -f -a 'auto always never' -d 'auto (default: on a terminal, unless NO_COLOR is set), always or never'
 complete -c multibot -n __fish_use_subcommand -f -a inspect -d 'Explain a finding\'s code, a plugin, a xacro\'s arguments.'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l suggest -r -d 'write a vocabulary file for what this description loads and nothing knows'
+complete -c multibot -n '__fish_seen_subcommand_from inspect' -l no-default-excludes -d 'in folders, read build/, install/, log/ and what has a COLCON_IGNORE or AMENT_IGNORE or is ignored by git, too'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l trust -d 'let xacro files do anything: else they only compute, and read what is near (SECURITY.md)'
