@@ -64,11 +64,14 @@ def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
     return found
 
 
-def git(where: str, *words: str) -> bytes:
-    """What git prints in a folder; raises OSError, subprocess.CalledProcessError. No hook, monitor,
-    pager, filter or other program of the repository is run. Of a submodule this holds only where git
-    is asked in its folder: its filters are its own."""
-    return _git(where, _filters(where), words)
+def git(where: str, *words: str, given: bytes = b"") -> bytes:
+    """Return what git prints in a folder, with ``given`` as its standard input.
+
+    Raises OSError, subprocess.CalledProcessError. No hook, monitor, pager, filter or other program of
+    the repository is run. Of a submodule this holds only where git is asked in its folder: its filters
+    are its own.
+    """
+    return _git(where, _filters(where), words, given)
 
 
 def _filters(where: str) -> dict[str, str]:
@@ -81,8 +84,8 @@ def _filters(where: str) -> dict[str, str]:
     return {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names if it}
 
 
-def _git(where: str, more: Mapping[str, str], words: Sequence[str]) -> bytes:
+def _git(where: str, more: Mapping[str, str], words: Sequence[str], given: bytes = b"") -> bytes:
     settings = [part for it in {**_QUIET, **more}.items() for part in ("-c", "=".join(it))]
     command = ["git", "-C", where, "--no-pager", *settings, *words]
     environ = {**os.environ, **_ALONE}
-    return subprocess.run(command, capture_output=True, check=True, env=environ).stdout
+    return subprocess.run(command, input=given, capture_output=True, check=True, env=environ).stdout

@@ -17,6 +17,7 @@ from multibot_rewrite.cli.folders import change_folder, check_inside, clear_left
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.sources.read import read_file
@@ -47,9 +48,7 @@ def run(options: argparse.Namespace) -> int:
     if options.undo:
         return _undone(options)
     check_report(options, printed=False)
-    if options.count == 0:
-        raise UsageError("--count 0: a fleet has at least one robot")
-    choice = Choice(number=options.count or 0)
+    choice = Choice(number=asked_number(options))
     fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
     plan = plan_fleet(fleet, trust=options.trust)
     note_interfaces(options, plan.fleet.facts)

@@ -13,7 +13,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import clip, plural
-from multibot_rewrite.cli.output import deliver, watched
+from multibot_rewrite.cli.output import deliver, note, watched
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
@@ -68,7 +68,10 @@ class CoverageReport(NamedTuple):
 
 def run(options: argparse.Namespace) -> int:
     """Read, add up, report; returns the exit code."""
-    paths = find_files(plain_words(options), SUFFIXES)
+    read = find_files(plain_words(options), SUFFIXES, options.no_default_excludes)
+    paths = read.files
+    if read.left_out:
+        note(options, read.left_out)
     check_xacro(options, paths)
     if options.output:
         check_target(options.output, [*paths, *options.vocabulary])

@@ -14,7 +14,14 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
-from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
+from multibot_rewrite.cli.usage import (
+    asked_number,
+    check_xacro,
+    given_options,
+    policy,
+    robots,
+    xacro_args,
+)
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet import Fleet, make_fleet
@@ -68,14 +75,22 @@ def _from_file(options: argparse.Namespace) -> Fleet:
         input_files,
         read_fleet,
     )
+    from multibot_rewrite.fleet.file.robot_choice import Choice
     from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
-    file = read_fleet(options.input, options.distro or "", os.environ)
-    if given := given_options(options, OF_FLEET_FILE):
-        raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
+    choice = Choice(number=asked_number(options))
+    file = read_fleet(options.input, options.distro or "", os.environ, choice)
+    check_own(options)
     if options.output:
         check_target(options.output, input_files(file))
     return closed_plan(plan_fleet(file, trust=options.trust))
+
+
+def check_own(options: argparse.Namespace) -> None:
+    """Raise UsageError for an option that says what a fleet file says itself."""
+    known = {name: written for name, written in OF_FLEET_FILE.items() if name in vars(options)}
+    if given := given_options(options, known):
+        raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
 
 
 def _from_words(options: argparse.Namespace) -> Fleet:

@@ -22,7 +22,7 @@ from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.usage import plain_words, xacro_args
+from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
@@ -55,8 +55,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    if options.count == 0:
-        raise UsageError("--count 0: a fleet has at least one robot")
+    asked_number(options)
     _check_names(options)
     _check_output(options)
     wanted = _wanted(options)

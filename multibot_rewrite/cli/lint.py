@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from multibot_rewrite.lint.cache.cache import Cache
 
 
-SUFFIXES = (".urdf", ".xacro", ".srdf", *BESIDE)
+SUFFIXES = (".urdf", ".xacro", ".srdf", ".sdf", *BESIDE)
 STDIN = "-"
 # What says by what it loads which release it is for.
 _TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
@@ -91,11 +91,14 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         message = f"cannot be read: {error.strerror}"
         refused.append(Finding("MB102", level, message, "", error.filename, 1, 1))
 
-    found = find_files(paths, SUFFIXES, refuse, is_linted)
+    read = find_files(paths, SUFFIXES, options.no_default_excludes, refuse, is_linted)
+    found = read.files
     # What is found below "." is named as git names it.
     if "." in paths:
         found = [path if path in paths else path.removeprefix("./") for path in found]
     kept = [path for path in found if path in paths or not is_excluded(path, config)]
+    if read.left_out:
+        note(options, read.left_out)
     if not kept:
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
     if not options.changed_since:

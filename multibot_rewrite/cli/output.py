@@ -31,6 +31,8 @@ MADE_BY = {
     "plan": "multibot build and multibot plan write one",
     "snapshot": "multibot snapshot -o FILE writes one",
 }
+# Commands whose input may be a fleet file.
+TAKE_FLEETS = ("plan", "rehearse", "view")
 _T = TypeVar("_T")
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"
@@ -88,7 +90,8 @@ def check_there(options: argparse.Namespace) -> None:
         from multibot_rewrite.base.nearest import did_you_mean  # a mistake alone needs it
 
         beside = os.listdir(folder or ".") if os.path.isdir(folder or ".") else []
-        kind = "fleet" if path.endswith((".yaml", ".yml")) and option == "input" else option
+        is_fleet = path.endswith((".yaml", ".yml")) and options.command in TAKE_FLEETS
+        kind = "fleet" if option == "input" and is_fleet else option
         hint = did_you_mean(name, sorted(beside)) or MADE_BY.get(kind, "")
         raise UsageError(f"{path} is not there{hint and f'; {hint}'}")
 

@@ -6,14 +6,13 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from functools import partial
 from itertools import pairwise, takewhile
 from typing import NoReturn
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.cli.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.output import AUTO, is_coloured
@@ -27,6 +26,8 @@ ROWS, COLUMNS = 24, 80
 WIDEST = 120
 _HEADING = lazy_compile(r"^([a-z][^\n:]*:)(?=$| )", re.MULTILINE)
 _NAME = lazy_compile(r"^(  (?:-\w, )?--[\w-]+)", re.MULTILINE)
+# A word that is meant as an option: -0.5 is a number, and what has a space is a value.
+_OPTION = lazy_compile(r"--?[A-Za-z][^\s=]*(=.*)?", re.DOTALL)
 
 
 class Parser(argparse.ArgumentParser):
@@ -182,12 +183,14 @@ def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
     """What the words say; a mistake ends the process with one line."""
     parser.colour = _colour_asked(words)
-    wrong = _unknown_option(words, parser.known())
-    if wrong:
-        parser.error(wrong)
+    if wrong := _first_unknown_option(words, parser.known()):
+        from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
+
+        parser.error(f"unknown option {wrong}{option_hint(wrong, parser)}")
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:
-        what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}; a list is written A,B"
+        hint = "; a list is written A,B" if _is_behind_list(unknown[0], words, parser) else ""
+        what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}{hint}"
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
     if "sources" in options:
@@ -219,29 +222,28 @@ def _kind_of(word: str, program: str) -> str:
     return ""
 
 
+def _is_behind_list(word: str, words: Sequence[str], parser: Parser) -> bool:
+    """Is the nearest option before a word one that takes a list?"""
+    before = words[: words.index(word)] if word in words else words
+    name = next((it for it in reversed(before) if it.startswith("-")), "")
+    lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
+    return any(name in it.option_strings for it in lists)
+
+
+def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
+    """Return the first option that is not known, without its value; "" where all are known."""
+    before_end = takewhile(lambda word: word != "--", words)
+    names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
+    return next((it for it in names if it not in known and not _is_short(it, known)), "")
+
+
+def _is_short(name: str, known: Collection[str]) -> bool:
+    """Is it a known short option with others, or with its value, as ``-qv`` or ``-n3``?"""
+    return not name.startswith("--") and name[:2] in known
+
+
 def _colour_asked(words: Sequence[str]) -> str:
     """``--color``, which ``--help`` may come before."""
     asked = [it for name, it in pairwise(words) if name == "--color"]
     asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
     return asked[-1] if asked else AUTO
-
-
-def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
-    """What is wrong with the first option that is not known; empty where all are."""
-    before_end = takewhile(lambda word: word != "--", words)
-    names = (word.partition("=")[0] for word in before_end if word.startswith("--"))
-    wrong = next((name for name in names if name not in known), "")
-    if not wrong:
-        return ""
-    from multibot_rewrite.base import other_words  # a mistake alone needs them
-
-    if other := other_words.OPTIONS.get(wrong):
-        return f"unknown option {wrong}; use {other}"
-    # Dashes are in all of them: compared with these, every short word is like every other.
-    full = {name.lstrip("-"): name for name in known if name.startswith("--")}
-    near = nearest(wrong.lstrip("-"), full, CHOICE)
-    return (
-        f"unknown option {wrong}; did you mean '{full[near]}'?"
-        if near
-        else f"unknown option {wrong}"
-    )

@@ -35,7 +35,17 @@ ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
 NOT_OF_LAUNCH = {
     it: f"--{it}"
-    for it in ("robots", "stack", "launch", "layout", "affix", "topics", "separator", "shared")
+    for it in (
+        "robots",
+        "count",
+        "stack",
+        "launch",
+        "layout",
+        "affix",
+        "topics",
+        "separator",
+        "shared",
+    )
 }
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")

@@ -22,7 +22,8 @@ from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import check_there, detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
 
-DONE, STOPPED, MISSING, INTERRUPTED = 0, 1, 4, 130
+# The last two are those of a shell for a process that SIGINT or SIGPIPE ends.
+DONE, STOPPED, MISSING, INTERRUPTED, CLOSED = 0, 1, 4, 130, 141
 PROGRAM = "multibot"
 
 
@@ -131,8 +132,8 @@ def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
         say(str(error), program)
         return MISSING if isinstance(error, Unusable) else UNUSABLE
     except BrokenPipeError:
-        say("standard output was closed before everything was written", program)
-        return STOPPED
+        # As head does when it has read enough: no finding, and nothing to tell.
+        return CLOSED
     except KeyboardInterrupt:
         say("interrupted; no half-written file is left", program)
         return INTERRUPTED

@@ -114,6 +114,11 @@ def _few_notes(findings: Sequence[Finding]) -> Iterator[Finding]:
             yield it._replace(message=message, hint="see them with --verbose")
 
 
+def _tells_notes(options: argparse.Namespace) -> bool:
+    """Are notes shown? Not to a reader who wants quiet, unless they are what the command fails on."""
+    return not options.quiet or options.format != TEXT or options.fail_on == NOTE
+
+
 def _text(
     options: argparse.Namespace,
     findings: Sequence[Finding],
@@ -122,7 +127,8 @@ def _text(
     *,
     colour: bool,
 ) -> str:
-    shown = findings if options.verbose else grouped(findings, about.robots)
+    told = findings if _tells_notes(options) else [it for it in findings if it.level != NOTE]
+    shown = told if options.verbose else grouped(told, about.robots)
     if options.format != TEXT and not rules:
         from multibot_rewrite.lint.catalogue import rules as all_rules  # it imports every check
 

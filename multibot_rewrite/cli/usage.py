@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import ROS_SEPARATORS, SEPARATORS
+from multibot_rewrite.base.rosnames import MOST, numbered_names
 from multibot_rewrite.description.sources.read import is_xacro
 
 if TYPE_CHECKING:
@@ -61,7 +62,27 @@ def plain_words(options: argparse.Namespace) -> list[str]:
 
 
 def robots(options: argparse.Namespace) -> list[str]:
-    """The robots, as words and by ``--robots``."""
+    """Return the robots: as words, by ``--robots``, or as many as ``--count`` says, with numbers."""
+    named, count = named_robots(options), vars(options).get("count")
+    if count is None:
+        return named
+    if named:
+        raise UsageError(f"--count {count} and {named[0]}: give a number of robots, or their names")
+    return list(numbered_names(asked_number(options)))
+
+
+def asked_number(options: argparse.Namespace) -> int:
+    """Return the number of robots that ``--count`` asks for, 0 without it; raises UsageError."""
+    count = vars(options).get("count")
+    if count is not None and not 0 < count <= MOST:
+        raise UsageError(
+            f"--count {count}: a fleet has at least one robot, and at most {MOST}: give such a number"
+        )
+    return count or 0
+
+
+def named_robots(options: argparse.Namespace) -> list[str]:
+    """Return the robots that have a name, as words and by ``--robots``."""
     words = plain_words(options)
     wrong = next((word for word in words if "=" in word), None)
     if wrong is not None and options.separator:

@@ -10,9 +10,10 @@ from typing import Any
 
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.cli.fleet import FLEET_FILES, check_own
 from multibot_rewrite.cli.output import deliver, note, status
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.cli.usage import check_xacro, policy, robots, xacro_args
+from multibot_rewrite.cli.usage import asked_number, check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.fleet_data import without_place
@@ -20,6 +21,7 @@ from multibot_rewrite.fleet.file.fleet_file import (
     input_files,
     read_fleet,
 )
+from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
@@ -121,15 +123,12 @@ def _fleet_file(path: str) -> str:
 def _plan(options: argparse.Namespace) -> FleetPlan:
     """The fleet of a fleet file, or of a description and names of robots."""
     first: str = options.input
-    given, arguments = robots(options), xacro_args(options)
-    if first.endswith((".yaml", ".yml")):
-        if given or arguments:
-            word = [*given, *arguments][-1]
-            raise UsageError(f"{first}: a fleet file has its own robots, leave out {word}")
+    if first.endswith(FLEET_FILES):
+        check_own(options)
         return _fleet(options, first)
     check_xacro(options, [first])
     read_file(first)
-    names = given or ["robot1"]
+    names, arguments = robots(options) or ["robot1"], xacro_args(options)
     data = {
         **policy(options),
         "description": first,
@@ -143,5 +142,6 @@ def _plan(options: argparse.Namespace) -> FleetPlan:
 
 
 def _fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:
-    file = read_fleet(source, options.distro or "", os.environ)
+    choice = Choice(number=asked_number(options) if isinstance(source, str) else 0)
+    file = read_fleet(source, options.distro or "", os.environ, choice)
     return plan_fleet(file, trust=options.trust)

@@ -9,42 +9,90 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
 from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.left_out import ignored_by_git, is_hidden, source_folders
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural, shorten, unique
+
+EVERYTHING = "--no-default-excludes"
 
 
 def _refuse(error: OSError) -> NoReturn:
     raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
 
 
+class FoundFiles(NamedTuple):
+    """The files that a command reads, and what was left out below the folders that were named."""
+
+    files: list[str]
+    folders: Sequence[str] = ()
+    ignored: Sequence[str] = ()
+
+    @property
+    def left_out(self) -> str:
+        """What was left out, and how to read it all the same; "" for nothing."""
+        folders = f"{plural(len(self.folders), 'folder')} ({shorten(self.folders)})"
+        files = f"{plural(len(self.ignored), 'file')} that git ignores"
+        parts = [folders] * bool(self.folders) + [files] * bool(self.ignored)
+        return f"left out: {' and '.join(parts)}; {EVERYTHING} reads them" if parts else ""
+
+
 def find_files(
     paths: Sequence[str],
     suffixes: tuple[str, ...],
+    everything: bool = False,
     unreadable: Callable[[OSError], None] = _refuse,
     wanted: Callable[[str], bool] = bool,
-) -> list[str]:
-    """The files named, and those with one of the suffixes below the folders named; each file once.
+) -> FoundFiles:
+    """Return the files named, and those with one of the suffixes below the folders named; each once.
 
-    ``unreadable`` is called for folders that cannot be read, ``wanted`` for each file in a folder.
-    Raises UsageError where a path is not there or nothing is found; InputError for such a folder unless
-    ``unreadable`` goes on.
+    Without ``everything``, what a build made or colcon, ament or git ignores is left out below a folder
+    that is none of it. ``unreadable`` is called for folders that cannot be read, ``wanted`` for each
+    file in a folder. Raises UsageError where a path is not there or nothing is found; InputError for
+    such a folder unless ``unreadable`` goes on.
     """
+    left_out: list[str] = []
     found: dict[str, str] = {}
+    below: list[str] = []
     for path in paths:
         if not os.path.exists(path):
             raise UsageError(f"{path}: there is no such file or folder")
-        below = filter(wanted, _below(path, suffixes, unreadable))
-        for file in below if os.path.isdir(path) else (path,):
-            found.setdefault(os.path.realpath(file), file)
+        if not os.path.isdir(path):
+            found.setdefault(os.path.realpath(path), path)
+            continue
+        kept = None if everything else left_out
+        below += filter(wanted, _below(path, suffixes, unreadable, kept))
+    ignored = set() if everything else _ignored(paths, below)
+    for path in below:
+        if path not in ignored:
+            found.setdefault(os.path.realpath(path), path)
+    result = FoundFiles(list(found.values()), unique(left_out), sorted(ignored))
     if not found:
         names = " or ".join(f"*{suffix}" for suffix in suffixes)
-        raise UsageError(f"{', '.join(paths)}: no {names} there; name a file or another folder")
-    return list(found.values())
+        hint = result.left_out or "name a file or another folder"
+        raise UsageError(f"{', '.join(paths)}: no {names} there; {hint}")
+    return result
+
+
+def _ignored(named: Iterable[str], below: Iterable[str]) -> set[str]:
+    """Return the files that git ignores, but for those in a folder that is named and ignored itself."""
+    found = ignored_by_git(below)
+    folders = [it for it in named if os.path.isdir(it)] if found else []
+    meant = [f"{it.rstrip('/')}/" for it in ignored_by_git(folders)]
+    return {it for it in found if not it.startswith(tuple(meant))}
 
 
 def _below(
-    top: str, suffixes: tuple[str, ...], unreadable: Callable[[OSError], None]
+    top: str,
+    suffixes: tuple[str, ...],
+    unreadable: Callable[[OSError], None],
+    left_out: list[str] | None,
 ) -> Iterator[str]:
-    """In order of names, without hidden folders; links are followed, each folder is visited once."""
+    """Yield files in the order of names; links are followed, each folder is visited once.
+
+    Hidden folders are not visited, nor are those that are no sources, which are noted in ``left_out``
+    if it is given.
+    """
     seen = set()
     for folder, folders, files in os.walk(top, onerror=unreadable, followlinks=True):
         real = os.path.realpath(folder)
@@ -52,7 +100,12 @@ def _below(
             folders.clear()
             continue
         seen.add(real)
-        folders[:] = sorted(it for it in folders if not it.startswith("."))
+        shown = sorted(it for it in folders if not is_hidden(it))
+        if left_out is not None:
+            folders[:] = source_folders(folder, shown)
+            left_out += (os.path.join(folder, it) for it in shown if it not in folders)
+        else:
+            folders[:] = shown
         paths = [os.path.join(folder, name) for name in sorted(_named(files, suffixes))]
         # A dead link is reported when it is read; a pipe would never end.
         yield from (path for path in paths if os.path.isfile(path) or not os.path.exists(path))

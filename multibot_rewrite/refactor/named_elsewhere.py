@@ -16,6 +16,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.companions.params.sections import MANAGER
@@ -25,7 +26,6 @@ from multibot_rewrite.refactor.placing import Left
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
 _DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
-_SKIPPED = {"build", "install", "log", "node_modules"}
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
 # Of one file so many lines are listed.
 _MOST = 20
@@ -91,7 +91,7 @@ def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
 def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
     """The files with such endings, without those that a build made."""
     for at, folders, names in os.walk(folder):
-        folders[:] = sorted(it for it in folders if it[0] != "." and it not in _SKIPPED)
+        folders[:] = source_folders(at, folders)
         for name in sorted(names):
             path = os.path.normpath(os.path.join(at, name))
             if name.endswith(endings) and os.path.isfile(path):

@@ -2,14 +2,16 @@
 """A graph without a plan -> the robots that are in it, and whose each of its names is. Pure.
 
 A namespace is a robot's where nodes are in it, and topics that a body has: commands, joints, odometry,
-a description, tf. Without namespaces a robot is a word at the end of such topics (``cmd_vel/robot1``),
-or one that several trees of frames have (``robot1/base_link``).
+a description, tf. Two or more namespaces with nodes of the same names are robots where these nodes have
+such a topic, wherever that is: in each namespace, or one for all. Without namespaces a robot is a word
+at the end of such topics (``cmd_vel/robot1``), or one that several trees of frames have
+(``robot1/base_link``).
 """
 
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 
@@ -31,6 +33,8 @@ BODY = (
     "scan",
 )
 _TF = frozenset(("tf", "tf_static"))
+# Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
+_WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
 # Namespaces with topics like a robot's that are only a part of one.
 _PART = re.compile(
     r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
@@ -108,8 +112,33 @@ def _namespaces(graph: System) -> list[str]:
         for space, words in found.items()
         if (len(words) > 1 or words & _TF) and _may_be_a_robot(space, lived_in)
     ]
+    # What is above a robot's namespace is a group of robots.
+    bodies += [
+        it
+        for it in _alike(graph, lived_in)
+        if not any(body.startswith(f"{it}/") for body in bodies)
+    ]
     outer = [it for it in bodies if not any(it.startswith(f"{other}/") for other in bodies)]
     return sorted({*outer, *_numbered_alike(outer, lived_in)})
+
+
+def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
+    """Yield namespaces beside each other with nodes of the same names, one of which has a topic of a
+    whole robot in each of them."""
+    whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
+    below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    for node in (it for it in nodes if it in whole):
+        space = node.rpartition("/")[0]
+        while space:
+            below[space.rpartition("/")[0]][space].add(node.removeprefix(space))
+            space = space.rpartition("/")[0]
+    for spaces in below.values():
+        times = Counter(name for names in spaces.values() for name in names)
+        for space, names in spaces.items():
+            if any(times[name] > 1 for name in names) and _may_be_a_robot(
+                space, [f"{space}{it}" for it in names]
+            ):
+                yield space
 
 
 def _may_be_a_robot(space: str, nodes: Collection[str]) -> bool:

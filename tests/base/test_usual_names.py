@@ -159,36 +159,6 @@ def test_words_that_stand_for_a_robot() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("known", "words"),
-    [
-        (
-            other_words.COMMANDS,
-            """arguments coverage vocabulary explain learn doctor diagnose lint remap zenoh rewrite
-            postfix prefix
-            strip undo split clean new create generate make launch run start up simulate test
-            verify watch why diff compare bag report graph record show visualize rviz""",
-        ),
-        (
-            other_words.OPTIONS,
-            """--again --undo --revert --strip --split --changes --snapshot --bag --zenoh --jobs
-            --groups --shared-frames --shared-topics --topic --lint --prefix --postfix --suffix
-            --frame-prefix --namespace --out --out-dir --dry-run --overwrite --inplace --description
-            --fleet
-            --plan --number --ros-distro --release --fail --no-color --json --sarif --sros2""",
-        ),
-        (
-            other_words.KEYS,
-            """urdf xacro sdf model robot_description args xacro_args parameters params_file
-            rviz_config position initial_pose start_pose ros_distro release sim gazebo
-            sim_time prefix postfix suffix ns nodes_file stacks""",
-        ),
-    ],
-)
-def test_words_that_people_write_have_an_answer(known: dict[str, str], words: str) -> None:
-    assert sorted(known) == sorted(words.split())
-
-
 def test_answers_are_options_and_keys_that_there_are() -> None:
     keys = {
         "description": "urdf xacro sdf model robot_description",

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -464,7 +465,8 @@ def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
 
 def test_options_that_a_plan_of_a_launch_file_has_not() -> None:
     assert plan.NOT_OF_LAUNCH == {
-        "robots": "--robots", "stack": "--stack", "launch": "--launch", "layout": "--layout",
+        "robots": "--robots", "count": "--count", "stack": "--stack", "launch": "--launch",
+        "layout": "--layout",
         "affix": "--affix", "topics": "--topics", "separator": "--separator", "shared": "--shared",
     }  # fmt: skip
 
@@ -645,14 +647,27 @@ def test_a_paragraph_is_wrapped() -> None:
     ("words", "said"),
     [
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
-        (["--from=a"], "unknown option --from; did you mean '--form'?"),
-        (["--json"], "unknown option --json; use --format json"),
+        (["--from=a"],
+         "unknown option --from; multibot check, multibot snapshot, multibot view take it;"
+         " did you mean '--form'?"),
+        (["--changed"], "unknown option --changed"),
+        (["--dry-run"],
+         "unknown option --dry-run; --diff does that,"
+         " which urdf-postfix, urdf-lint, multibot rename take"),
         (["--xyzabc"], "unknown option --xyzabc"),
         # Dashes are not counted.
         (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
-        (["a", "b"], "unexpected b; a list is written A,B"),
+        (["a", "b"], "unexpected b"),
+        # A part of it says what it is, another first letter does not.
+        (["--output-form", "b"], "unknown option --output-form; did you mean '--form'?"),
+        (["--norm"], "unknown option --norm"),
+        # A short option, alone or with its value; what is no option is a value.
+        (["-n", "3"],
+         "unknown option -n; urdf-postfix, multibot build, multibot init and 3 more take it"),
+        (["-x3"], "unknown option -x3"),
+        (["a", "-0.5"], "unexpected -0.5"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_is_one_line(
     words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -673,7 +688,8 @@ def test_what_a_command_is_told() -> None:
         "auto",
         "always",
     )
-    assert parser._unknown_option(["--", "--odd"], ["--form"]) == ""
+    assert parser._first_unknown_option(["--", "--odd"], ["--form"]) == ""
+    assert parser._first_unknown_option(["-qv", "-q", "-q3", "-"], ["-q"]) == ""
 
 
 def test_the_command_of_ros2() -> None:
@@ -698,7 +714,6 @@ def test_the_command_of_ros2() -> None:
             "the proof failed, nothing was written; this is a fault of the tool: x",
         ),
         (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
-        (BrokenPipeError(), 1, "standard output was closed before everything was written"),
         (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),
     ],
 )  # fmt: skip
@@ -711,6 +726,16 @@ def test_an_error_is_a_line_and_an_exit_code(
     assert process.guarded("p", fails, False) == code
     assert capsys.readouterr().err == f"p: {said}\n"
     assert process.guarded("p", lambda: 3, False) == 3
+
+
+def test_a_closed_pipe_is_no_finding(capsys: pytest.CaptureFixture[str]) -> None:
+    """``| head`` has read enough: the code that a shell gives for SIGPIPE, and no word."""
+
+    def writes() -> int:
+        raise BrokenPipeError
+
+    assert process.guarded("p", writes, False) == 128 + signal.SIGPIPE
+    assert capsys.readouterr() == ("", "")
 
 
 def test_messages_of_a_closed_stream_go_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:

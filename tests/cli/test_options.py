@@ -174,6 +174,32 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("multibot inspect MB20X", "did you mean 'MB20'?"),
         (f"multibot snapshot {PARAMS}", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
+        ("multibot build a.yaml b.yaml --select MB1", "unexpected b.yaml; see"),
+        ("urdf-lint a --output-format github", "did you mean '--format'?"),
+        ("multibot build --robots a,b", "write the key robots: into the fleet file"),
+        ("multibot build --urdf a.urdf", "write the key description: into the fleet file"),
+        ("multibot rviz f.yaml", "companions: {rviz: FILE} in the fleet file"),
+        ("urdf-lint a --list-rules", "use multibot inspect MB;"),
+        ("urdf-lint a --rules", "use multibot inspect MB;"),
+        ("urdf-lint a --disable MB211", "use --ignore CODES"),
+        ("urdf-lint --explain MB211", "use multibot inspect CODE"),
+        ("urdf-lint a -n 3", "use --robots robot1,robot2"),
+        ("urdf-lint a --robot r1", "did you mean '--robots'?"),
+        (
+            "multibot inspect --strict",
+            "--fail-on does that, which urdf-postfix, urdf-lint, multibot",
+        ),
+        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there\n"),
+        (
+            "multibot plan nosuch.yaml",
+            "nosuch.yaml is not there; multibot init PATH... writes a fleet",
+        ),
+        (
+            f"urdf-postfix {ROVER} robot1 -n 2",
+            "--count 2 and robot1: give a number of robots, or their",
+        ),
+        (f"urdf-postfix {ROVER} -n 0", "--count 0: a fleet has at least one robot"),
+        (f"multibot plan {FLEET} -n 0", "--count 0: a fleet has at least one robot"),
         ("urdf-postfix a --separator link=_ frame=_", "write --separator link=_,frame=_"),
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
         ("urdf-postfix a b --separator lnk=_", "'link'"),
@@ -199,7 +225,7 @@ def test_a_mistake_is_one_line_with_a_hint(
 def test_a_person_can_read_the_options_of_all_commands() -> None:
     """What the parsers take, ``--help`` and ``--version`` among it; none is hidden."""
     every = [it for command in ALL.values() for it in make_parser(command)._actions]
-    assert len({it.option_strings[-1] for it in every if it.option_strings} - {"-h"}) <= 60
+    assert len({it.option_strings[-1] for it in every if it.option_strings} - {"-h"}) <= 61
     assert [it for it in every if it.help == argparse.SUPPRESS] == []
     assert len(COMMANDS) <= 12
 

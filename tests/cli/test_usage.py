@@ -52,6 +52,19 @@ def test_a_separator_among_the_robots_is_said() -> None:
     assert usage.robots(options(words=["a=b"], robots=[], separator=[])) == ["a=b"]
 
 
+def test_a_number_stands_for_names_with_numbers() -> None:
+    given = {"words": ["x:=1"], "robots": [], "separator": []}
+    assert usage.robots(options(**given, count=3)) == ["robot1", "robot2", "robot3"]
+    assert usage.robots(options(**given, count=None)) == []
+    named = options(**{**given, "robots": ["left"]}, count=3)
+    assert (
+        said(usage.robots, named) == "--count 3 and left: give a number of robots, or their names"
+    )
+    for count in (0, 10_001):
+        told = said(usage.robots, options(**given, count=count))
+        assert told.startswith(f"--count {count}: a fleet has at least one robot")
+
+
 def test_separators_of_a_kind_count_more_than_one_for_all() -> None:
     assert usage.separators(options(separator=["frame=/", "link=_"])) == {"frame": "/", "link": "_"}
     every = usage.separators(options(separator=["-", "link=_"]))
@@ -282,14 +295,14 @@ def test_files_below_folders_are_each_once_and_in_order(tmp_path: Path) -> None:
     (tmp_path / "dead.urdf").symlink_to(tmp_path / "none")
     os.mkfifo(tmp_path / "pipe.urdf")
     suffixes = (".urdf", ".sdf")
-    found = walk.find_files([str(tmp_path / "b.urdf"), str(tmp_path)], suffixes)
+    found = walk.find_files([str(tmp_path / "b.urdf"), str(tmp_path)], suffixes).files
     assert [os.path.relpath(it, tmp_path) for it in found] == [
         "b.urdf", "A.URDF", "dead.urdf", "sub/d.sdf", "sub/x.urdf",
     ]  # fmt: skip
-    wanted = walk.find_files([str(tmp_path)], suffixes, wanted=lambda it: it.endswith(".sdf"))
+    wanted = walk.find_files([str(tmp_path)], suffixes, wanted=lambda it: it.endswith(".sdf")).files
     assert wanted == [str(tmp_path / "sub" / "d.sdf")]
     # A file that is named is taken whatever it is called.
-    assert walk.find_files([str(tmp_path / "c.txt")], suffixes) == [str(tmp_path / "c.txt")]
+    assert walk.find_files([str(tmp_path / "c.txt")], suffixes).files == [str(tmp_path / "c.txt")]
     gone, empty = str(tmp_path / "gone"), tmp_path / "empty"
     empty.mkdir()
     assert said(walk.find_files, [gone], suffixes) == f"{gone}: there is no such file or folder"
@@ -443,6 +456,7 @@ def test_files_that_options_name_to_be_read() -> None:
          "g.json is not there; multibot snapshot -o FILE writes one"),
         ({"plan": "out/p.yaml"}, "out/p.yaml is not there; multibot build and multibot plan write one"),
         ({"input": "other.yaml"}, "other.yaml is not there; multibot init PATH... writes a fleet file"),
+        ({"input": "p.yaml", "command": "urdf-postfix"}, "p.yaml is not there"),
         ({"fleet": "our.yml"}, "our.yml is not there; multibot init PATH... writes a fleet file"),
         ({"urdf": "none.xacro"}, "none.xacro is not there"),
     ],
@@ -453,7 +467,7 @@ def test_a_file_that_is_not_there_is_told_with_what_helps(
     monkeypatch.chdir(tmp_path)
     for name in ("rover.urdf", "fleet.yaml"):
         Path(name).write_text("")
-    assert said(output.check_there, options(**given)) == message
+    assert said(output.check_there, options(**{"command": "plan", **given})) == message
 
 
 def test_a_result_is_not_written_over_a_file_that_an_option_names(tmp_path: Path) -> None:

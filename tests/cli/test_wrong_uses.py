@@ -184,7 +184,8 @@ def test_the_last_line_of_a_lint() -> None:
 
 
 PLAN = {
-    **dict.fromkeys(("robots", "stack", "launch", "layout", "affix", "topics")), "form": "plan",
+    **dict.fromkeys(("robots", "count", "stack", "launch", "layout", "affix", "topics")),
+    "form": "plan",
     "separator": [], "shared": [], "input": "a.launch.py", "words": [], "output": None,
 }  # fmt: skip
 
@@ -320,9 +321,13 @@ def test_a_folder_is_a_file_of_each_robot_below_it(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["f.yaml", "f.yml"])
 @pytest.mark.parametrize(
-    ("words", "word"), [(["a", "b"], "b"), (["a", "x:=1"], "x"), (["x:=1"], "x")]
-)
-def test_a_fleet_file_to_view_has_its_own_robots(name: str, words: list[str], word: str) -> None:
-    given = options(input=name, words=words, robots=[])
-    told = f"{name}: a fleet file has its own robots, leave out {word}"
-    assert said(view._plan, given) == told
+    ("given", "written"),
+    [({"words": ["a"]}, "ROBOT"), ({"words": ["x:=1"]}, "ROBOT"), ({"robots": ["a"]}, "--robots"),
+     ({"shared": ["/t"]}, "--shared"), ({"layout": "both"}, "--layout")],
+)  # fmt: skip
+def test_a_fleet_file_to_view_has_its_own(
+    name: str, given: dict[str, object], written: str
+) -> None:
+    usual = {"words": [], "robots": [], "layout": None, "affix": None, "topics": None}
+    asked = options(**{**usual, "separator": [], "shared": [], "input": name, **given})
+    assert said(view._plan, asked) == f"{name}: a fleet file has its own, leave out {written}"

@@ -81,6 +81,12 @@ def test_numbered_robots_go_on(here: Path) -> None:
     assert list(poses(two, Choice(number=1))) == ["r1"]
 
 
+def test_the_first_robots_need_no_numbers(here: Path) -> None:
+    named = [{"name": "rover", "pose": {"x": 1.0}}, {"name": "scout", "pose": {"y": 2.0}}]
+    assert list(poses(named, Choice(number=1))) == ["rover"]
+    assert list(poses(named, Choice(number=2))) == ["rover", "scout"]
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -104,9 +110,9 @@ def test_a_wrong_text_is_one_line(here: Path, text: str, said: str) -> None:
 @pytest.mark.parametrize(
     ("robots", "choice", "said"),
     [
-        ([{"name": "a"}], Choice(number=2), "no robot as a pattern"),
-        ([{"name": "a1"}], Choice(number=2), "no robot as a pattern"),
-        ([{"name": "a1"}, {"name": "b2"}], Choice(number=3), "no robot as a pattern"),
+        ([{"name": "a"}], Choice(number=2), "does not say what more robots are called"),
+        ([{"name": "a1"}], Choice(number=2), "write count: 2 into one of its robots"),
+        ([{"name": "a1"}, {"name": "b2"}], Choice(number=3), "or call them robot1 and robot2"),
         ([{"name": "a1"}, {"name": "a2"}], Choice(number=20_000), "from 1 to"),
         ([PATTERN], Choice(number=-1), "from 1 to"),
         ([{"name": "a", "step": {"x": 1}}], Choice(), "step is of a robot with count"),

@@ -19,6 +19,7 @@ else:
     import tomli as tomllib
 
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+URLS: dict[str, str] = PROJECT["urls"]
 MANIFEST = ET.parse(ROOT / "package.xml").getroot()
 FORMS = sorted(path.name for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 
@@ -71,6 +72,14 @@ def test_the_manifest_is_what_ros_takes() -> None:
     assert warnings == []
     assert [it.name for it in found.authors] == [it["name"] for it in PROJECT["authors"]]
     assert found.get_build_type() == "ament_python"
+
+
+def test_the_links_of_the_project_are_of_one_repository() -> None:
+    """The one that the site and the examples of CI name."""
+    site = (ROOT / "docs" / "site" / "mkdocs.yml").read_text()
+    (home,) = re.findall(r'SITE_REPOSITORY, "([^"]+)"', site)
+    assert {it.partition("/issues")[0].partition("/blob/")[0] for it in URLS.values()} == {home}
+    assert (ROOT / URLS["Changelog"].rpartition("/")[2]).is_file()
 
 
 def test_what_is_always_needed_has_no_condition() -> None:

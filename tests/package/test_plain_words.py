@@ -110,9 +110,18 @@ def test_the_overview_has_no_private_term() -> None:
     assert list(found_in(overview("never"))) == []
 
 
+EVERY_OPTION = {name for it in (*COMMANDS.values(), *PROGRAMS) for name in make_parser(it).known()}
+# Some commands have these; in the others they are taken for something else.
+OF_SOME = {"--undo", "--prefix", "--namespace", "--plan", "-n", "--count"}
+
+
 def test_other_words_lead_to_what_there_is() -> None:
-    """No word of the table is a command, and each answer names a command or program that exists."""
+    """No word of the tables is a command or option, and each answer names what exists."""
     assert not {*other_words.COMMANDS} & {*COMMANDS}
+    assert {it.rpartition(" ")[2] for it in other_words.OPTIONS} & EVERY_OPTION <= OF_SOME
+    for answer in (*other_words.COMMANDS.values(), *other_words.OPTIONS.values()):
+        assert {*re.findall(r"(?<!\S)--[a-z-]+", answer)} <= EVERY_OPTION, answer
+        assert {*re.findall(r"multibot (?!before)([a-z-]+)", answer)} <= {*COMMANDS}, answer
     programs = {it.name for it in PROGRAMS}
     for answer in other_words.COMMANDS.values():
         first, second = answer.replace(",", "").split()[:2]

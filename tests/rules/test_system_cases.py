@@ -272,6 +272,18 @@ ELSEWHERE = (
             ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it with"
              " -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
         ),
+        # The topic of static transforms is called as its tf topic is, wherever the word stands.
+        (
+            (f"/rsp_robot1 publishes /tf/robot1 {TF}", f"/rviz2 subscribes /tf {TF}"),
+            ["MG405 listens to /tf, on which no node sends; robots send on /tf/robot1; start it with"
+             " -r /tf:=/tf/robot1 -r /tf_static:=/tf_static/robot1, one for each robot"],
+        ),
+        (
+            (f"/robot1/rsp publishes /robot1/tf {TF}", f"/robot1/base publishes /old/tf {TF}"),
+            ["MG405 /robot1/base sends tf on /old/tf, but the tf of robot1 is on /robot1/tf; pass"
+             " -r /old/tf:=tf -r /old/tf_static:=tf_static: to the whole process, where the node"
+             " shares one"],
+        ),
         (
             (f"/x publishes /robot1/tf {TF}", "transform robot2/a -> robot2/b on /robot1/tf",
              "transform robot1/a -> robot1/b on /robot1/tf"),

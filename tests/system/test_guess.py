@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.system.environment import setting_caveats
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.records import (
@@ -232,3 +234,44 @@ def test_variables_that_hide_something_have_a_caveat(
     """rcl discovery_options.c, rmw_fastrtps participant.cpp; the flag: is the view incomplete?"""
     given = dict(it.split("=") for it in variables.split())
     assert [(it.code, it.incomplete) for it in setting_caveats(given)] == codes
+
+
+@pytest.mark.parametrize(
+    ("published", "robots"),
+    [
+        # Nodes of one name in namespaces beside each other, and what a whole robot has, wherever it is.
+        ("/r1/base /cmd_vel, /r2/base /cmd_vel, /r1/base /scan, /r2/base /scan", ["r1", "r2"]),
+        ("/r1/base /r1/cmd_vel, /r2/base /r2/cmd_vel", ["r1", "r2"]),
+        ("/red/base /odom, /blue/base /odom, /red/eye /scan", ["blue", "red"]),
+        ("/a/r/base /odom, /b/r/base /odom", ["a", "b"]),
+        # One alone, nodes of other names, and what a part has, too.
+        ("/r1/base /cmd_vel, /base /cmd_vel", []),
+        ("/r1/base /cmd_vel, /r2/teleop /cmd_vel", []),
+        ("/front/lidar /scan, /rear/lidar /scan", []),
+        ("/left/eye /tf_static, /right/eye /tf_static", []),
+        ("/front_wheel/driver /joint_states, /rear_wheel/driver /joint_states", []),
+        # What is above the namespace of a robot is a group of them.
+        ("/a/r1/base /a/r1/odom, /a/r1/base /a/r1/scan, /b/r1/base /b/r1/odom, /b/r1/base /b/r1/scan",
+         ["a/r1", "b/r1"]),
+    ],
+)  # fmt: skip
+def test_robots_of_one_kind_show_by_their_nodes(published: str, robots: list[str]) -> None:
+    ends = [end(node, PUBLISHES, name) for node, name in map(str.split, published.split(","))]
+    nodes = dict.fromkeys(it.node for it in ends)
+    found = guess_robots(System(tuple(map(Node, nodes)), tuple(ends)))
+    assert [it.name for it in found] == robots
+
+
+def test_a_topic_of_two_robots_is_an_error_without_a_plan() -> None:
+    ends = [
+        End(TOPIC, role, name, type_, "", f"/{robot}/driver", None, "")
+        for robot in ("robot1", "robot2")
+        for role, name, type_ in (
+            (SUBSCRIBES, f"/{robot}/cmd_vel", "geometry_msgs/msg/Twist"),
+            (PUBLISHES, "/scan", "sensor_msgs/msg/LaserScan"),
+        )
+    ]
+    seen = diagnose(System((Node("/robot1/driver"), Node("/robot2/driver")), tuple(ends)))
+    assert [(it.level, it.names) for it in seen.findings] == [("error", ("/scan",))]
+    # An earlier snapshot has the same robots as a plan.
+    assert [it.name for it in seen_plan(seen).robots] == ["robot1", "robot2"]

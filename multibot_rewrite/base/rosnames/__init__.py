@@ -7,6 +7,9 @@ from multibot_rewrite.base.rosnames.names import (
     MAX_TOKEN as MAX_TOKEN,
 )
 from multibot_rewrite.base.rosnames.names import (
+    MOST as MOST,
+)
+from multibot_rewrite.base.rosnames.names import (
     NameFault as NameFault,
 )
 from multibot_rewrite.base.rosnames.names import (
@@ -29,6 +32,9 @@ from multibot_rewrite.base.rosnames.names import (
 )
 from multibot_rewrite.base.rosnames.names import (
     expand as expand,
+)
+from multibot_rewrite.base.rosnames.names import (
+    numbered_names as numbered_names,
 )
 from multibot_rewrite.base.rosnames.names import (
     propose_token as propose_token,

@@ -19,6 +19,8 @@ from multibot_rewrite.base.record import NamedTuple
 MAX_TOPIC = 247
 MAX_NAMESPACE = MAX_TOKEN = 245
 MAX_NODE = 255
+# The most robots that a number may ask for.
+MOST = 10_000
 _DIGITS = frozenset("0123456789")
 _LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_")
 _TOKEN = _LETTERS | _DIGITS
@@ -185,6 +187,11 @@ def check_robot_name(name: str) -> str:
     if not problem:
         return name
     raise UsageError(f"robot name {name!r}: {problem}; use for example {propose_token(name)!r}")
+
+
+def numbered_names(count: int, stem: str = "robot") -> tuple[str, ...]:
+    """Return the names of robots that only have a number: robot1, robot2 and so on."""
+    return tuple(f"{stem}{number}" for number in range(1, count + 1))
 
 
 def check_robot_names(names: Iterable[str]) -> tuple[str, ...]:

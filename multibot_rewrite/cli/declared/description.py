@@ -6,7 +6,9 @@ from __future__ import annotations
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.naming import WORLD_SYSTEMS
 from multibot_rewrite.cli.declared.shared import (
+    COUNT,
     DISTRO,
+    EVERYTHING,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -48,10 +50,13 @@ POSTFIX = Command(
             "an argument of its own",
         ),
         Example("urdf-postfix rover.urdf robot1 --layout frames-per-robot --affix prefix"),
+        Example("urdf-postfix rover.urdf -n 3 -o 'out/{robot}.urdf'", "robot1, robot2, robot3"),
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
         Example("urdf-postfix nav2_params.yaml robot1 --urdf rover.urdf", "or RViz, MoveIt"),
-        Example("urdf-postfix robot1.urdf robot1 --undo", "undo it"),
+        Example(
+            "urdf-postfix robot1.urdf robot1 --undo", "undo it, with the options it was made with"
+        ),
         Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
     ),
@@ -72,6 +77,7 @@ POSTFIX = Command(
                     "*",
                 ),
                 ROBOTS,
+                COUNT,
                 URDF,
                 VOCABULARY,
                 DISTRO,
@@ -149,6 +155,7 @@ LINT = Command(
                 value(
                     "--changed-since", metavar="REV", about="only files that git shows as changed"
                 ),
+                EVERYTHING,
                 ROOTS._replace(keywords={**ROOTS.keywords, "default": None}),
                 URDF,
                 VOCABULARY,

@@ -6,6 +6,7 @@ from __future__ import annotations
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    COUNT,
     DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
@@ -36,7 +37,6 @@ from multibot_rewrite.cli.options import (
     repeated,
     several,
     switch,
-    value,
 )
 
 # The plan, and besides those of ``spelling.table_formats``, which a help text does not import.
@@ -51,6 +51,7 @@ _DESCRIPTION = OptionGroup(
         argument("input", "INPUT", "the robot's description before any rewrite, or a fleet file"),
         argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
         ROBOTS,
+        COUNT,
         several(
             "--stack",
             "NAME",
@@ -88,13 +89,6 @@ _FLEET = Option(
     "the fleet file; default: fleet.yaml",
     {"metavar": "FLEET", "nargs": "?", "default": "fleet.yaml"},
 )
-_COUNT = value(
-    "-n",
-    "--count",
-    metavar="COUNT",
-    about="robots of each description (default: 2)",
-    type=values.count,
-)
 _FIRST = "the first robots of the file, or more like the last one; default: as the file has them"
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
@@ -129,7 +123,7 @@ INIT = Command(
         OptionGroup(
             "answers, which are asked for on a terminal where they are not given",
             (
-                _COUNT,
+                COUNT._replace(help="robots of each description (default: 2)"),
                 ROBOTS,
                 choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
                 choice(
@@ -161,7 +155,7 @@ BUILD = Command(
         Example("multibot build --undo", "remove what a build wrote into out/"),
     ),
     (
-        OptionGroup("input", (_FLEET, _COUNT._replace(help=_FIRST), DISTRO, TRUST)),
+        OptionGroup("input", (_FLEET, COUNT._replace(help=_FIRST), DISTRO, TRUST)),
         output_group(
             output("write everything into that folder; default: out/", default="out/"),
             switch(
@@ -284,6 +278,7 @@ VIEW = Command(
                 ),
                 argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
                 ROBOTS,
+                COUNT,
                 FROM,
                 DISTRO,
                 TRUST,

@@ -40,12 +40,12 @@ STATE = switch(
 )
 HEADERS = switch(
     "--no-frame-ids",
-    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+    about="do not receive a message of each sensor topic, for its frame",
 )
 WATCH = switch(
     "--watch",
-    about="show every change until Ctrl-C or --timeout; with --state, nodes are asked when nothing has"
-    " changed for a while, and again every 10 s",
+    about="show every change until Ctrl-C or --timeout, without the frames of sensors' messages; with"
+    " --state, nodes are asked when nothing has changed for a while, and again every 10 s",
 )
 # Of robots that are in several.
 DOMAINS = several(

@@ -3,7 +3,14 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.cli.declared.shared import DISTRO, GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
+from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
+    EVERYTHING,
+    GENERAL,
+    RESULT_OUTPUT,
+    TRUST,
+    VOCABULARY,
+)
 from multibot_rewrite.cli.options import (
     Command,
     Example,
@@ -46,6 +53,7 @@ INSPECT = Command(
                     "write a vocabulary file for what this description loads and nothing"
                     " knows; NAME:=VALUE is for xacro",
                 ),
+                EVERYTHING,
                 VOCABULARY,
                 DISTRO,
                 TRUST,

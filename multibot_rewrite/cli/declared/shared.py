@@ -58,8 +58,19 @@ NAMING = OptionGroup(
     ),
 )
 ROBOTS = several("--robots", "A,B", "names of robots", [])
+COUNT = value(
+    *("-n", "--count"),
+    metavar="COUNT",
+    about="as many robots: robot1, robot2 and so on; of a fleet file the first ones, or more like them",
+    type=values.count,
+)
 VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
+)
+EVERYTHING = switch(
+    "--no-default-excludes",
+    about="in folders, read build/, install/, log/ and what has a COLCON_IGNORE or AMENT_IGNORE or is"
+    " ignored by git, too",
 )
 URDF = path_option("--urdf", "the URDF of an SRDF or of another file")
 DISTRO = choice(

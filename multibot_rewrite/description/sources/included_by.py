@@ -10,6 +10,7 @@ from contextlib import suppress
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.markup import IN_EXPRESSION, IN_SUBSTITUTION
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.wildcards import with_gaps
@@ -18,7 +19,7 @@ from multibot_rewrite.description.sources.read import XACRO, has_xacro
 
 # Files that are looked at; of a larger one nothing is read.
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
-SKIPPED = frozenset(("build", "install", "log", "node_modules", "test", "tests", "__pycache__"))
+TESTS = frozenset(("test", "tests"))
 _INCLUDED = lazy_compile(rb"""<(?:\w+:)?include\b[^<>]*\bfilename\s*=\s*["']([^"'<]+)["']""")
 _FILLED = lazy_compile(rf"\$\{{{IN_EXPRESSION}\}}|\$\({IN_SUBSTITUTION}\)")
 _MACRO = lazy_compile(rb"<\w+:macro\b")
@@ -97,7 +98,7 @@ def _xacros(folder: str) -> list[str]:
     found: list[str] = []
     seen = 0
     for above, folders, names in os.walk(folder):
-        folders[:] = sorted(it for it in folders if it[0] != "." and it not in SKIPPED)
+        folders[:] = (it for it in source_folders(above, folders) if it not in TESTS)
         seen += len(names)
         if seen > MOST_FILES:
             break

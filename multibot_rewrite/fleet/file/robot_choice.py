@@ -16,14 +16,13 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import check_robot_name
+from multibot_rewrite.base.rosnames import MOST, check_robot_name
 from multibot_rewrite.fleet.file.fleet_data import FleetData
 
 COUNT, STEP, POSE, NAME = "count", "step", "pose", "name"
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # What each robot has for itself.
 OWN = ("namespace", "prefix", "postfix", "model")
-MOST = 10_000
 _NUMBERED = lazy_compile(r"(\w*[A-Za-z_])(\d+)")
 _TWO = 2
 _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
@@ -93,9 +92,13 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
     """The first robots of a file that numbers them, and more like the last one, as far from each other
     as the last two."""
     given = read.data["robots"]
-    stem, number = _numbered(read, count)
+    if not 0 < count <= MOST:
+        raise UsageError(f"count {count}: write a number from 1 to {MOST}")
     yield from list(enumerate(given))[:count]
     last = len(given) - 1
+    if count <= len(given):
+        return
+    stem, number = _numbered(read, count)
     before, pose = (robot.get(POSE, {}) for robot in (given[last - 1], given[last]))
     kept = {key: it for key, it in _without(given[last]).items() if key not in OWN}
     for more in range(1, count - last):
@@ -107,14 +110,12 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
 def _numbered(read: FleetData, count: int) -> tuple[str, int]:
     """The name of all robots without their numbers, and the last number; raises UsageError."""
     given = read.data["robots"]
-    if not 0 < count <= MOST:
-        raise UsageError(f"count {count}: write a number from 1 to {MOST}")
     found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
     names = [(it[1], int(it[2])) for it in found if it]
     if len({stem for stem, _ in names}) == 1 and len(names) == len(given) and len(given) >= _TWO:
         return names[-1]
-    hint = "write count: into one of its robots, or call them robot1 and robot2"
-    raise UsageError(f"count {count}: {read.file} has no robot as a pattern; {hint}")
+    hint = f"write count: {count} into one of its robots, or call them robot1 and robot2"
+    raise UsageError(f"count {count}: {read.file} does not say what more robots are called; {hint}")
 
 
 def _further(before: Mapping[str, float], pose: Mapping[str, float], axis: str, more: int) -> float:

@@ -11,6 +11,7 @@ from typing import Any
 from lxml import etree
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import numbered_names
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.release_said import release_said
@@ -142,8 +143,8 @@ def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[st
 def names_of(stems: Sequence[str], count: int) -> list[tuple[str, ...]]:
     """The names of ``count`` robots of each description: robot1, robot2, or by its own name."""
     if len(stems) == 1:
-        return [tuple(f"robot{at}" for at in range(1, count + 1))]
-    return [tuple(f"{stem}{at}" for at in range(1, count + 1)) for stem in unlike(stems)]
+        return [numbered_names(count)]
+    return [numbered_names(count, stem) for stem in unlike(stems)]
 
 
 def unlike(words: Iterable[str]) -> list[str]:

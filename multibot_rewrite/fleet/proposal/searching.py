@@ -12,11 +12,12 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
+from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.included_by import (
     MOST_FILES,
-    SKIPPED,
+    TESTS,
     data_of_file,
     includers,
     parts_among,
@@ -140,7 +141,7 @@ def _files(folder: str) -> Iterator[str]:
         if above != folder and _BUILT.issubset(names):
             folders[:] = []
             continue
-        folders[:] = sorted(it for it in folders if it[0] != "." and it not in SKIPPED)
+        folders[:] = (it for it in source_folders(above, folders) if it not in TESTS)
         for name in sorted(names):
             seen += 1
             if seen > MOST_FILES:

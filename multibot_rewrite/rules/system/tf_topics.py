@@ -78,8 +78,8 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
         if rviz and sent and not tree.senders:
             yield tf_on_two_topics.finding(
                 f"listens to {tree.topic}, on which no node sends; robots send on {shorten(sent)}",
-                f"start it with -r {tree.topic}:={sent[0]} -r {tree.topic}_static:={sent[0]}_static,"
-                " one for each robot",
+                f"start it with -r {tree.topic}:={sent[0]}"
+                f" -r {_static_topic(tree.topic)}:={_static_topic(sent[0])}, one for each robot",
                 level=WARNING, robot=seen.robot(rviz[0]), node=rviz[0], names=(tree.topic,),
             )  # fmt: skip
 
@@ -166,6 +166,10 @@ def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     if other not in ("", robot):
         return f"a namespace or remap rule of {robot} names {other}"
     target = "tf" if home.startswith(f"/{robot}/") else home
-    static = "/".join("tf_static" if it == "tf" else it for it in target.split("/"))
-    rules = f"-r {topic}:={target} -r /tf_static:={static}"
+    rules = f"-r {topic}:={target} -r {_static_topic(topic)}:={_static_topic(target)}"
     return f"pass {rules}: to the whole process, where the node shares one"
+
+
+def _static_topic(topic: str) -> str:
+    """Return the topic of static transforms that belongs to a tf topic."""
+    return "/".join("tf_static" if word == "tf" else word for word in topic.split("/"))

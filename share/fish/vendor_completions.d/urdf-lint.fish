@@ -2,6 +2,7 @@
 complete -c urdf-lint -l version -d 'show the version'
 complete -c urdf-lint -l config -r -d 'urdf-lint.toml or pyproject.toml'
 complete -c urdf-lint -l changed-since -r -d 'only files that git shows as changed'
+complete -c urdf-lint -l no-default-excludes -d 'in folders, read build/, install/, log/ and what has a COLCON_IGNORE or AMENT_IGNORE or is ignored by git, too'
 complete -c urdf-lint -l roots -r -d 'folders to look for packages in, beside those that are installed'
 complete -c urdf-lint -l urdf -r -d 'the URDF of an SRDF or of another file'
 complete -c urdf-lint -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'

@@ -1,6 +1,7 @@
 # Made by share/make.py.
 complete -c urdf-postfix -l version -d 'show the version'
 complete -c urdf-postfix -l robots -r -d 'names of robots'
+complete -c urdf-postfix -s n -l count -r -d 'as many robots: robot1, robot2 and so on'
 complete -c urdf-postfix -l urdf -r -d 'the URDF of an SRDF or of another file'
 complete -c urdf-postfix -l vocabulary -r -d 'what more plugins mean by their parameters (docs/add-a-plugin.md)'
 complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'

@@ -152,7 +152,7 @@ def test_names_of_a_file_do_not_reach_the_page_as_code(tmp_path: Path) -> None:
     ("words", "says"),
     [
         (["nowhere.urdf"], "nowhere.urdf"),
-        (["{folder}/fleet.yaml", "robot1"], "a fleet file has its own robots, leave out robot1"),
+        (["{folder}/fleet.yaml", "robot1"], "a fleet file has its own, leave out ROBOT"),
         (["{folder}/r.urdf", "a", "a"], "'a'"),
         (["{folder}/r.urdf", "a:=b"], "NAME:=VALUE is for xacro"),
         (["{folder}/r.urdf", "-o", "{folder}/r.urdf"], "r.urdf"),

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Folders and files that are no sources: what a build made, what colcon, ament or git ignores."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections import defaultdict
+from collections.abc import Iterable
+from functools import cache
+
+from multibot_rewrite.base.child import git
+
+# What colcon, npm and Python make; colcon writes the first marker into its own three.
+MADE = frozenset(("build", "install", "log", "node_modules", "__pycache__"))
+MARKERS = ("COLCON_IGNORE", "AMENT_IGNORE")
+# Exit code of git check-ignore where no path is ignored.
+_NONE = 1
+
+
+def is_hidden(name: str) -> bool:
+    """Is a folder hidden, as .git is?"""
+    return name.startswith(".")
+
+
+def is_left_out(folder: str) -> bool:
+    """Is a folder called as builds call theirs, or marked to be ignored?"""
+    return os.path.basename(folder) in MADE or any(
+        os.path.exists(os.path.join(folder, marker)) for marker in MARKERS
+    )
+
+
+def source_folders(above: str, names: Iterable[str]) -> list[str]:
+    """Return the folders in ``above`` that may hold sources, in the order of their names."""
+    return sorted(
+        it for it in names if not is_hidden(it) and not is_left_out(os.path.join(above, it))
+    )
+
+
+def ignored_by_git(paths: Iterable[str]) -> set[str]:
+    """Return the paths that git ignores in the work tree that each is in; a tracked file never is.
+
+    What is in no work tree is not ignored, and nothing is where git cannot be run.
+    """
+    trees: dict[str, list[str]] = defaultdict(list)
+    for path in paths:
+        if tree := _work_tree(os.path.dirname(os.path.abspath(path))):
+            trees[tree].append(path)
+    return {path for tree, those in trees.items() for path in _ignored(tree, those)}
+
+
+def _ignored(tree: str, paths: list[str]) -> list[str]:
+    # The real folder: git refuses a path that a link leads out of the tree by its text.
+    named = {_in_tree(path): path for path in paths}
+    try:
+        asked = b"\0".join(map(os.fsencode, named))
+        found = git(tree, "check-ignore", "-z", "--stdin", given=asked)
+    except OSError:
+        return []
+    except subprocess.CalledProcessError as error:
+        if error.returncode != _NONE:
+            return []
+        found = error.stdout
+    return [named[it] for it in map(os.fsdecode, found.split(b"\0")) if it in named]
+
+
+def _in_tree(path: str) -> str:
+    folder, name = os.path.split(os.path.abspath(path))
+    return os.path.join(os.path.realpath(folder), name)
+
+
+@cache
+def _work_tree(folder: str) -> str:
+    """Return the nearest folder above with a repository of git; "" for none."""
+    real = os.path.realpath(folder)
+    while not os.path.exists(os.path.join(real, ".git")):
+        above = os.path.dirname(real)
+        if above == real:
+            return ""
+        real = above
+    return real

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was probably meant by an option that a command does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.base import other_words
+from multibot_rewrite.base.nearest import CHOICE, nearest
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.parser import Parser
+
+FLEET = "fleet"
+# A beginning of so few letters says nothing.
+_BEGUN = 2
+
+
+def option_hint(wrong: str, parser: Parser) -> str:
+    """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
+
+    An option that begins with it comes first. Then its meaning counts: a key of the fleet file, a word
+    of other tools, an option of another command. Its letters come last.
+    """
+    begun = _begun(wrong.lstrip("-"), parser.known())
+    hints = [f"did you mean '{begun}'?"] if begun else _by_meaning(wrong, parser)
+    return "".join(f"; {it}" for it in hints or _by_letters(wrong, parser))
+
+
+def _by_meaning(wrong: str, parser: Parser) -> list[str]:
+    """Return the one answer that is known for the option in this command; empty if there is none."""
+    command = parser.prog.rpartition(" ")[2]
+    key = _fleet_key(wrong, parser)
+    if key:
+        return [f"write the key {key}: into the fleet file"]
+    other = other_words.OPTIONS.get(f"{command} {wrong}") or other_words.OPTIONS.get(wrong)
+    if not other:
+        return []
+    option = other.replace(",", "").partition(" ")[0]
+    if not option.startswith("-") or option in parser.known():
+        return [f"use {other}"]
+    return [f"{option} does that, which {_commands_with(option)} take"]
+
+
+def _fleet_key(wrong: str, parser: Parser) -> str:
+    """Return the key of a fleet file that the option would be, where a command takes a fleet file."""
+    if all(it.dest != FLEET for it in parser._actions):
+        return ""
+    from multibot_rewrite.fleet.file.fleet_data import schema
+
+    word = wrong.lstrip("-").replace("-", "_")
+    top = schema()["properties"]
+    key = word if word in top else other_words.KEYS.get(word, word)
+    return key if key in top else ""
+
+
+def _by_letters(wrong: str, parser: Parser) -> Iterator[str]:
+    """Yield the commands that have the option, and the command's own one that is most like it."""
+    elsewhere = _commands_with(wrong)
+    if elsewhere:
+        yield f"{elsewhere} take it"
+    if near := _nearest(wrong.lstrip("-"), parser.known()):
+        yield f"did you mean '{near}'?"
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known option that is a part of the word (output-format: format), or is spelled like it
+    and begins with the same letter; "" if none does."""
+    # Dashes are in all of them: compared with these, every short word is like every other.
+    full = {name.lstrip("-"): name for name in known if name.startswith("--")}
+    parts = (it for it in reversed(word.split("-")) if it in full)
+    alike = sorted(it for it in full if it[:1] == word[:1])
+    return full.get(next(parts, "") or nearest(word, alike, CHOICE), "")
+
+
+def _begun(word: str, known: Iterable[str]) -> str:
+    """Return the first known option that begins with a word of three letters or more; "" for none."""
+    return next((it for it in known if len(word) > _BEGUN and it.startswith(f"--{word}")), "")
+
+
+def _commands_with(option: str) -> str:
+    """Return the commands that have an option, as they are typed; "" if none has."""
+    names = [name for name, command in _every_command().items() if _has(command, option)]
+    return shorten(names)
+
+
+def _has(command: Command, option: str) -> bool:
+    return any(option in it.names for group in command.groups for it in group.options)
+
+
+def _every_command() -> Mapping[str, Command]:
+    programs = {it.name: it for it in PROGRAMS}
+    return {**programs, **{f"multibot {name}": it for name, it in COMMANDS.items()}}

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What commands leave out of folders: what a build made, and what colcon or git ignores."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.base import left_out
+from multibot_rewrite.cli import multibot, urdf_lint
+from multibot_rewrite.description.sources import included_by
+from multibot_rewrite.fleet.proposal.searching import search
+from multibot_rewrite.refactor.named_elsewhere import files_below
+
+ROBOT = '<robot name="{}"><link name="base"/><link name="lost"/></robot>'
+GIT = (
+    "git",
+    "-c",
+    "user.name=t",
+    "-c",
+    "user.email=t@example.org",
+    "-c",
+    "init.defaultBranch=main",
+)
+FILES = (
+    "src/arm/a.urdf", "build/arm/b.urdf", "install/arm/c.urdf", "log/d.urdf", "old/e.urdf",
+    "old/deep/f.urdf", "other/g.urdf", "src/arm/gen/h.urdf", "src/arm/i.tmp.urdf",
+    "src/arm/kept.tmp.urdf",
+)  # fmt: skip
+SOURCES = ["src/arm/a.urdf", "src/arm/kept.tmp.urdf"]
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace that was built, of which git ignores some files, one of them tracked."""
+    for name in FILES:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(ROBOT.format(Path(name).stem.replace(".", "_")))
+    (tmp_path / "old" / "COLCON_IGNORE").touch()
+    (tmp_path / "other" / "AMENT_IGNORE").touch()
+    (tmp_path / "src" / "arm" / ".gitignore").write_text("gen/\n*.tmp.urdf\n")
+    run(tmp_path, "init", "-q")
+    run(tmp_path, "add", "-f", "src/arm/a.urdf", "src/arm/kept.tmp.urdf")
+    run(tmp_path, "commit", "-qm", "first")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(folder: Path, *words: str) -> None:
+    subprocess.run([*GIT, *words], cwd=folder, check=True)
+
+
+Linted = Callable[..., tuple[list[str], str]]
+
+
+@pytest.fixture
+def linted(capsys: pytest.CaptureFixture[str]) -> Linted:
+    """The files that a lint finds something in, and what it says on standard error."""
+
+    def lint(*words: str) -> tuple[list[str], str]:
+        assert urdf_lint.main([*words, "--select", "MB501"]) in (0, 1)
+        out, err = capsys.readouterr()
+        return sorted(line.partition(":")[0] for line in out.splitlines()), err
+
+    return lint
+
+
+def test_a_built_workspace_is_linted_in_its_sources(workspace: Path, linted: Linted) -> None:
+    found, said = linted(".")
+    assert found == SOURCES
+    assert said.startswith(
+        "urdf-lint: left out: 5 folders (./build, ./install, ./log and 2 more) and 2 files that git"
+        " ignores; --no-default-excludes reads them\n"
+    )
+    assert linted(".", "--no-default-excludes")[0] == sorted(FILES)
+    assert "left out" not in linted(".", "--no-default-excludes")[1]
+    assert linted(".", "-q")[1] == ""
+
+
+@pytest.mark.parametrize(
+    ("named", "found"),
+    [
+        (["build"], ["build/arm/b.urdf"]),
+        (["old"], ["old/deep/f.urdf", "old/e.urdf"]),
+        (["src/arm/gen"], ["src/arm/gen/h.urdf"]),
+        (["src/arm/i.tmp.urdf"], ["src/arm/i.tmp.urdf"]),
+        (["src/arm/gen", "src"], [*SOURCES[:1], "src/arm/gen/h.urdf", *SOURCES[1:]]),
+        (["src/arm/i.tmp.urdf", "src"], [*SOURCES[:1], "src/arm/i.tmp.urdf", *SOURCES[1:]]),
+    ],
+)
+def test_what_is_named_is_linted(
+    workspace: Path, linted: Linted, named: Sequence[str], found: list[str]
+) -> None:
+    assert linted(*named)[0] == found
+
+
+def test_nothing_left_to_read_says_what_was_left_out(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (workspace / "only" / "build").mkdir(parents=True)
+    (workspace / "only" / "build" / "a.urdf").write_text(ROBOT.format("a"))
+    assert urdf_lint.main(["only"]) == 2
+    assert capsys.readouterr().err.endswith(
+        "there; left out: 1 folder (only/build); --no-default-excludes reads them\n"
+    )
+
+
+def test_git_is_asked_in_the_repository_of_each_file(workspace: Path) -> None:
+    """A repository in another one has its own rules; outside of any nothing is ignored."""
+    inner = workspace / "src" / "arm" / "gen" / "inner"
+    inner.mkdir()
+    run(inner, "init", "-q")
+    (inner / ".gitignore").write_text("b.urdf\n")
+    paths = [str(inner / "a.urdf"), str(inner / "b.urdf"), "src/arm/gen/h.urdf", "../a.urdf"]
+    assert left_out.ignored_by_git(paths) == {str(inner / "b.urdf"), "src/arm/gen/h.urdf"}
+    link = workspace / "link"
+    link.symlink_to(workspace / "src" / "arm" / "gen")
+    assert left_out.ignored_by_git(["link/h.urdf"]) == {"link/h.urdf"}
+
+
+def test_without_git_nothing_is_ignored(
+    workspace: Path, linted: Linted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(workspace))
+    assert "src/arm/gen/h.urdf" in linted("src")[0]
+
+
+def test_inspect_leaves_the_same_out(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["inspect", "."]) == 0
+    out, err = capsys.readouterr()
+    assert "left out: 5 folders" in err and "2 files" in out
+    assert multibot.main(["inspect", ".", "--no-default-excludes"]) == 0
+    assert f"{len(FILES)} files" in capsys.readouterr().out
+
+
+def test_the_other_commands_leave_the_same_folders_out(workspace: Path) -> None:
+    """init, rename and adopt, and the search for what includes a xacro."""
+    looked = [it for it in FILES if it.startswith("src/")]
+    assert sorted(files_below(".", (".urdf",))) == looked
+    assert sorted(search(["."]).every) == looked
+    for name in ("build/p.xacro", "old/p.xacro", "src/p.xacro"):
+        (workspace / name).write_text("<robot/>")
+    assert included_by._xacros(".") == ["src/p.xacro"]
+
+
+def test_a_folder_of_models_alone_is_linted(
+    tmp_path: Path, linted: Linted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "model.sdf").write_text(
+        '<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/></model></sdf>'
+    )
+    monkeypatch.chdir(tmp_path)
+    assert "1 file: no findings" in linted(".")[1]
+
+
+def test_quiet_shows_no_note(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Unless the command fails on notes, or a program reads the findings."""
+    file = tmp_path / "a.urdf"
+    file.write_text(
+        '<robot name="a"><link name="b"><inertial><mass value="1"/></inertial></link></robot>'
+    )
+    levels = {}
+    for words in ((), ("-q",), ("-q", "--fail-on", "note"), ("-q", "--format", "json")):
+        urdf_lint.main([str(file), *words])
+        out, err = capsys.readouterr()
+        levels[words] = ": note: " in out or '"level": "note"' in out
+        assert words == () or err == ""
+    assert [*levels.values()] == [True, False, True, True]
