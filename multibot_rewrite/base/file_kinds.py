@@ -62,7 +62,7 @@ KINDS: Mapping[str, FileKind] = {
     RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
 }
 # Of XML: how the root begins; comments and declarations are left out before.
-_ROOT = rb"\A\s*(?:<!DOCTYPE[^<>]*>\s*)?<"
+_ROOT = rb"\A\s*(?:<!DOCTYPE[^<>\[]*(?:\[[^\]]*\]\s*)?>\s*)?<"
 _TREE = rb"<BehaviorTree\b|<root\b[^<>]*\b(?:BTCPP_format|main_tree_to_execute)\b"
 _XML = (
     (CONFIG, lazy_compile(_ROOT + rb"model>")),

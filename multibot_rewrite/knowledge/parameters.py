@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from fnmatch import translate
 from functools import lru_cache
 
 from multibot_rewrite.base.record import NamedTuple
@@ -97,10 +98,7 @@ def guess(known: KnownNodes, path: str) -> str:
 
 def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
     """One expression for all guesses, with a group for each kind."""
-    every = {
-        kind: "|".join(re.escape(it).replace(r"\*", ".*") for it in words)
-        for kind, words in guesses.items()
-    }
+    every = {kind: "|".join(map(translate, words)) for kind, words in guesses.items()}
     return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
 
 

@@ -139,3 +139,31 @@ def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:
     assert told.startswith(f"{path}:1: unknown key 'layot'; did you mean 'layout'?")
     assert "line 3: robots[0]: unknown key 'descripton'" in told
     assert "line 4: affix: 'middle' is not known" in told
+
+
+@pytest.mark.parametrize("kind", ["urdf", "xacro", "sdf", "world", "srdf", "config"])
+def test_a_kind_is_known_behind_any_number_of_comments(kind: str) -> None:
+    """Twenty comments once took minutes; five thousand are longer than what is looked at."""
+    text = TEXTS[kind].partition("?>")[2] if TEXTS[kind].startswith("<?") else TEXTS[kind]
+    head, _, rest = text.partition(">")
+    many = "<!-- part <robot> of <launch> -- > -->\n" * 8_000
+    assert recognised(f'<?xml version="1.0"?>\n{many}{text}'.encode()) == kind
+    assert recognised(f"{head}>{many}{rest}{many}".encode()) == kind
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ('<!-- <launch> --><robot name="r"/>', "urdf"),
+        ('<robot name="r"><!-- <group name="arm"/> <sdf> --><link name="a"/></robot>', "urdf"),
+        ('<!-- <mujoco> --><sdf version="1.9"><model name="m"/></sdf>', "sdf"),
+        ('<sdf version="1.9"><!-- a --><!-- b -->\n<world name="w"/></sdf>', "world"),
+        ('<!-- <robot> --><!-- - --><mujoco model="r"/>', "mujoco"),
+        ('<!DOCTYPE robot [<!ENTITY a "b">]>\n<robot name="r"/>', "urdf"),
+        ('<?xml version="1.0"?><?pi ?><!DOCTYPE robot><robot name="r"/>', "urdf"),
+        ("<!-- <robot> " * 9, ""),
+        ("<" * 9_000, ""),
+    ],
+)
+def test_what_is_in_a_comment_is_no_root(text: str, kind: str) -> None:
+    assert recognised(text.encode()) == kind

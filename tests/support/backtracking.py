@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple, TypeAlias
 
 try:  # from Python 3.11 on
     from re import _parser as sre_parse
@@ -173,19 +174,24 @@ class _Maker:
         inner = _Maker(self.flags, self.ascii)
         inner.sequence(body)
         inner.put(MATCH)
-        self.put(ONCE, Program(inner.code, inner.places))
+        self.put(ONCE, (Program(inner.code, inner.places), 0), True)
 
     def of_possessive_repeat(self, value: tuple[int, int, Any]) -> None:
         inner = _Maker(self.flags, self.ascii)
         inner.of_max_repeat(value)
         inner.put(MATCH)
-        self.put(ONCE, Program(inner.code, inner.places))
+        self.put(ONCE, (Program(inner.code, inner.places), 0), True)
 
     def of_groupref(self, group: int) -> None:
         self.put(SAME, group)
 
     def of_failure(self, _: object) -> None:
         self.read(lambda _: False)
+
+
+# The next instruction, the next character, and the places that are noted.
+_Here: TypeAlias = "tuple[int, int, dict[int, int]]"
+NOWHERE = -1, -1
 
 
 class Matcher:
@@ -209,60 +215,65 @@ class Matcher:
 
     def match(self, text: str, at: int = 0, whole: bool = False) -> int | None:
         """The end of a match that begins here; None without one."""
-        return self._run(self.program, text, at, whole)
+        found = self._run(self.program, text, (0, at, {}), whole)
+        return found[1] if found else None
 
-    def _run(self, program: Program, text: str, at: int, whole: bool = False) -> int | None:
-        """The first way through the program; what is left to try is a stack."""
-        left: list[tuple[int, int, dict[int, int]]] = [(0, at, {})]
+    def _run(self, program: Program, text: str, here: _Here, whole: bool = False) -> _Here | None:
+        """The end of the first way through the program; what is left to try is a stack."""
+        left, code, size = [here], program.code, len(text)
         while left:
             line, at, places = left.pop()
-            while True:
+            while line >= 0:
                 self.steps += 1
                 if self.steps > self.limit:
                     raise TooManyStepsError
-                what, first, second = program.code[line]
-                if what == MATCH:
-                    if whole and at < len(text):
-                        break
-                    return at
-                if what == SPLIT:
+                what, first, second = code[line]
+                if what == READ:
+                    fits = at < size and _holds(first, second, text[at])
+                    line, at = (line + 1, at + 1) if fits else NOWHERE
+                elif what == SPLIT:
                     left.append((second, at, places))
                     line = first
-                    continue
-                if what == JUMP:
-                    line = first
-                    continue
-                line += 1
-                if what == READ:
-                    if at == len(text) or not _holds(first, second, text[at]):
-                        break
-                    at += 1
-                elif what == MARK:
-                    places = {**places, first: at}
-                elif what == MOVED:
-                    if places[first] == at:
-                        break
-                elif what == AT:
-                    if not _is_at(first, text, at):
-                        break
-                elif what == LOOK:
-                    inner, back = first
-                    found = at >= back and self._run(inner, text, at - back) is not None
-                    if found != second:
-                        break
-                elif what == ONCE:
-                    end = self._run(first, text, at)
-                    if end is None:
-                        break
-                    at = end
+                elif what != MATCH:
+                    line, at, places = self._after(what, first, second, text, (line, at, places))
+                elif not whole or at == size:
+                    return line, at, places
                 else:
-                    same = text[places.get(2 * first, 1) : places.get(2 * first + 1, 0)]
-                    if 2 * first + 1 not in places or not text.startswith(same, at):
-                        break
-                    # Each character of it is compared.
-                    self.steps += len(same)
-                    at += len(same)
+                    line = -1
         return None
+
+    def _after(self, what: int, first: Any, second: Any, text: str, here: _Here) -> _Here:
+        """Behind an instruction that notes or asks; nowhere where it does not fit."""
+        line, at, places = here
+        if what == JUMP:
+            return first, at, places
+        if what == MARK:
+            return line + 1, at, {**places, first: at}
+        end: int | None = at
+        if what == MOVED:
+            end = None if places[first] == at else at
+        elif what == AT:
+            end = at if _is_at(first, text, at) else None
+        elif what == SAME:
+            end = self._same(first, text, here)
+        else:
+            inner, back = first
+            found = self._run(inner, text, (0, at - back, places)) if at >= back else None
+            end = at if what == LOOK else found and found[1]
+            if (found is not None) != second:
+                end = None
+            elif found is not None:
+                places = found[2]
+        return (*NOWHERE, places) if end is None else (line + 1, end, places)
+
+    def _same(self, group: int, text: str, here: _Here) -> int | None:
+        """Behind a text that is as a group's; each character of it is compared."""
+        _, at, places = here
+        start, end = (places.get(2 * group + it) for it in (0, 1))
+        if start is None or end is None or not text.startswith(text[start:end], at):
+            return None
+        self.steps += end - start
+        return at + end - start
 
 
 def _holds(test: Test, known: dict[str, bool], character: str) -> bool:
@@ -305,36 +316,51 @@ class _Examples:
         return list(made)[:12]
 
     def node(self, op: str, value: Any) -> list[str]:
-        if op == "LITERAL":
-            self.characters[chr(value)] = None
-            return [chr(value)]
-        if op in ("IN", "ANY", "NOT_LITERAL", "CATEGORY"):
-            return self.some_of(op, value)
-        if op == "BRANCH":
-            return list(dict.fromkeys(it for one in value[1] for it in self.texts(one)))
-        if op == "ATOMIC_GROUP":
-            return self.texts(value)
-        if op == "SUBPATTERN":
-            found = self.texts(value[3])
-            if value[0] is not None:
-                self.groups[value[0]] = found[0]
-            return found
-        if op.endswith("_REPEAT"):
-            least, most, body = value
-            found = [it * max(least, min(most, 1)) for it in self.texts(body)]
-            return found if least else [*found, ""]
-        if op == "GROUPREF":
-            return [self.groups.get(value, "")]
-        return [""]
+        made = getattr(self, f"of_{op.lower()}", None)
+        return made(value) if made else [""]
+
+    def of_literal(self, value: int) -> list[str]:
+        self.characters[chr(value)] = None
+        return [chr(value)]
+
+    def of_in(self, value: Any) -> list[str]:
+        literals = [chr(it) for kind, it in value if kind.name == "LITERAL"]
+        ranges = [chr(it[0]) for kind, it in value if kind.name == "RANGE"]
+        self.characters.update(dict.fromkeys([*literals[:6], *ranges[:3]]))
+        return self.some_of("in", value)
+
+    def of_any(self, value: None) -> list[str]:
+        return self.some_of("any", value)
+
+    def of_not_literal(self, value: int) -> list[str]:
+        return self.some_of("not_literal", value)
+
+    def of_branch(self, value: Any) -> list[str]:
+        return list(dict.fromkeys(it for one in value[1] for it in self.texts(one)))
+
+    def of_subpattern(self, value: Any) -> list[str]:
+        found = self.texts(value[3])
+        if value[0] is not None:
+            self.groups[value[0]] = found[0]
+        return found
+
+    def of_atomic_group(self, value: Any) -> list[str]:
+        return self.texts(value)
+
+    def of_max_repeat(self, value: tuple[int, int, Any]) -> list[str]:
+        least, most, body = value
+        found = [it * max(least, min(most, 1)) for it in self.texts(body)]
+        return found if least else [*found, ""]
+
+    of_min_repeat = of_possessive_repeat = of_max_repeat
+
+    def of_groupref(self, value: int) -> list[str]:
+        return [self.groups.get(value, "")]
 
     def some_of(self, op: str, value: Any) -> list[str]:
         maker = _Maker(self.flags, False)
-        getattr(maker, "of_" + op.lower())(value)
+        getattr(maker, f"of_{op}")(value)
         test = maker.code[0][1]
-        if op == "IN":
-            literals = [chr(it) for kind, it in value if kind.name == "LITERAL"]
-            ranges = [chr(it[0]) for kind, it in value if kind.name == "RANGE"]
-            self.characters.update(dict.fromkeys([*literals[:6], *ranges[:3]]))
         taken = [it for it in [*self.characters, *"a0 \n_-x</>\"'.A"] if test(it)]
         return list(dict.fromkeys(taken))[:3] or [
             next(it for it in map(chr, range(0x110000)) if test(it))
@@ -375,7 +401,7 @@ class Attack(NamedTuple):
 
 
 def attacks(pattern: str | bytes, flags: int = 0) -> list[Attack]:
-    """The texts on which a pattern may take long: what it repeats, what leads to that, its characters."""
+    """The texts on which a pattern may take long: what it repeats, what leads there, its characters."""
     tree = sre_parse.parse(pattern, flags)  # type: ignore[arg-type]
     make = _Examples(tree.state.flags)
     whole = make.texts(tree)
@@ -384,7 +410,7 @@ def attacks(pattern: str | bytes, flags: int = 0) -> list[Attack]:
     bodies = [it for _, texts in ways for it in texts]
     led = [it + body for it, texts in ways for body in ("", texts[0])]
     cut = [it[:-1] for it in whole]
-    pairs = [it + other for _, texts in ways for it, other in zip(texts, texts[1:])]
+    pairs = [it + other for _, texts in ways for it, other in pairwise(texts)]
     repeated = [*make.characters, *bodies, *led, *pairs, *whole, *cut, " ", "a", "\n", "0"]
     pumps = [it for it in dict.fromkeys(repeated) if it][:48]
     return [Attack(*it) for it in _crossed(starts, pumps)]
@@ -397,3 +423,36 @@ def _crossed(starts: Sequence[str], pumps: Sequence[str]) -> Iterator[tuple[str,
                 yield start, pump, end
         # A new line ends most runs, and no line begins before it.
         yield starts[-1], pump, "\n"
+
+
+# How often an attack repeats its text: twice as long is read in twice the steps, more or less.
+SMALL, LARGE = 8, 24
+GIVEN_UP = 60_000
+MATCH_ALONE = ("match", "fullmatch")
+
+
+def cost(program: Program, text: str, use: str) -> int:
+    """Return the steps that a method of a pattern takes over a text; GIVEN_UP for more."""
+    matcher = Matcher(program, GIVEN_UP)
+    try:
+        if use in MATCH_ALONE:
+            matcher.match(text, whole=use == "fullmatch")
+        else:
+            for _ in matcher.every(text):
+                pass
+    except TooManyStepsError:
+        return GIVEN_UP
+    return matcher.steps
+
+
+def worst(pattern: str | bytes, flags: int, use: str) -> tuple[float, Attack | None]:
+    """Return how much faster than the text its steps grow at most, 1 for a linear pattern, and on
+    which text."""
+    program = program_of(pattern, flags)
+    found: tuple[float, Attack | None] = 0.0, None
+    for attack in attacks(pattern, flags):
+        steps = [cost(program, attack.text(count), use) for count in (SMALL, LARGE)]
+        ratio = steps[1] / steps[0] / (LARGE / SMALL)
+        if ratio > found[0] or steps[1] == GIVEN_UP:
+            found = (ratio if steps[1] < GIVEN_UP else float(GIVEN_UP)), attack
+    return found

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from fnmatch import translate
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -175,14 +175,14 @@ def uses_of(name: str, module: str) -> frozenset[str]:
     return own.union(*(uses_of(it, module) for it in tables if it != name))
 
 
-@lru_cache(maxsize=None)
+@cache
 def uses_here(module: str) -> frozenset[str]:
     """The methods that a module asks of patterns that no constant holds."""
     tree = next(tree for path, tree in trees().items() if _module(path) == module)
-    asked = (it for it in ast.walk(tree) if isinstance(it, ast.Attribute) and it.attr in USES)
-    return frozenset(
-        it.attr for it in asked if not _last(it.value).isupper() and _last(it.value) != "re"
-    )
+    asked = [it for it in ast.walk(tree) if isinstance(it, ast.Attribute) and it.attr in USES]
+    # Any text can be split.
+    local = (it for it in asked if not _last(it.value).isupper() and it.attr != "split")
+    return frozenset(it.attr for it in local if _last(it.value) != "re")
 
 
 @lru_cache(maxsize=1)
@@ -208,29 +208,34 @@ class _Values:
         if not any(isinstance(it, _LOCAL) for it in self.inside):
             # Of a module: it has made this before.
             return eval(ast.unparse(node), vars(self.module))
-        if isinstance(node, ast.Constant):
-            return node.value
-        if isinstance(node, ast.JoinedStr):
-            return "".join(str(self.of(it)) for it in node.values)
-        if isinstance(node, ast.FormattedValue):
-            return self.of(node.value)
-        if isinstance(node, ast.Name):
-            return self._of_name(node.id)
-        if isinstance(node, ast.Attribute):
-            return getattr(self.of(node.value), node.attr)
-        if isinstance(node, ast.BinOp):
-            return self._of_both(node)
-        if isinstance(node, ast.Tuple):
-            return tuple(map(self.of, node.elts))
-        if isinstance(node, ast.BoolOp):
-            return self._of_either(*node.values)
-        if isinstance(node, ast.IfExp):
-            return self._of_either(node.body, node.orelse)
-        if isinstance(node, ast.Call):
-            return self._of_call(node)
-        raise UnresolvedError(ast.unparse(node))
+        of_kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if of_kind is None:
+            raise UnresolvedError(ast.unparse(node))
+        return of_kind(node)
 
-    def _of_name(self, name: str) -> Any:
+    def _constant(self, node: ast.Constant) -> Any:
+        return node.value
+
+    def _joinedstr(self, node: ast.JoinedStr) -> str:
+        return "".join(str(self.of(it)) for it in node.values)
+
+    def _formattedvalue(self, node: ast.FormattedValue) -> Any:
+        return self.of(node.value)
+
+    def _attribute(self, node: ast.Attribute) -> Any:
+        return getattr(self.of(node.value), node.attr)
+
+    def _tuple(self, node: ast.Tuple) -> tuple[Any, ...]:
+        return tuple(map(self.of, node.elts))
+
+    def _boolop(self, node: ast.BoolOp) -> Any:
+        return self._of_either(*node.values)
+
+    def _ifexp(self, node: ast.IfExp) -> Any:
+        return self._of_either(node.body, node.orelse)
+
+    def _name(self, node: ast.Name) -> Any:
+        name = node.id
         for above in reversed(self.inside):
             if not isinstance(above, (ast.FunctionDef, ast.Lambda)):
                 continue
@@ -248,7 +253,7 @@ class _Values:
             raise UnresolvedError(name)
         return getattr(self.module, name)
 
-    def _of_both(self, node: ast.BinOp) -> Any:
+    def _binop(self, node: ast.BinOp) -> Any:
         left, right = self.of(node.left), self.of(node.right)
         if isinstance(node.op, ast.Add):
             return left + right
@@ -264,7 +269,7 @@ class _Values:
                 return self.of(node)
         raise UnresolvedError(ast.unparse(nodes[0]))
 
-    def _of_call(self, node: ast.Call) -> Any:
+    def _call(self, node: ast.Call) -> Any:
         called, words = ast.unparse(node.func), (self.word, self.word[::-1], self.word)
         if called == "re.escape":
             return self.word

@@ -261,7 +261,8 @@ _PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "n
 _XML = r"""<arg\b[^<>]*\bname=["']%s["'][^<>]*\bdefault=["']([^"'$]+)["']"""
 # Behind its name, what is said of an argument: so many characters at most, and not of another one.
 _NEAR, _ANOTHER = 400, re.compile(r"Declare|LaunchConfiguration")
-_DEFAULT, _CHOICES = "default(?:_value)?", "choices"
+_VALUE = r"""\b%s\s*=\s*(?:\[\s*)?["']([^"']+)["']"""
+_DEFAULT, _CHOICES = re.compile(_VALUE % "default(?:_value)?"), re.compile(_VALUE % "choices")
 _ARGUMENT = re.compile(r"""<xacro:arg\b[^<>]*\bname=["'](\w+)["']""")
 
 
@@ -294,10 +295,9 @@ class NeededValues(NamedTuple):
         pattern = re.compile(_XML % re.escape(name))
         yield from (found[1] for it in self.launch if (found := pattern.search(text_of(it))))
 
-    def _declared(self, name: str, key: str) -> Iterator[str]:
-        """The values that a key has where Python declares an argument."""
+    def _declared(self, name: str, value: re.Pattern[str]) -> Iterator[str]:
+        """What a keyword is where Python declares an argument."""
         named = re.compile(rf"""["']{re.escape(name)}["']\s*,""")
-        value = re.compile(rf"""\b(?:{key})\s*=\s*(?:\[\s*)?["']([^"']+)["']""")
         for text in map(text_of, self.launch):
             ends = (it.end() for it in named.finditer(text))
             near = (_ANOTHER.split(text[end : end + _NEAR], maxsplit=1)[0] for end in ends)

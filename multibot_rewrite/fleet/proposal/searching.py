@@ -11,7 +11,14 @@ import re
 from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import lru_cache
 
-from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
+from multibot_rewrite.base.file_kinds import (
+    DESCRIPTIONS,
+    SDF,
+    SRDF,
+    WORLD,
+    recognised,
+    refuse_others,
+)
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
@@ -186,26 +193,26 @@ def _kind(path: str, data: bytes) -> str:
     return "" if kind == "descriptions" and _REWRITTEN.search(data) else kind
 
 
-def _of_urdf(_: str, data: bytes) -> str:
-    return "descriptions" if b"<robot" in data else ""
+def _of_model(_: str, data: bytes) -> str:
+    """By what a file that is named is recognised by, too."""
+    kind = recognised(data)
+    if kind == SDF and (b"<model" not in data or _STATIC.search(data)):
+        return ""
+    return _BY_KIND.get(kind, "")
 
 
-def _of_sdf(_: str, data: bytes) -> str:
-    if b"<world" in data:
-        return "worlds"
-    return "descriptions" if b"<model" in data and not _STATIC.search(data) else ""
+def _of_xacro(stem: str, data: bytes) -> str:
+    """One that names no robot is a part of others."""
+    kind = _of_model(stem, data)
+    if kind != "descriptions" or recognised(data) == SDF:
+        return kind
+    if not _ROBOT.search(data):
+        return ""
+    return "srdf" if ".srdf" in stem or b"<group " in data else kind
 
 
 def _of_xml(_: str, data: bytes) -> str:
     return "behavior_trees" if b"<BehaviorTree" in data else ""
-
-
-def _of_xacro(stem: str, data: bytes) -> str:
-    if b"<sdf" in data:
-        return _of_sdf(stem, data)
-    if not _ROBOT.search(data):
-        return ""
-    return "srdf" if ".srdf" in stem or b"<group " in data else "descriptions"
 
 
 def _of_yaml(stem: str, data: bytes) -> str:
@@ -224,7 +231,9 @@ def _is_list(data: bytes) -> bool:
 
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
+_BY_KIND = {WORLD: "worlds", SRDF: "srdf", **dict.fromkeys(DESCRIPTIONS, "descriptions")}
 _BY_TEXT = {
-    ".urdf": _of_urdf, ".sdf": _of_sdf, ".model": _of_sdf, ".world": _of_sdf, ".xacro": _of_xacro,
+    **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _of_model),
+    ".xacro": _of_xacro,
     ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
 }  # fmt: skip

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import CORPUS, FIXTURES
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.fleet.proposal import searching
 from multibot_rewrite.fleet.proposal.searching import Found, search, without
 
@@ -166,3 +167,40 @@ def test_files_that_include_each_other_are_no_parts(many: int, tmp_path: Path) -
     )
     found = [Path(it).name for it in search([str(tmp_path)]).descriptions]
     assert found == [*(f"{at}.xacro" for at in range(many)), "top.xacro"]
+
+
+def _refusal(path: str) -> str:
+    """What a file is refused with that is named alone; empty for one that is taken."""
+    try:
+        taken = search([path]).descriptions
+    except InputError as error:
+        return str(error)
+    assert taken == (os.path.normpath(path),)
+    return ""
+
+
+ENDS = (".urdf", ".sdf", ".model", ".world", ".xacro", ".srdf")
+
+
+@pytest.mark.more
+@pytest.mark.parametrize(
+    "home", [FIXTURES, CORPUS / "sdf", CORPUS / "srdf", CORPUS / "urdf"], ids=lambda it: it.name
+)
+def test_a_named_file_and_its_folder_have_one_answer(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a folder takes for a description is taken by its name, and what it takes for something else
+    is refused by its name."""
+    # Each is alone in its folder: no other file includes it.
+    alone: list[str] = []
+    monkeypatch.setattr(searching, "home_of", os.path.dirname)
+    monkeypatch.setattr(searching, "_files", lambda _: alone)
+    paths = [str(it) for it in sorted(home.rglob("*")) if it.name.endswith(ENDS)]
+    for path in paths[:: max(1, len(paths) // 300)]:
+        alone[:] = [path]
+        found = search([os.path.dirname(path)])
+        refused = "" if path.endswith(".srdf") else _refusal(path)
+        assert not (path in found.every and refused), path
+        assert not (path in (*found.worlds, *found.launch) and not refused), path
+        # A xacro of an SRDF can be named: what is in it is known only when it is expanded.
+        assert path not in found.srdf or refused or path.endswith((".xacro", ".srdf")), path
