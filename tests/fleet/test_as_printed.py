@@ -117,7 +117,8 @@ def test_whatever_is_changed_is_noticed(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_one_simulator_and_one_domain(tmp_path: Path) -> None:
     """Other constants of the file: only gz, no domain, no default clock."""
-    starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False, robots=(OTHER,))
+    starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False)
+    starts = starts._replace(robots=(ALL.robots[0], OTHER))
     assert unnoticed(starts, to_python(starts), tmp_path / "out") == []
 
 
