@@ -120,7 +120,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        starts = fleet_starts(plan, each, configs, files, brought)
+        starts = fleet_starts(plan, each, configs, files, brought, opened)
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
@@ -43,6 +44,7 @@ from multibot_rewrite.rules.files.bridges import (
 )
 from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS
 from multibot_rewrite.system.records import NOWHERE, Place
 
 # What is wrong as soon as a second model has it, too.
@@ -137,6 +139,10 @@ def _given(it: LaunchedNode) -> dict[str, object]:
     return found
 
 
+# That of every world, beside /world/NAME/clock (gz-sim 8 src/SimulationRunner.cc).
+_CLOCK = GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
+
+
 class _Told(NamedTuple):
     """The rows of a bridge: of a file, or of its arguments, which stand at a place."""
 
@@ -185,4 +191,5 @@ def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Itera
 
 def _topics(models: Iterable[InSimulator]) -> dict[str, GzTopic]:
     found = (it for model in models for it in model.topics)
-    return {f"/{it.gz.lstrip('/')}": GzTopic(it.gz_type, it.direction) for it in found}
+    own = {f"/{it.gz.lstrip('/')}": GzTopic(it.gz_type, it.direction) for it in found}
+    return {CLOCK: _CLOCK, **own}

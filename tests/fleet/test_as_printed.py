@@ -7,6 +7,7 @@ The measure: whatever is changed in the file, one text, number, keyword or item 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from functools import cache
@@ -116,7 +117,8 @@ def test_whatever_is_changed_is_noticed(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_one_simulator_and_one_domain(tmp_path: Path) -> None:
     """Other constants of the file: only gz, no domain, no default clock."""
-    starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False, robots=(OTHER,))
+    starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False)
+    starts = starts._replace(robots=(ALL.robots[0], OTHER))
     assert unnoticed(starts, to_python(starts), tmp_path / "out") == []
 
 
@@ -297,3 +299,26 @@ def test_a_robot_that_is_not_read_for_its_files_is_compared(tmp_path: Path) -> N
     assert files != [*made.files]
     said = [it.message for it in read_back(plan, made._replace(files=tuple(files)), "/any/out")]
     assert any("is '14.5', planned is '14.0'" in it for it in said), said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", ["bridge.yaml", "r1/bridge.yaml"])
+def test_whatever_is_changed_in_a_row_of_a_bridge_is_noticed(path: str, tmp_path: Path) -> None:
+    """The nodes of two robots with Nav2 and their simulator need all rows but one, and what a row is
+    for is known by the description that is spawned."""
+    shutil.copy(ROOT / "examples" / "launch_tutorial" / "rover.urdf", tmp_path)
+    (tmp_path / "fleet.yaml").write_text(
+        "distro: jazzy\nlayout: tf-per-robot\nstack: nav2\ndescription: rover.urdf\n"
+        "robots: [{name: r1, model: red}, {name: r2, pose: {x: 2}}]\n"
+    )
+    plan, made = planned(str(tmp_path / "fleet.yaml"))
+    rows = next(it.text for it in made.files if it.path == path)
+    before = read_back(plan, made, "/any/out")
+    left = []
+    for at, line in enumerate(lines := rows.splitlines(keepends=True)):
+        changed = re.sub(r'(\w)("?)\n', r"\1X\2\n", line)
+        text = "".join([*lines[:at], changed, *lines[at + 1 :]])
+        files = [it._replace(data=text.encode()) if it.path == path else it for it in made.files]
+        found = read_back(plan, made._replace(files=tuple(files)), "/any/out")
+        left += [line] if changed == line or found == before else []
+    assert lines and left == []

@@ -141,7 +141,8 @@ def test_controllers_are_spawned_as_the_launch_file_does(tmp_path: Path) -> None
     )
     rows = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode().splitlines()
     lines = {it.split()[4]: it for it in rows if " spawner " in it}
-    assert "spawner drive --param-file robot1/drive.yaml --inactive " in lines["drive"]
+    assert "spawner drive " in lines["drive"]
+    assert " --param-file robot1/drive.yaml --inactive --ros-args " in lines["drive"]
     assert not {"--param-file", "--inactive"} & set(lines["joint_state_broadcaster"].split())
 
 

@@ -54,10 +54,8 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
     found: list[str] = []
     for robot, section in zip(starts.robots, sections, strict=False):
         found += _of_robot(robot, [*_commands(section)])
-    windows = [*starts.windows, *(it for robot in starts.robots for it in robot.windows)]
-    # The usual windows of a fleet that names none are not opened by the launch file.
-    opened = [it for it in _commands(text) if windows and it.program == _RVIZ]
-    return [*found, *_apart(map(_planned, windows), opened)]
+    opened = [it for it in _commands(text) if it.program == _RVIZ]
+    return [*found, *_apart(map(_planned, starts.shown), opened)]
 
 
 def _of_robot(robot: RobotStarts, printed: Sequence[Command]) -> Iterator[str]:

@@ -28,6 +28,7 @@ from multibot_rewrite.fleet.launch.starts import (
     Text,
     launch_arguments,
 )
+from multibot_rewrite.fleet.outputs.relays import BRIDGE
 from multibot_rewrite.producers.launch.performed import Action, Launching, performed, share
 from multibot_rewrite.system.records import Place
 
@@ -83,8 +84,8 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     first = ",".join(it.name for it in starts.robots[:2])
     other = {"headless": "true", "world": "other.sdf"}
     return [
-        Launching({}),
-        Launching({name: it for name, it in off.items() if name in usual}, installed=False),
+        Launching({}, frozenset({BRIDGE})),
+        Launching({name: it for name, it in off.items() if name in usual}),
         Launching({"robots": first, **{name: it for name, it in other.items() if name in usual}}),
         Launching({"robots": "1", "use_sim_time": "1"}),
     ]
@@ -156,13 +157,13 @@ class _Planned(NamedTuple):
     def of_robot(self, it: RobotStarts, number: int) -> Iterator[Action]:
         """Yield what one robot does; ``number`` is that of its first node with a life cycle."""
         around = self.around(it.name, it.clock)
-        bridged = it.bridged_tf if self.launch.installed else ()
+        bridged = it.bridged_tf if BRIDGE in self.launch.installed else ()
         spawned = it.spawned if self.is_on("simulator") else ()
         opened = it.windows if self.is_on("rviz") else ()
         for start in it.starts:
             yield from self.process(start, around, number)
             number += start.brought_up
-        if it.bridged_tf and not self.launch.installed:
+        if it.bridged_tf and not bridged:
             yield Action("LogInfo", {"msg": it.not_bridged})
         for start in (*bridged, *spawned, *opened):
             yield from self.process(start, around, number)

@@ -30,9 +30,11 @@ def fleet_starts(
     configs: Sequence[RvizOutput],
     files: Sequence[OutputFile],
     bridged: Collection[str],
+    shown: Sequence[RvizOutput],
 ) -> FleetStarts:
     """What the launch file starts; ``each`` is every robot as a fleet of its own, ``configs`` are the
-    windows of RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
+    windows of RViz that are asked for, ``shown`` all of them, ``files`` what else is built, ``bridged``
+    the topics that bridges bring."""
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
     simulators = spawn.simulators(plan)
@@ -55,6 +57,7 @@ def fleet_starts(
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
         _domains(plan),
+        [window for _, window in launch_actions.windows(shown, paths)],
     )
 
 

@@ -97,7 +97,8 @@ class FleetStarts(NamedTuple):
     """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
     the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
     type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
-    of all (empty name), where they are not in one."""
+    of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
+    without any config has among them: the launch file does not open these."""
 
     head: str
     simulators: Sequence[str]
@@ -108,6 +109,7 @@ class FleetStarts(NamedTuple):
     driving: Sequence[str]
     world: File | str = ""
     domains: Mapping[str, int] = TOGETHER
+    shown: Sequence[Start] = ()
 
     @property
     def nodes(self) -> frozenset[str]:

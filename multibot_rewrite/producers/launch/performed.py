@@ -9,7 +9,8 @@ planned.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
+from types import ModuleType
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
@@ -20,7 +21,6 @@ from multibot_rewrite.producers.launch.stand_in import contents, standing_in
 from multibot_rewrite.producers.launch.stand_in.actions import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
-    load_python_launch_file_as_module,
 )
 from multibot_rewrite.producers.launch.stand_in.packages import (
     FindPackageShare,
@@ -37,11 +37,11 @@ _OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
 class Launching(NamedTuple):
-    """How a launch file is launched: its arguments, and whether the packages that it asks for are
-    installed."""
+    """How a launch file is launched: its arguments, and the installed packages of those that it asks
+    for."""
 
     arguments: Mapping[str, str]
-    installed: bool = True
+    installed: frozenset[str] = frozenset()
 
     @property
     def command(self) -> str:
@@ -71,7 +71,7 @@ def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
     with standing_in(**packages.modules()):
         keep_places()
         try:
-            module = load_python_launch_file_as_module(path)
+            module = _loaded(path)
         except (Exception, SystemExit) as error:
             return [Performed((), failure(error)) for _ in launches]
         return [_performed(module, path, it, packages) for it in launches]
@@ -82,11 +82,19 @@ def share(package: str) -> str:
     return f"/{package}/share/{package}"
 
 
+def _loaded(path: str) -> ModuleType:
+    """Return the file as a module, of its text and not of what was compiled of it before."""
+    module = ModuleType("launch_file")
+    module.__file__ = path
+    exec(compile(Path(path).read_bytes(), path, "exec"), vars(module))
+    return module
+
+
 class _Packages:
-    """The packages: all of them are installed, or none."""
+    """The packages that are installed."""
 
     def __init__(self) -> None:
-        self.installed = True
+        self.installed: frozenset[str] = frozenset()
 
     def modules(self) -> dict[str, Mapping[str, Any]]:
         """Return the modules that ask for packages."""
@@ -104,7 +112,7 @@ class _Packages:
 
     def prefix(self, package: str) -> str:
         """Return the folder of a package; raises PackageNotFoundError."""
-        if not self.installed:
+        if package not in self.installed:
             raise PackageNotFoundError(package)
         return f"/{package}"
 
