@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every stack x release x layout x simulator, with a description and no further file.
 
-    python tests/support/stack_cells.py [WORD ...]     what each of them comes to; only those with these words
+python tests/support/stack_cells.py [WORD ...]     what is wrong; only cells with these words
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ ROBOTS = {
     "arm": "examples/two_arms_moveit/arm.urdf",
 }
 SRDF = ROOT / "examples/two_arms_moveit/arm.srdf"
-GZ_CONTROL = "gz_ros2_control"
+# Stacks of controllers whose manager something else makes.
+OF_MANAGERS = ("controllers", "gz_ros2_control", "gazebo_ros2_control")
+OF_ARMS = ("moveit", "rviz_moveit", "ros2_control", "robot_state", "static_tf", *OF_MANAGERS)
 NOTHING = "no node"
 # What the user's own description is warned about, whatever runs beside it.
 OF_DESCRIPTIONS = {
@@ -75,9 +77,8 @@ class Cell(NamedTuple):
 
 
 def refused(cell: Cell) -> set[str]:
-    """The codes of the errors of a cell, by what its input lacks or contradicts; none for all others."""
+    """The codes of the errors of a cell, by what its input lacks or contradicts."""
     hardware = cell.robot in ("controlled", "arm")
-    gz_manager = cell.robot == "controlled" and cell.simulator == "gazebo"
     wrong = set()
     if cell.stack == "moveit" and cell.robot != "arm":
         wrong.add("MF857")  # no SRDF
@@ -85,23 +86,24 @@ def refused(cell: Cell) -> set[str]:
         wrong.add("MF857")  # no Lua file
     if cell.stack == "ros2_control" and not hardware:
         wrong.add("MF857")  # no <ros2_control>
-    needs_plugin = cell.stack in ("controllers", GZ_CONTROL) and not gz_manager
-    if needs_plugin or cell.stack == "gazebo_ros2_control":
+    if cell.stack in OF_MANAGERS and cell.robot != "controlled":
         wrong.add("MG723")  # nothing starts a controller manager
     if cell.stack == "no_robot_state_publisher" and cell.simulator == "none":
         wrong.add(NOTHING)  # its only word is that a node is left out: no node is left
     # move_group reads the links as the URDF has them, and this layout renames them at run time only.
     if cell.layout == "frame-prefix" and (cell.stack == "moveit" or cell.robot == "arm"):
         wrong.add("MF837")
-    # A class of a simulator on a real robot, or of a real robot in a simulator.
-    if cell.stack == "ros2_control" and cell.robot == "controlled" and cell.simulator == "none":
-        wrong.add("MF843")
     return wrong
 
 
 def lives(cell: Cell) -> bool:
-    """Is there such a robot? Gazebo Classic ends with Humble."""
-    return cell.robot != "classic" or has_release("humble", cell.release)
+    """Is there such a robot? Gazebo Classic ends with Humble, no driver moves a simulator's hardware,
+    and an arm does not drive."""
+    return {
+        "classic": has_release("humble", cell.release),
+        "controlled": cell.simulator == "gazebo",
+        "arm": cell.stack in OF_ARMS,
+    }.get(cell.robot, True)
 
 
 def cells(robot: str) -> Iterator[Cell]:

@@ -18,7 +18,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned
 from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -74,7 +74,12 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         wrong = [*not_as_planned(made.planned, seen, made.started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
+        of_launch = _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
+        wrong += [
+            it
+            for it in of_launch
+            if it.robot not in real or not is_for_driver(it, made.planned, made.started)
+        ]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
