@@ -204,8 +204,8 @@ def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
 def _manager_in_plugin(
     stack: Iterable[NodeFacts], own: Iterable[GivenNode], member: Member, release: str
 ) -> Iterator[NodeFacts]:
-    """The controller manager that a plugin of the description makes, as the stack of the plugin has it:
-    where a file of the robot sets it, or a stack has its controllers; none where a stack has it, too."""
+    """The controller manager that a plugin of the description makes, as the stack of the plugin has
+    it: where a file of the robot sets it, or a stack has controllers; none where a stack has it."""
     nodes = tuple(stack)
     if any(it.name == MANAGER for it in nodes):
         return
