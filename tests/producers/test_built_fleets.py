@@ -9,8 +9,6 @@ import pytest
 import yaml
 from paths import FIXTURES, ROOT
 
-from multibot_rewrite import knowledge
-from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.cli.multibot import main
 
 EXAMPLES = sorted((ROOT / "examples").rglob("fleet*.yaml"))
@@ -31,22 +29,6 @@ def test_the_examples_are_there() -> None:
     assert len(EXAMPLES) > 7
 
 
-STACKS = list(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
-LAYOUTS = ["postfix", "tf-per-robot", "both", "frames-per-robot", "frame-prefix"]
-REFUSED = {
-    # Nothing starts their controller manager: the rover has no plugin for it. That of gz_ros2_control
-    # has no description without it.
-    ("", "", "controllers"),
-    ("", "", "gazebo_ros2_control"),
-    ("humble", "", "gz_ros2_control"),
-    # move_group finds no link of the description in tf (MF837).
-    ("", "frame-prefix", "moveit"),
-    # The base is base_link by default, and that of the rover is base_footprint.
-    *(("", "", it) for it in ("cartographer", "robot_localization", "robot_localization_gps")),
-    # Nav2 of Lyrical sends TwistStamped, the rover's drive takes Twist; and no rule in a container
-    # reaches a costmap whose names have the robot at the end.
-    *(("lyrical", "", it) for it in STACKS if it.startswith(("nav2", "navigation"))),
-}
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"
 
 
@@ -144,7 +126,10 @@ def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_pat
     command = rovers(tmp_path, f"{stacks}\nsimulator: {simulator}")
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(fleet.read_text().replace("rover.urdf", robot))
-    assert main(command) == 0
+    # The spawner waits for the manager of a plugin that the description does not load.
+    asked = [] if robot == "rover_gz.urdf" else ["--ignore", "MG723"]
+    assert main(command) == (1 if asked else 0)
+    assert main([*command, *asked]) == 0
     out = tmp_path / "out"
     plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot2"]
     runs = robot == "rover_gz.urdf" and simulator == "gazebo"
@@ -152,7 +137,7 @@ def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_pat
     assert names & plan["nodes"].keys() == (names if runs else set())
     assert "/robot2/rviz2" in plan["optional"]
     launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
-    assert main(launched) in (0, 3)
+    assert main([*launched, *asked]) in (0, 3)
 
 
 def test_what_a_vendors_launch_files_start_is_left_to_them(
@@ -180,31 +165,3 @@ def test_controllers_without_a_manager_are_not_built(
     assert said in capsys.readouterr().err
     # Another launch file starts it.
     assert main([*command, "--ignore", "MG723"]) == 0
-
-
-@pytest.mark.deep
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_every_stack_starts_without_an_error(layout: str, release: str, tmp_path: Path) -> None:
-    """With its usual parameters alone: what a robot has besides is told, and is no error."""
-    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
-    wrong: dict[str, tuple[str, int]] = {}
-    for stack in STACKS:
-        fleet.write_text(
-            f"distro: {release}\nlayout: {layout}\nstack: [{stack}]\n{ROBOTS}\n"
-            f"description: {FIXTURES / 'robots' / 'rover.urdf'}\n"
-        )
-        code = main(["build", str(fleet), "-o", str(out), "-q", "--force"])
-        cells = {(one, two, stack) for one in (release, "") for two in (layout, "")}
-        if code:
-            # What would not drive is not written.
-            wrong |= {} if cells & REFUSED else {stack: ("build", code)}
-            continue
-        launched = ["check-launch", str(out / "fleet.launch.py")]
-        code = main(launched)
-        if code in (0, 3):
-            code = main([*launched, "--plan", str(out / "plan.yaml")])
-        if code not in (0, 3):
-            wrong[stack] = ("check-launch", code)
-    assert not wrong

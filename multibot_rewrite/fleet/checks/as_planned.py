@@ -18,6 +18,7 @@ from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
 from multibot_rewrite.rules.system import (
     clocks,
+    localized,
     matching,
     names,
     relays,
@@ -74,7 +75,7 @@ def not_as_planned(
         known[_key(by_plan, it)].append(it)
     for it in found:
         level, place = _level(it, planned, seen, started), _place(it, running)
-        if it.robot in real and level == WARNING and _is_for_driver(it, planned, started):
+        if level and it.robot in real and is_for_driver(it, planned, started):
             level = NOTE
         if not level or any((it.code, name) in open_ for name in it.names):
             continue
@@ -111,15 +112,18 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
     if it.code == tf_pieces.tf_tree_in_pieces.code:
-        known = not doubts(seen)
-        return WARNING if known or _sender_left(it, planned, started) else ""
+        return NOTE if _sender_left(it, planned, started) else "" if doubts(seen) else WARNING
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     return "" if it.code in ABSENCE and doubts(seen) else ERROR
 
 
-def _is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
-    """Is the tree in pieces at a link that no started node's parameters name? A driver places it."""
+def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
+    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
+    pieces, which no started node's parameters name, and sends what a localizer waits for."""
+    if it.code == localized.map_not_joined.code:
+        # With another name, a frame below the map is the wrong one.
+        return len(it.names) == 1
     edges = (it for it in planned.edges if started & {*it.publishers})
     named = {frame for edge in edges for frame in (edge.parent, edge.child)}
     return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})

@@ -21,6 +21,7 @@ from multibot_rewrite.rules.system.interfaces import (
     interface_not_exported,
     open_claims,
 )
+from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.lookups import frame_not_sent
 from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
@@ -95,6 +96,9 @@ def missing(
         source = in_sources.get(_about(it, after)) if it.node else None
         said = source if source and _is_placed(before, source.names[-1]) else it
         level = WARNING if said.level == ERROR else said.level
+        # Its drivers, which no file names, send what a localizer waits for.
+        real = robot.spec.simulator == REAL and it.code == map_not_joined.code
+        level = NOTE if real and len(it.names) == 1 else level
         yield in_file(said._replace(level=level), robot, by_sources=said is source)
     yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
 

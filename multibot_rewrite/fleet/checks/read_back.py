@@ -19,7 +19,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
-from multibot_rewrite.fleet.checks.as_planned import not_as_planned, open_names
+from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned, open_names
 from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
@@ -93,7 +93,13 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        alone = [*_of_launch(found, codes, _given_elsewhere(made.planned, made.starts.nodes))]
+        started = made.starts.nodes
+        of_launch = _of_launch(found, codes, _given_elsewhere(made.planned, started))
+        alone = [
+            it
+            for it in of_launch
+            if it.robot not in real or not is_for_driver(it, made.planned, started)
+        ]
         wrong += _not_open(alone, made)
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 

@@ -56,7 +56,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     name, usual = robot.spec.namespace, _usual(robot)
     heard = _listeners(plan, robot)
     topic = usual if usual in heard or not heard else next(iter(heard))
-    types = heard.get(topic, set())
+    types = heard.get(topic) or {type_ for name, type_ in _bridged(plan, robot) if name == topic}
     with_stamp = STAMPED in types and PLAIN not in types
     return Teleop(name, topic, with_stamp, _base(robot) if with_stamp else "")
 

@@ -25,15 +25,21 @@ from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_in, sent_by
-from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES, Edge, edge_of
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
 ODOM = "odom"
 Frames = Mapping[str, str]
 NO_FRAMES: Frames = {}
 _BY_FILE = "open: file"
+# What a robot has one of, mostly: a reader of it has no other one in mind.
+SENSED = (
+    *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/NavSatFix"),
+    *("sensor_msgs/msg/PointCloud2",),
+)
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
 
@@ -112,9 +118,12 @@ def fitted(
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes, those without a section in a file with the settings that fit the others;
     ``sent`` are the transforms of the description's plugins."""
-    root = _root(member)
+    root, offered = _root(member), _offered(member, spec)
     settled = [
-        it if _section(it, given) else _settled(_rooted(_as_listed(it, spec), root)) for it in nodes
+        it
+        if _section(it, given)
+        else _settled(_rooted(_as_listed(_hearing(it, nodes, offered), spec), root))
+        for it in nodes
     ]
     choices = {it.node.name: it for it in _choices(settled, given, known)}
     wanted = _wanted(tuple(choices.values()), settled, spec)
@@ -125,6 +134,34 @@ def fitted(
 def _section(node: NodeFacts, given: Iterable[GivenNode]) -> GivenNode | None:
     last = f"/{node.name}"
     return next((it for it in given if f"/{it.name}".endswith(last)), None)
+
+
+def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
+    """The topics of the sensors in the description, by their types, as the robot alone has them."""
+    found: dict[str, list[str]] = {}
+    if spec.simulator != REAL:
+        topics, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
+        for it in topics:
+            if it.ros_type in SENSED and it.direction == DIRECTIONS["in"]:
+                found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
+    return found
+
+
+def _hearing(
+    node: NodeFacts, nodes: Iterable[NodeFacts], offered: Mapping[str, Sequence[str]]
+) -> NodeFacts:
+    """The node with the robot's only topic of a sensor where it would hear one that nobody sends."""
+    sent = {_topic(it) for other in nodes for it in other.endpoints if it.role == PUBLISHES}
+    ends = []
+    for end in node.endpoints:
+        topics = offered.get(end.type, ()) if end.role == SUBSCRIBES and not end.when else ()
+        lost = len(topics) == 1 and "<" not in end.name and _topic(end) not in {*topics, *sent}
+        ends.append(end._replace(remapped=topics[0]) if lost else end)
+    return node._replace(endpoints=tuple(ends)) if offered else node
+
+
+def _topic(end: Endpoint) -> str:
+    return (end.remapped or end.name).strip("/")
 
 
 def _root(member: Member) -> str:

@@ -229,15 +229,20 @@ def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
 def _manager_in_plugin(
     stack: Iterable[NodeFacts], own: Iterable[GivenNode], member: Member, release: str
 ) -> Iterator[NodeFacts]:
-    """The controller manager that a file of the robot sets and a plugin of its description makes, as
-    the stack of the plugin's name has it; none where a stack says who makes it."""
-    there = any(it.name == MANAGER for it in stack)
-    if there or all(it.known != MANAGER for it in own):
+    """The controller manager that a plugin of the description makes, as the stack of the plugin has
+    it: where a file of the robot sets it, or a stack has controllers; none where a stack has it."""
+    nodes = tuple(stack)
+    if any(it.name == MANAGER for it in nodes):
         return
-    library = built_in(release)
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
-    for name in {name for it in wide for name in it.names} & library.stacks.keys():
-        yield from (it for it in stack_of(library, name) if it.name == MANAGER)
+    names = {name for it in wide for name in it.names}
+    library = built_in(release)
+    if any(it.host == MANAGER for it in nodes):
+        made = (it for name in library.stacks for it in stack_of(library, name) if it.plugin)
+        yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
+    elif any(it.known == MANAGER for it in own):
+        for name in names & library.stacks.keys():
+            yield from (it for it in stack_of(library, name) if it.name == MANAGER)
 
 
 def _started_here(release: str) -> dict[str, NodeFacts]:

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a stack adds fits what the user's files say: commands, frames, transforms and sensors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from paths import FIXTURES, ROOT
+
+from multibot_rewrite.cli.multibot import main
+
+ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
+PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"
+# The servers of Nav2 that have commands, in a file that sets the type for three of them.
+SERVERS = ("controller_server", "behavior_server", "velocity_smoother")
+OTHERS = ("collision_monitor", "docking_server", "following_server")
+BRIDGE = (
+    "- {{ros_topic_name: cmd_vel, gz_topic_name: cmd_vel, direction: ROS_TO_GZ,\n"
+    "   ros_type_name: {}, gz_type_name: gz.msgs.Twist}}\n"
+)
+DRIVER = """\
+nodes:
+  driver:
+    package: my_driver
+    programs: [driver]
+    frames: {odom_frame: odom, base_frame: base_link}
+    sends: {odom_frame: base_frame}
+    with: [tf_broadcaster]
+    publishes: {odom: nav_msgs/msg/Odometry}
+    subscribes: {cmd_vel: geometry_msgs/msg/Twist}
+"""
+
+
+def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
+    """The folder that is built of a fleet file of these lines, without an error."""
+    fleet, out = folder / "fleet.yaml", folder / "out"
+    fleet.write_text(f"layout: tf-per-robot\ndescription: {robot}\n{text}\n{ROBOTS}\n")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    return out
+
+
+def rows(out: Path) -> dict[str, str]:
+    """The type of each topic of the first robot's bridge."""
+    bridge = yaml.safe_load((out / "robot1" / "bridge.yaml").read_text())
+    return {it["ros_topic_name"]: it["ros_type_name"] for it in bridge}
+
+
+def given(out: Path, parameter: str) -> dict[str, str]:
+    """The value that the launch file itself gives a parameter, by the node's name."""
+    found, name = {}, ""
+    for line in (out / "fleet.launch.py").read_text().splitlines():
+        if line.strip().startswith("name='"):
+            name = line.split("'")[1]
+        if f"'{parameter}': " in line:
+            found[name] = line.split(f"'{parameter}': ")[1].split("}")[0].split(",")[0]
+    return found
+
+
+def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
+    """The types of an end in the plan."""
+    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    return [it[3] for it in plan[node] if it[0] == role and it[2] == topic]
+
+
+@pytest.mark.parametrize(
+    ("release", "type_"), [("jazzy", PLAIN), ("kilted", STAMPED), ("lyrical", STAMPED)]
+)
+def test_the_bridge_takes_what_nav2_sends(release: str, type_: str, tmp_path: Path) -> None:
+    """nav2_util twist_publisher.hpp: stamped by default since Kilted. ros_gz_bridge mappings.py has
+    both types for gz.msgs.Twist."""
+    out = built(tmp_path, f"distro: {release}\nstack: nav2")
+    assert rows(out)["/robot1/cmd_vel"] == type_
+    assert not given(out, "enable_stamped_cmd_vel")
+    if type_ == STAMPED:
+        assert planned(out, "/robot1/collision_monitor", "publishes", "/robot1/cmd_vel") == [type_]
+    stamped = "stamped:=true" in (out / "fleet.launch.py").read_text()
+    assert stamped == (type_ == STAMPED)
+
+
+@pytest.mark.parametrize(
+    ("release", "value", "type_"),
+    [("jazzy", True, STAMPED), ("lyrical", False, PLAIN)],
+)
+def test_servers_of_no_file_follow_those_of_the_file(
+    release: str, value: bool, type_: str, tmp_path: Path
+) -> None:
+    sections = {it: {"ros__parameters": {"enable_stamped_cmd_vel": value}} for it in SERVERS}
+    (tmp_path / "nav2.yaml").write_text(yaml.safe_dump(sections))
+    more = "companions: {params: nav2.yaml}"
+    out = built(tmp_path, f"distro: {release}\nstack: nav2\n{more}")
+    assert rows(out)["/robot1/cmd_vel"] == type_
+    there = OTHERS if release == "lyrical" else OTHERS[:2]
+    assert given(out, "enable_stamped_cmd_vel") == dict.fromkeys(there, str(value))
+
+
+@pytest.mark.parametrize(
+    ("release", "type_", "value"), [("jazzy", STAMPED, "True"), ("lyrical", PLAIN, "False")]
+)
+def test_nav2_sends_what_the_users_bridge_takes(
+    release: str, type_: str, value: str, tmp_path: Path
+) -> None:
+    (tmp_path / "bridge.yaml").write_text(BRIDGE.format(type_))
+    more = "companions: {bridge: bridge.yaml}"
+    out = built(tmp_path, f"distro: {release}\nstack: nav2\n{more}")
+    assert set(given(out, "enable_stamped_cmd_vel").values()) == {value}
+    assert planned(out, "/robot1/collision_monitor", "publishes", "/robot1/cmd_vel") == [type_]
+
+
+def test_nav2_sends_what_the_users_driver_takes(tmp_path: Path) -> None:
+    (tmp_path / "nodes.yaml").write_text(DRIVER)
+    more = "simulator: none\nnodes: nodes.yaml"
+    out = built(tmp_path, f"distro: lyrical\nstack: [nav2, driver]\n{more}")
+    assert set(given(out, "enable_stamped_cmd_vel").values()) == {"False"}
+
+
+def test_two_stacks_of_other_defaults_agree(tmp_path: Path) -> None:
+    """Commands of Nav2 are stamped on Lyrical, those of twist_mux are not."""
+    out = built(tmp_path, "distro: lyrical\nstack: [nav2, teleop]")
+    assert rows(out)["/robot1/cmd_vel"] == PLAIN
+    assert set(given(out, "enable_stamped_cmd_vel").values()) == {"False"}
+
+
+@pytest.mark.parametrize("release", ["humble", "lyrical"])
+def test_a_filter_leaves_the_odometry_to_the_drive(release: str, tmp_path: Path) -> None:
+    """Without a file both would send odom -> base_link (ros_filter.cpp: publish_tf)."""
+    out = built(tmp_path, f"distro: {release}\nstack: robot_localization")
+    assert given(out, "publish_tf") == {"ekf_filter_node": "False"}
+
+
+def test_a_filter_of_a_file_stays_as_the_file_has_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "ekf.yaml").write_text("ekf_filter_node:\n  ros__parameters: {publish_tf: true}\n")
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(
+        f"layout: tf-per-robot\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
+        f"companions: {{params: ekf.yaml}}\n{ROBOTS}\n"
+    )
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
+    assert "MG408" in capsys.readouterr().err
+
+
+def test_the_filter_of_a_real_robot_places_its_root(tmp_path: Path) -> None:
+    """base_link hangs on base_footprint there: a second parent tears the tree apart."""
+    robot = FIXTURES / "robots" / "rover_gz.urdf"
+    more = "simulator: none\nlayout: frames-per-robot"
+    text = f"distro: jazzy\nstack: robot_localization\n{more}"
+    out = built(tmp_path, text.replace("\nlayout: frames-per-robot", ""), robot)
+    params = yaml.safe_load((out / "robot1" / "params.yaml").read_text())
+    own = params["/robot1/ekf_filter_node"]["ros__parameters"]
+    assert own["base_link_frame"] == "base_footprint"
+
+
+@pytest.mark.parametrize(
+    ("layout", "frame"),
+    [("tf-per-robot", "base_link"), ("frames-per-robot", "robot1/base_link")],
+)
+def test_amcl_looks_for_a_frame_of_the_robot(layout: str, frame: str, tmp_path: Path) -> None:
+    """amcl_node.cpp: base_footprint by default, which this rover has not."""
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    affix = "" if layout == "tf-per-robot" else "affix: prefix\n"
+    fleet.write_text(
+        f"layout: {layout}\n{affix}distro: lyrical\nstack: nav2\ndescription: {ROVER}\n{ROBOTS}\n"
+    )
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    params = yaml.safe_load((out / "robot1" / "params.yaml").read_text())
+    for node in ("amcl", "collision_monitor"):
+        assert params[f"/robot1/{node}"]["ros__parameters"]["base_frame_id"] == frame
+
+
+def test_odometry_without_a_topic_comes_where_it_is_read(tmp_path: Path) -> None:
+    """The drive of the SDF has no <odom_topic>; Nav2 reads odom."""
+    out = built(tmp_path, "distro: jazzy\nstack: nav2", FIXTURES / "robots" / "rover.sdf")
+    assert rows(out)["/robot1/odom"] == "nav_msgs/msg/Odometry"
+    alone = built(tmp_path, "distro: jazzy\nstack: robot_state", FIXTURES / "robots" / "rover.sdf")
+    assert rows(alone)["/robot1/odometry"] == "nav_msgs/msg/Odometry"
+
+
+def test_a_scan_of_another_name_is_heard(tmp_path: Path) -> None:
+    robot = tmp_path / "rover.urdf"
+    robot.write_text(ROVER.read_text().replace("<topic>scan</topic>", "<topic>front/lidar</topic>"))
+    out = built(tmp_path, "distro: jazzy\nstack: nav2", robot)
+    assert planned(out, "/robot1/amcl", "subscribes", "/robot1/front/lidar") == [
+        "sensor_msgs/msg/LaserScan"
+    ]
+
+
+def test_cartographer_gets_its_options(tmp_path: Path) -> None:
+    """node_main.cc ends without both flags."""
+    (tmp_path / "carto.lua").write_text('options = {map_frame = "map"}\nreturn options\n')
+    more = "simulator: none\ncompanions: {lua: carto.lua}"
+    out = built(tmp_path, f"distro: jazzy\nstack: cartographer\n{more}")
+    text = (out / "fleet.launch.py").read_text()
+    assert "'-configuration_directory', file(" in text
+    assert "'-configuration_basename', 'carto.lua'" in text
+    assert (out / "robot1" / "carto.lua").is_file()

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""With a stack and no further file a fleet builds, whatever its release, layout and simulator; what its
+own input lacks is refused in one line."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+import stack_cells
+from stack_cells import ROBOTS, Cell
+
+from multibot_rewrite.cli.multibot import main
+
+ROWS = [
+    (name, tuple(its))
+    for robot in ROBOTS
+    for name, its in groupby(stack_cells.cells(robot), lambda it: it[:3])
+]
+
+
+@pytest.mark.slow
+@pytest.mark.sample(37)
+@pytest.mark.parametrize("row", ROWS, ids=["-".join(name) for name, _ in ROWS])
+def test_nothing_that_the_build_adds_refuses_a_robot(
+    row: tuple[tuple[str, ...], tuple[Cell, ...]], tmp_path: Path
+) -> None:
+    wrong = {it[3:]: found for it in row[1] if (found := stack_cells.faults(it, tmp_path))}
+    assert not wrong
+
+
+FOUR = (
+    Cell("gz", "nav2", "lyrical", "tf-per-robot", "gazebo"),
+    Cell("gz", "nav2_composed", "lyrical", "postfix", "gazebo"),
+    Cell("sdf", "nav2_slam", "jazzy", "both", "gazebo"),
+    Cell("classic", "robot_localization_gps", "humble", "frames-per-robot", "gazebo"),
+)
+
+
+@pytest.mark.parametrize("cell", FOUR, ids="-".join)
+def test_the_built_folder_agrees_with_its_plan(cell: Cell, tmp_path: Path) -> None:
+    (tmp_path / "fleet.yaml").write_text(cell.fleet)
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    launched = ["check-launch", str(out / "fleet.launch.py")]
+    assert main(launched) == 0
+    assert main([*launched, "--plan", str(out / "plan.yaml")]) == 0
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        Cell("gz", "moveit", "lyrical", "both", "gazebo"),
+        Cell("gz", "ros2_control", "humble", "both", "none"),
+        Cell("gz", "cartographer", "jazzy", "frames-per-robot", "gazebo"),
+        Cell("gz", "controllers", "humble", "tf-per-robot", "gazebo"),
+        Cell("arm", "gz_ros2_control", "humble", "tf-per-robot", "gazebo"),
+    ],
+    ids="-".join,
+)
+def test_what_the_input_lacks_is_one_line(cell: Cell, tmp_path: Path) -> None:
+    """Of each robot; what follows from it is no second error."""
+    errors = [it for it in stack_cells.findings(cell, tmp_path) if it.level == "error"]
+    assert {it.code for it in errors} == stack_cells.refused(cell)
+    assert len(errors) == len({it.robot or str(it) for it in errors}) <= 2
+
+
+def test_a_fault_between_two_ends_of_the_build_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the settings that fit, the cells say so."""
+    for wrong, said in (
+        ("_typed", "MG306"),
+        ("_without_second_senders", "MG408"),
+        ("fitting_frames", "MG413"),
+    ):
+        with monkeypatch.context() as patch:
+            nothing = {
+                "_typed": lambda node, choice, wanted: node,
+                "_without_second_senders": lambda nodes, given, sent: nodes,
+                "fitting_frames": lambda member, nodes, sent: {},
+            }
+            where = "robots.robot_nodes" if wrong == "fitting_frames" else "robots.fitting"
+            patch.setattr(f"multibot_rewrite.fleet.{where}.{wrong}", nothing[wrong])
+            stack = "robot_localization" if said == "MG408" else "nav2"
+            cell = Cell("gz", stack, "lyrical", "tf-per-robot", "gazebo")
+            assert said in " ".join(stack_cells.faults(cell, tmp_path))

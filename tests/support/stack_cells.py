@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every stack x release x layout x simulator, with a description and no further file.
+
+python tests/support/stack_cells.py [WORD ...]     what is wrong; only cells with these words
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite import knowledge
+from multibot_rewrite.base.bounded import own_text
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import RELEASES, has_release
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.file.robot_choice import Choice
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+ROOT = Path(__file__).parents[2]
+STACKS = tuple(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
+LAYOUTS = ("postfix", "tf-per-robot", "both", "frames-per-robot", "frame-prefix")
+SIMULATORS = ("gazebo", "none")
+# A drive of gz-sim; one of Gazebo Classic, whose root is base_footprint; an SDF whose drive has its
+# default topics; wheels under ros2_control in gz-sim; an arm with real hardware and an SRDF.
+ROBOTS = {
+    "gz": "examples/launch_tutorial/rover.urdf",
+    "classic": "fixtures/robots/rover.urdf",
+    "sdf": "fixtures/robots/rover.sdf",
+    "controlled": "fixtures/robots/rover_gz.urdf",
+    "arm": "examples/two_arms_moveit/arm.urdf",
+}
+SRDF = ROOT / "examples/two_arms_moveit/arm.srdf"
+# Stacks of controllers whose manager something else makes.
+OF_MANAGERS = ("controllers", "gz_ros2_control", "gazebo_ros2_control")
+OF_ARMS = ("moveit", "rviz_moveit", "ros2_control", "robot_state", "static_tf", *OF_MANAGERS)
+NOTHING = "no node"
+# What the user's own description is warned about, whatever runs beside it.
+OF_DESCRIPTIONS = {
+    "gz": set(),
+    "classic": {"MB902", "MB439"},
+    "sdf": {"MF712", "MB439"},
+    "controlled": {"MB425", "MB426", "MB439", "MR105"},
+    "arm": set(),
+}
+
+
+class Cell(NamedTuple):
+    """Two robots of a description with one stack."""
+
+    robot: str
+    stack: str
+    release: str
+    layout: str
+    simulator: str
+
+    @property
+    def fleet(self) -> str:
+        """The text of its fleet file. A real robot has no start pose: something may know its place."""
+        srdf = f"srdf: {SRDF}\n" if self.robot == "arm" else ""
+        apart = [f", pose: {{y: {y}}}" if self.simulator == "gazebo" else "" for y in (0.0, 3.0)]
+        robots = ", ".join(f"{{name: robot{at + 1}{it}}}" for at, it in enumerate(apart))
+        return (
+            f"distro: {self.release}\nlayout: {self.layout}\nsimulator: {self.simulator}\n"
+            f"stack: [{self.stack}]\ndescription: {ROOT / ROBOTS[self.robot]}\n{srdf}"
+            f"robots: [{robots}]\n"
+        )
+
+
+def refused(cell: Cell) -> set[str]:
+    """The codes of the errors of a cell, by what its input lacks or contradicts."""
+    hardware = cell.robot in ("controlled", "arm")
+    wrong = set()
+    if cell.stack == "moveit" and cell.robot != "arm":
+        wrong.add("MF857")  # no SRDF
+    if cell.stack == "cartographer":
+        wrong.add("MF857")  # no Lua file
+    if cell.stack == "ros2_control" and not hardware:
+        wrong.add("MF857")  # no <ros2_control>
+    if cell.stack in OF_MANAGERS and cell.robot != "controlled":
+        wrong.add("MG723")  # nothing starts a controller manager
+    if cell.stack == "no_robot_state_publisher" and cell.simulator == "none":
+        wrong.add(NOTHING)  # its only word is that a node is left out: no node is left
+    # move_group reads the links as the URDF has them, and this layout renames them at run time only.
+    if cell.layout == "frame-prefix" and (cell.stack == "moveit" or cell.robot == "arm"):
+        wrong.add("MF837")
+    return wrong
+
+
+def lives(cell: Cell) -> bool:
+    """Is there such a robot? Gazebo Classic ends with Humble, no driver moves a simulator's hardware,
+    and an arm does not drive."""
+    return {
+        "classic": has_release("humble", cell.release),
+        "controlled": cell.simulator == "gazebo",
+        "arm": cell.stack in OF_ARMS,
+    }.get(cell.robot, True)
+
+
+def cells(robot: str) -> Iterator[Cell]:
+    every = product((robot,), STACKS, RELEASES, LAYOUTS, SIMULATORS)
+    return (it for it in (Cell(*words) for words in every) if lives(it))
+
+
+def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
+    """What the build of a cell says that is no note."""
+    file = folder / "fleet.yaml"
+    file.write_text(cell.fleet)
+    plan = plan_fleet(read_fleet(str(file), "", {}, Choice()))
+    try:
+        made = make_outputs(plan, str(folder / "out"))
+    except UsageError as error:
+        return (Finding(NOTHING, ERROR, str(error)),)
+    back = read_back(plan, made, str(folder / "out"))
+    told = (it for it in made.findings if it._replace(level=ERROR) not in back)
+    every = dict.fromkeys((*told, *back, *plan.fleet.table.problems))
+    return tuple(it for it in every if it.level != NOTE)
+
+
+def faults(cell: Cell, folder: Path) -> list[str]:
+    """What is wrong with a cell: an error that its input does not have, one that is missing, and
+    warnings between what only the build adds."""
+    found = findings(cell, folder)
+    errors = {it.code for it in found if it.level == ERROR}
+    wanted = refused(cell)
+    wrong = [str(it) for it in found if it.level == ERROR and it.code not in wanted]
+    wrong += [f"no {code}" for code in sorted(wanted - errors)]
+    if not wanted:
+        own = OF_DESCRIPTIONS[cell.robot]
+        wrong += [str(it) for it in found if it.level != ERROR and it.code not in own]
+    return wrong
+
+
+def main(words: list[str]) -> int:
+    count = bad = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for cell in (it for robot in ROBOTS for it in cells(robot) if {*words} <= {*it}):
+            count += 1
+            wrong = faults(cell, Path(folder))
+            bad += bool(wrong)
+            if wrong:
+                print(" ".join(cell), "|", "; ".join(wrong)[:300], flush=True)
+    print(f"{count} cells, {bad} wrong")
+    return bool(bad)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
