@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.base.conventions import WORLD_FRAMES
+from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
@@ -336,7 +336,9 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
         for frame in unique(it for edge in tree.edges for it in (edge.child, edge.parent)):
             robot = seen.frame_robot(frame)
             plain = seen.plain_frame(frame)
-            if robot and robot in plain.split("/") and plain != robot:
+            # A robot may be called as a frame is.
+            once = plain == robot or robot in ("", *USUAL_FRAMES)
+            if not once and robot in plain.split("/"):
                 doubled[robot].append(frame)
         for robot, frames in doubled.items():
             verb = "has" if len(frames) == 1 else "have"
