@@ -17,9 +17,12 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import not_as_planned
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
+from multibot_rewrite.fleet.file.simulator_switch import loads_hardware, switch_for
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
@@ -33,6 +36,7 @@ from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
+from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
@@ -70,6 +74,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
         wrong += _of_launch(found, codes, _given_elsewhere(made.planned, made.started))
+        switch = _switch(plan) if any(it.code == NO_MANAGER.code for it in wrong) else ""
+        wrong = [_with_switch(it, switch) if switch else it for it in wrong]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
@@ -83,6 +89,26 @@ def _of_launch(found: Launched, told: Set[str], elsewhere: Set[str]) -> Iterator
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
+
+
+def _switch(plan: FleetPlan) -> str:
+    """Return the argument of a description, with its value, that loads the plugin of a simulator with a
+    controller manager; empty for none."""
+    for it in (it.spec for it in plan.robots):
+        given = filled(it.arguments, it.name)
+        found = switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED)
+        if found:
+            return f"{found[0]}: {found[1]!r}"
+    return ""
+
+
+def _with_switch(it: Finding, switch: str) -> Finding:
+    if it.code != NO_MANAGER.code:
+        return it
+    hint = (
+        f"write arguments: {{{switch}}} for the description, whose plugin starts it; or {it.hint}"
+    )
+    return it._replace(hint=hint)
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:

@@ -11,7 +11,8 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import at_robot
 from multibot_rewrite.system.records import SERVES
 
-_FLEET = "layout: both\nsimulator: none\nstack: {}\nrobots:\n  - {{name: robot1, description: arm.urdf}}\n"
+_ROBOTS = "robots:\n  - {name: robot1, description: arm.urdf}\n"
+_FLEET = "layout: both\nsimulator: none\nstack: "
 MOVED = declare(
     "MF851",
     "service-of-hardware-moved",
@@ -20,8 +21,8 @@ MOVED = declare(
     "robot's name before it.",
     why="Who calls the old name reaches no robot any more. It may be an emergency stop.",
     fix="Call the name of each robot.",
-    bad=_FLEET.format("ros2_control"),
-    good=_FLEET.format("robot_state"),
+    bad=f"{_FLEET}ros2_control\n{_ROBOTS}",
+    good=f"{_FLEET}robot_state\n{_ROBOTS}",
     line=5,
     formats=("fleet",),
     beside={
