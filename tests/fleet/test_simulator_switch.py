@@ -96,7 +96,9 @@ MANAGED = """\
   <link name="base_link">
     <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   </link>
-  <link name="w"/>
+  <link name="w">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
   <joint name="wheel" type="continuous"><parent link="base_link"/><child link="w"/></joint>
   <ros2_control name="s" type="system">
     <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
@@ -104,7 +106,8 @@ MANAGED = """\
   </ros2_control>
   <xacro:if value="{condition}">
     <gazebo><plugin filename="gz_ros2_control-system"
-                    name="gz_ros2_control::GazeboSimROS2ControlPlugin"/></gazebo>
+                    name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters>c.yaml</parameters></plugin>
+    </gazebo>
   </xacro:if>
 </robot>
 """
