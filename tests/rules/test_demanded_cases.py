@@ -171,7 +171,8 @@ WORDS = {
     # A vendor's own package, whose name has that of a known one in it.
     TYPE + "clearpath_mecanum_drive_controller/MecanumDriveController}": (
         "note controller_manager: arm.type is"
-        " 'clearpath_mecanum_drive_controller/MecanumDriveController', a class of clearpath_mecanum_drive_controller, which is not known; did you mean"
+        " 'clearpath_mecanum_drive_controller/MecanumDriveController', a class of"
+        " clearpath_mecanum_drive_controller, which is not known; did you mean"
         " mecanum_drive_controller/MecanumDriveController?"
     ),
     TYPE + "acme/DiffDriveController}": "",
