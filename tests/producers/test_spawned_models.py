@@ -99,7 +99,8 @@ def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
         ("ackermann_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
         ("ackermann_drive", "<publish_odom>true</publish_odom>", []),
         ("ackermann_drive",
-         "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>1</publish_odom_tf>", [("odom", "base_footprint")]),
+         "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>1</publish_odom_tf>",
+         [("odom", "base_footprint")]),
         # Its transform of odometry has no switch of its own: gazebo_ros_tricycle_drive.cpp:483.
         ("tricycle_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
         ("tricycle_drive", "<publish_odom>true</publish_odom>", [("odom", "base_link")]),
@@ -109,7 +110,8 @@ def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
         # A link may be called as the frame of odometry, and no link as that of the base.
         ("planar_move", "<odometry_frame>wheel</odometry_frame>", [("wheel", "base_footprint")]),
         ("planar_move",
-         "<odometry_frame>base</odometry_frame><robot_base_frame>wheel</robot_base_frame>", [("base", "wheel")]),
+         "<odometry_frame>base</odometry_frame><robot_base_frame>wheel</robot_base_frame>",
+         [("base", "wheel")]),
         ("joint_state_publisher", "", []),
     ],
 )  # fmt: skip

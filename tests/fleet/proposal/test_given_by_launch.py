@@ -187,7 +187,8 @@ def test_arguments_of_included_files_are_followed(
     assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read).keys()
 
 
-FILTER = "Node(package='imu_filter_madgwick', executable='imu_filter_madgwick_node', name='imu_filter', {})"
+IMU = "imu_filter_madgwick"
+FILTER = f"Node(package='{IMU}', executable='{IMU}_node', name='imu_filter', {{}})"
 OWN = "Node(package='acme', executable='wheels.py')"
 STARTED = [
     (OWN, ["wheels.py (acme)"]),
