@@ -9,7 +9,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import (
@@ -20,11 +20,13 @@ from multibot_rewrite.base.findings.selection import (
 )
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 
 TEXT = "text"
 FEW_NOTES = 3
+# Lines of a file that are named.
+MOST_LINES = 8
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
@@ -88,11 +90,31 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
         return False
     if options.format == TEXT:
         colour = is_coloured(options.color, sys.stderr)
-        shown = findings if options.verbose else list(_few_notes(findings))
+        shown = findings if options.verbose else list(_few_notes([*_one_a_matter(findings)]))
         sys.stderr.write(_text(options, shown, about, NO_RULES, colour=colour))
     else:
         print_bytes(_text(options, findings, about, NO_RULES, colour=False).encode())
     return fails(findings, options.fail_on)
+
+
+def _one_a_matter(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """Yield the findings; of many warnings of one kind in one file with one remedy the first one, with
+    how many more there are. Those of robots are said once for all of these elsewhere."""
+    lines: dict[tuple[str, ...], list[int]] = defaultdict(list)
+    for it in findings:
+        if it.level == WARNING and it.line and not (it.robot or it.robots):
+            lines[it.code, it.file, it.hint].append(it.line)
+    many = {key: at for key, at in lines.items() if len(at) > FEW_NOTES + 1}
+    met: set[tuple[str, ...]] = set()
+    for it in findings:
+        key = (it.code, it.file, it.hint)
+        if key not in many or it.level != WARNING or it.robot or it.robots:
+            yield it
+        elif key not in met:
+            met.add(key)
+            more = f"{len(many[key]) - 1} more of this kind in the file, at lines"
+            listed = shorten(map(str, many[key][1:]), MOST_LINES)
+            yield it._replace(message=f"{it.message}; {more} {listed} (--verbose shows them)")
 
 
 def _few_notes(findings: Sequence[Finding]) -> Iterator[Finding]:

@@ -52,6 +52,7 @@ from multibot_rewrite.fleet.outputs.world_file import world_file
 from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
 from multibot_rewrite.fleet.robots.apart import too_near
 from multibot_rewrite.fleet.robots.devices import one_device_each
+from multibot_rewrite.fleet.robots.hardware_services import moved_services
 from multibot_rewrite.fleet.robots.named_twice import named_twice
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import other_hardware
@@ -132,6 +133,7 @@ def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """What is wrong with the robots themselves, whatever files go with them."""
     yield from plan.of_rewrites
     yield from other_hardware(plan.robots)
+    yield from moved_services(plan)
     yield from named_twice(plan.robots)
     met = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)

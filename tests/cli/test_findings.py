@@ -209,3 +209,25 @@ def test_a_table_s_findings(form: str, tmp_path: Path, siren: list[str], said: S
     assert (code, err) == (0, "")
     # The table is written all the same: it shows what the finding is about.
     assert (tmp_path / "result").stat().st_size > 100
+
+
+def test_many_warnings_of_one_matter_are_one_line_with_their_number(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All are there with --verbose and in JSON; of a few each is said."""
+    for count, lines in ((48, 1), (4, 4)):
+        links = "".join(f'<link name="finger_{it}"/>' for it in range(count))
+        parts = "".join(f'\n<grasp part="finger_{it}"/>' for it in range(count))
+        file = tmp_path / "hand.urdf"
+        file.write_text(f'<robot name="hand">{links}\n<custom>{parts}</custom></robot>')
+        command = [str(file), "left", "-o", str(tmp_path / "out.urdf")]
+        urdf_postfix.main(command)
+        said = [it for it in capsys.readouterr().err.splitlines() if "MB901" in it]
+        assert len(said) == lines
+        assert (f"{count - 1} more of this kind in the file, at lines 4, 5" in said[0]) == (
+            lines == 1
+        )
+        urdf_postfix.main([*command, "--verbose", "--force"])
+        assert capsys.readouterr().err.count("MB901") == count
+        urdf_postfix.main([*command, "--format", "json", "--force"])
+        assert capsys.readouterr().out.count('"MB901"') == count

@@ -62,6 +62,9 @@ def test_the_services_of_hardware_get_a_rule_at_the_manager(tmp_path: Path) -> N
     names = {it.name for it in made.plan.fleet.table.names if it.endpoint.name == "/emergency_stop"}
     assert names == {"/r1/emergency_stop", "/r2/emergency_stop"}
     assert not {it.code for it in made.made.findings} & {"MG305", "MG101", "MG102"}
+    (moved,) = [it for it in made.made.findings if it.code == "MF851"]
+    assert "/emergency_stop:=/r1/emergency_stop" in moved.message
+    assert "nothing serves /emergency_stop any more" in moved.hint
 
 
 @pytest.mark.slow

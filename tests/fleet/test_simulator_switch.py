@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from lxml import etree
 
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file import simulator_switch as switch
 
 GZ, IGN, CLASSIC = (
@@ -85,3 +88,68 @@ def test_so_many_arguments_are_tried() -> None:
     declared = "".join(f'<xacro:arg name="sim{at}" default="true"/>' for at in range(9))
     text = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{declared}</robot>'
     assert len([*switch._switches({"r": text.encode()}, {})]) == 8
+
+
+MANAGED = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="{name}" default="{default}"/>
+  <link name="base_link">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <link name="w">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="wheel" type="continuous"><parent link="base_link"/><child link="w"/></joint>
+  <ros2_control name="s" type="system">
+    <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+    <joint name="wheel"><command_interface name="velocity"/><state_interface name="position"/></joint>
+  </ros2_control>
+  <xacro:if value="{condition}">
+    <gazebo><plugin filename="gz_ros2_control-system"
+                    name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters>c.yaml</parameters></plugin>
+    </gazebo>
+  </xacro:if>
+</robot>
+"""
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "default", "condition", "value"),
+    [
+        ("use_sim", "false", "$(arg use_sim)", "true"),
+        ("sim_gazebo", "False", "$(arg sim_gazebo)", "True"),
+        ("mode", "real", "${'$(arg mode)' == 'gazebo'}", "gazebo"),
+        ("camera", "false", "$(arg camera)", ""),
+    ],
+)
+def test_a_manager_that_an_argument_would_load_is_told_with_it(
+    name: str, default: str, condition: str, value: str, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """A controller manager that nothing starts: what the hint says makes the description start it."""
+    (tmp_path / "r.urdf.xacro").write_text(
+        MANAGED.format(name=name, default=default, condition=condition)
+    )
+    (tmp_path / "c.yaml").write_text(CONTROLLERS)
+    fleet = "distro: jazzy\nlayout: both\nsimulator: gazebo\nstack: controllers\n"
+    fleet += "description: r.urdf.xacro\nrobots: [{name: r1}, {name: r2, pose: {x: 1}}]\n"
+    file = tmp_path / "fleet.yaml"
+    file.write_text(fleet)
+    command = ["build", str(file), "-o", str(tmp_path / "out")]
+    assert main(command) == 1
+    told = capsys.readouterr().err
+    assert "MG723 nothing starts /r1/controller_manager" in told
+    said = f"write arguments: {{{name}: '{value}'}}"
+    assert (said in told) == bool(value)
+    if value:
+        file.write_text(
+            f"{fleet}arguments: {{{name}: '{value}'}}\ncompanions: {{params: c.yaml}}\n"
+        )
+        assert main(command) == 0
+        assert "MG723" not in capsys.readouterr().err

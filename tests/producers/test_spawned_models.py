@@ -94,10 +94,12 @@ def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
     ("library", "inside", "edges"),
     [
         ("diff_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
-        ("diff_drive", "<publish_odom_tf>0</publish_odom_tf><publish_wheel_tf>1</publish_wheel_tf>", []),
+        ("diff_drive", "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>0</publish_odom_tf>",
+         []),
         ("ackermann_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
         ("ackermann_drive", "<publish_odom>true</publish_odom>", []),
-        ("ackermann_drive", "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>1</publish_odom_tf>",
+        ("ackermann_drive",
+         "<publish_wheel_tf>1</publish_wheel_tf><publish_odom_tf>1</publish_odom_tf>",
          [("odom", "base_footprint")]),
         # Its transform of odometry has no switch of its own: gazebo_ros_tricycle_drive.cpp:483.
         ("tricycle_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
@@ -107,7 +109,8 @@ def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
         ("planar_move", "<publish_odom_tf>false</publish_odom_tf>", []),
         # A link may be called as the frame of odometry, and no link as that of the base.
         ("planar_move", "<odometry_frame>wheel</odometry_frame>", [("wheel", "base_footprint")]),
-        ("planar_move", "<odometry_frame>base</odometry_frame><robot_base_frame>wheel</robot_base_frame>",
+        ("planar_move",
+         "<odometry_frame>base</odometry_frame><robot_base_frame>wheel</robot_base_frame>",
          [("base", "wheel")]),
         ("joint_state_publisher", "", []),
     ],

@@ -165,12 +165,14 @@ WORDS = {
     ),
     TYPE + "diff_drive_controler/DiffDriveController}": (
         "note controller_manager: arm.type is 'diff_drive_controler/DiffDriveController', a class of"
-        " diff_drive_controler, which is not known; did you mean diff_drive_controller/DiffDriveController?"
+        " diff_drive_controler, which is not known; did you mean"
+        " diff_drive_controller/DiffDriveController?"
     ),
     # A vendor's own package, whose name has that of a known one in it.
     TYPE + "clearpath_mecanum_drive_controller/MecanumDriveController}": (
-        "note controller_manager: arm.type is 'clearpath_mecanum_drive_controller/MecanumDriveController',"
-        " a class of clearpath_mecanum_drive_controller, which is not known; did you mean"
+        "note controller_manager: arm.type is"
+        " 'clearpath_mecanum_drive_controller/MecanumDriveController', a class of"
+        " clearpath_mecanum_drive_controller, which is not known; did you mean"
         " mecanum_drive_controller/MecanumDriveController?"
     ),
     TYPE + "acme/DiffDriveController}": "",

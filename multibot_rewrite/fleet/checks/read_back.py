@@ -17,6 +17,8 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.description.sources.access import BOUNDED
+from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
 from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned, open_names
@@ -24,6 +26,7 @@ from multibot_rewrite.fleet.checks.as_printed import not_as_printed
 from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.fleet.file.simulator_switch import loads_hardware, switch_for
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
@@ -38,6 +41,7 @@ from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
+from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
@@ -101,6 +105,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
         wrong += _not_open(alone, made)
+        switch = _switch(plan) if any(it.code == NO_MANAGER.code for it in wrong) else ""
+        wrong = [_with_switch(it, switch) if switch else it for it in wrong]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
@@ -125,6 +131,26 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
     return [
         it for it in found if it.code != code or not {(code, name) for name in it.names} <= known
     ]
+
+
+def _switch(plan: FleetPlan) -> str:
+    """Return the argument of a description, with its value, that loads the plugin of a simulator with a
+    controller manager; empty for none."""
+    for it in (it.spec for it in plan.robots):
+        given = filled(it.arguments, it.name)
+        found = switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED)
+        if found:
+            return f"{found[0]}: {found[1]!r}"
+    return ""
+
+
+def _with_switch(it: Finding, switch: str) -> Finding:
+    if it.code != NO_MANAGER.code:
+        return it
+    hint = (
+        f"write arguments: {{{switch}}} for the description, whose plugin starts it; or {it.hint}"
+    )
+    return it._replace(hint=hint)
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:

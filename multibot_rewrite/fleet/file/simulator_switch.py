@@ -123,5 +123,5 @@ def _classes(text: str) -> list[str]:
 
 def _compared(name: str, text: str) -> list[str]:
     """The words that an argument is compared with, those of a simulator or its hardware first."""
-    found = re.findall(rf"""\b{re.escape(name)}\s*==\s*["']([\w-]+)["']""", text)
+    found = re.findall(rf"""\b{re.escape(name)}\)?["']?\s*==\s*["']([\w-]+)["']""", text)
     return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)

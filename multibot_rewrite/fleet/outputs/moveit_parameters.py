@@ -167,8 +167,8 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
 
 
 def _read(path: str, text: str) -> Any:
-    """Return the data of a MoveIt file as a launch file has it; raises InputError for a value with a tag
-    that it does not know."""
+    """Return the data of a MoveIt file as a launch file has it; raises InputError for a value with a
+    tag that it does not know."""
     try:
         return load_yaml(text)
     except yaml.MarkedYAMLError as error:

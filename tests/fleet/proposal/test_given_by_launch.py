@@ -187,9 +187,8 @@ def test_arguments_of_included_files_are_followed(
     assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read).keys()
 
 
-FILTER = (
-    "Node(package='imu_filter_madgwick', executable='imu_filter_madgwick_node', name='imu_filter', {})"
-)
+IMU = "imu_filter_madgwick"
+FILTER = f"Node(package='{IMU}', executable='{IMU}_node', name='imu_filter', {{}})"
 OWN = "Node(package='acme', executable='wheels.py')"
 STARTED = [
     (OWN, ["wheels.py (acme)"]),
@@ -270,7 +269,9 @@ def test_what_init_says_of_such_a_node_is_true_and_helps(
     assert "src/launch/base.launch.py:5: imu_filter (imu_filter_madgwick" in text
     assert "/imu/data:=/imu/out" in text
     launch = load_fleet(fleet).text("fleet.launch.py")
-    assert "Not started: imu_filter (nothing in the fleet file starts it" in " ".join(launch.split())
+    assert "Not started: imu_filter (nothing in the fleet file starts it" in " ".join(
+        launch.split()
+    )
     fleet.write_text(f"launch: src/launch/base.launch.py\n{text}")
     mended = load_fleet(fleet, trust=True)
     assert "('imu/data', 'imu/out')" in mended.text("fleet.launch.py")
