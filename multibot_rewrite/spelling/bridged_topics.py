@@ -42,7 +42,7 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 # The element of a system whose transforms are those of tf.
 TF_ELEMENT = "tf_topic"
 IMAGE = "gz.msgs.Image"
-_MODELS = "/model/"
+_MODELS = "model/"
 # Cameras whose info is below their topic, and no name that they are given.
 _INFO_BELOW = frozenset({"rgbd_camera", "rgbd", "segmentation_camera", "segmentation"})
 # Robot -> what its model is spawned as, if not as the robot is called.
@@ -155,9 +155,9 @@ def _apart(
 ) -> BridgedTopic:
     """Return a topic with a ROS name of its own where only a system's namespace in Gazebo tells it from
     another one of the robot."""
-    below = it.gz.removeprefix(_MODELS)
-    is_word = below != it.gz and not below.startswith(f"{model}/")
-    if not is_word or len(gz_of[it.ros]) < 2 or it.ros == _tf_name(it.robot, naming):
+    below = it.gz.lstrip("/").removeprefix(_MODELS)
+    is_default = it.ros not in (_ros_name(it.gz), _tf_name(it.robot, naming))
+    if not is_default or below.startswith(f"{model}/") or len(gz_of[it.ros]) < 2:
         return it
     return it._replace(ros=_robot_name(below, it.robot, naming))
 
