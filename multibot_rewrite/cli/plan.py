@@ -124,8 +124,7 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(made.inventories, made.naming, made.models, made.table.names)
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"
-        hint = f" ({item.hint})" if item.hint else ""
-        note(options, f"{item.robot}: warning: {message}{hint}")
+        note(options, f"{item.robot}: warning: {message} ({item.hint})")
     return as_yaml(carried)
 
 

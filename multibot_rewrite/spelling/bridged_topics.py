@@ -14,9 +14,11 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
+from multibot_rewrite.description.readback.xml import values_at
 from multibot_rewrite.description.rewriters.model_namespaces import is_model_namespace
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.spelling.bridge_rows import (
     PLUGINS,
@@ -41,7 +43,7 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 # The element of a system whose transforms are those of tf.
 TF_ELEMENT = "tf_topic"
 IMAGE = "gz.msgs.Image"
-_MODELS = "/model/"
+_MODELS = "model/"
 # Cameras whose info is below their topic, and no name that they are given.
 _INFO_BELOW = frozenset({"rgbd_camera", "rgbd", "segmentation_camera", "segmentation"})
 # Robot -> what its model is spawned as, if not as the robot is called.
@@ -50,6 +52,8 @@ AS_ROBOTS: Models = MappingProxyType({})
 OF_WORLD = "the default topic has the name of the world in it"
 OF_SPAWNER = "the namespace of its model is made of the name that it is spawned by"
 GIVE_TOPIC = "give it a topic in the description, so that a bridge can name it"
+OF_ANOTHER = "take such data from another system or sensor"
+OWN_ROW = "write a row for it in a bridge file, with its types"
 # What a ROS name cannot have, and a word that begins with a digit.
 _NOT_ROS, _NUMBER = lazy_compile(r"[^A-Za-z0-9_/]"), lazy_compile(r"/(?=[0-9])")
 
@@ -68,14 +72,18 @@ class BridgedTopic(NamedTuple):
 
 
 class UnbridgedTopic(NamedTuple):
-    """A topic that is not bridged: why, and what to do. ``part`` is what its gz name holds where that
-    is not known, ``type`` its type where that tells it from others."""
+    """A topic of a ``sensor`` or ``plugin`` that is not bridged: why, and what to do.
+
+    ``part`` is what its gz name holds where that is not known, ``type`` its type where that tells it
+    from others.
+    """
 
     robot: str
+    tag: str
     line: int
     what: str
     why: str
-    hint: str = ""
+    hint: str
     part: str = ""
     type: str = ""
 
@@ -178,9 +186,9 @@ def _apart(
 ) -> BridgedTopic:
     """Return a topic with a ROS name of its own where only a system's namespace in Gazebo tells it from
     another one of the robot."""
-    below = it.gz.removeprefix(_MODELS)
-    is_word = below != it.gz and not below.startswith(f"{model}/")
-    if not is_word or len(gz_of[it.ros]) < 2 or it.ros == _tf_name(it.robot, naming):
+    below = it.gz.lstrip("/").removeprefix(_MODELS)
+    is_default = it.ros not in (_ros_name(it.gz), _tf_name(it.robot, naming))
+    if not is_default or below.startswith(f"{model}/") or len(gz_of[it.ros]) < 2:
         return it
     return it._replace(ros=_robot_name(below, it.robot, naming))
 
@@ -204,12 +212,14 @@ def plugin_topics(
         below = read and section is not None and bool(section.model_namespace)
         space = scoped_namespace(host.element) if below else ""
         rows = rows_of(PLUGINS, section.names[0] if section else "", inventory.release)
-        found = [
+        found: list[Found] = [
             topic
             for row in rows
             if row.unless not in sections and is_there(row, host.element)
             for topic in _plugin(host.element, row, robot, model, naming, space, inventory.release)
         ]
+        if section is not None and section.names[0] not in bridge_data()[PLUGINS]:
+            found += _of_unknown_type(host.element, section, robot)
         bridged = tuple([it for it in found if isinstance(it, BridgedTopic)])
         left = tuple([it for it in found if isinstance(it, UnbridgedTopic)])
         if found:
@@ -225,12 +235,14 @@ def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]
     base, what = text_at(sensor, rows[0].at), f"sensor {sensor.get('name')}"
     if not base:
         part = f"/sensor/{sensor.get('name')}/"
-        yield UnbridgedTopic(robot, _line(sensor), what, OF_WORLD, GIVE_TOPIC, part)
+        yield UnbridgedTopic(robot, "sensor", _line(sensor), what, OF_WORLD, GIVE_TOPIC, part)
         return
     for row in (row for row in rows if is_there(row, sensor)):
         name = f"{base}{row.element}"
         if why := _why_not(row, release):
-            yield UnbridgedTopic(robot, _line(sensor), what, why, "", name, row.gz_type)
+            yield UnbridgedTopic(
+                robot, "sensor", _line(sensor), what, why, OF_ANOTHER, name, row.gz_type
+            )
         else:
             yield _bridged(row, robot, _ros_name(name), name)
     if any(row.gz_type == IMAGE for row in rows):
@@ -276,14 +288,28 @@ def _plugin(
         unnamed = OF_WORLD if space == "" else OF_SPAWNER
         if why := _why_not(row, release) if name else unnamed:
             what = f"{name or f'<{row.element}>'} of {plugin.get('filename')}"
-            hint = "" if name else GIVE_TOPIC
-            yield UnbridgedTopic(robot, _line(plugin), what, why, hint, type=row.gz_type)
+            hint = OF_ANOTHER if name else GIVE_TOPIC
+            yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, hint, type=row.gz_type)
             continue
         ros = _ros_of(row, name, rest, robot, naming)
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         is_free = bool(rest) and row.element != TF_ELEMENT
         yield _bridged(row, whose, ros, name)._replace(is_free=is_free)
+
+
+def _of_unknown_type(
+    plugin: etree._Element, section: VocabularySection, robot: str
+) -> Iterator[UnbridgedTopic]:
+    """Yield the topics in Gazebo that a plugin of others is given; one with a node bridges its own."""
+    is_of_gz = "::" in plugin.get("name", "") and plugin.find("ros") is None
+    if not is_of_gz or any(it.kinds[:1] in (("node",), ("namespace",)) for it in section.sites):
+        return
+    for site in (it for it in section.sites if it.kinds[:1] == ("topic",) and it.form == "whole"):
+        for name in filter(None, values_at(plugin, site.path)):
+            what = f"{name} of {plugin.get('filename')}"
+            why = f"the type of <{site.path}> is not known"
+            yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, OWN_ROW, name)
 
 
 def _ros_of(row: BridgeRow, name: str, rest: str, robot: str, naming: Naming) -> str:

@@ -166,11 +166,10 @@ def _is_launched(topic: UnbridgedTopic, arguments: Iterable[str]) -> bool:
 
 def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:
     """The line in the source: inserted text moves those of the result."""
-    tag = "sensor" if topic.part else "plugin"
-    written = robot.member.inventory.document.root.iter(tag)
+    written = robot.member.inventory.document.root.iter(topic.tag)
     lines = [cast("int", it.sourceline) for it in written]
     number = lines.index(topic.line)
-    return line_of(robot.member.source, tag, number)
+    return line_of(robot.member.source, topic.tag, number)
 
 
 def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:

@@ -91,7 +91,7 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
         others = sorted(names & words - {*it.gz.split("/"), *called[own]})
         if others and words.isdisjoint(called[own]):
             message = f"{it.ros} of {others[0]} is bridged to gz topic {it.gz} of {own}"
-        elif not words & {own, *spaces} and any(gz == _plain(it, own)[1] for _, gz in usual):
+        elif not words & {own, *spaces} and _plain(it, own) in usual:
             message = f"{it.ros} is bridged to gz topic {it.gz} of {own}, and has no robot's name"
         else:
             continue

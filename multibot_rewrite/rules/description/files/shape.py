@@ -102,7 +102,7 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
     "warning.",
     why="urdfdom rejects the whole file for a part of a joint. In a link it drops every visual "
     "and collision from the fault on. libsdformat does not load the model, srdfdom skips the "
-    "element, and a plugin or hardware is not loaded.",
+    "element, and a plugin or hardware is not loaded. In Humble a battery ends Gazebo's server.",
     fix="Add what is missing, or delete the element that needs it.",
     bad='<link name="a"><visual><geometry><cylinder radius="1"/></geometry></visual></link>',
     good='<link name="a">\n'

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     "MB201",
     "duplicate-name",
     ERROR,
-    what="Two things of one kind have the same name: links, joints and materials of a robot, "
-    "sensors of a link and of the links that fixed joints merge into it, <ros2_control> elements, nodes of plugins. It is a warning for "
-    "transmissions, and for the joints, sensors and gpios of one <ros2_control>. So it is for a "
-    "system of Gazebo that is loaded again with the same parameters.",
+    what="Two things of one kind have the same name: links, joints and materials of a robot, sensors "
+    "of a link and of the links that fixed joints merge into it, <ros2_control> elements, nodes of "
+    "plugins. It is a warning for transmissions, and for the joints, sensors and gpios of one "
+    "<ros2_control>. So it is for a system of Gazebo that is loaded again with the same parameters.",
     why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
     "with such sensors, ros2_control's resource manager the hardware. gazebo_ros gives the second "
     "plugin a null pointer, and gzserver crashes. Interfaces of the second joint are mixed up with "
@@ -119,11 +119,15 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
         if block.get("reference") and name_of(it)
     )
     for it in _repeated(sensors):
+        from multibot_rewrite.spelling.bridged_topics import is_for_classic
+
         link = it.getparent().get("reference", "")  # type: ignore[union-attr]
         body = bodies.get(link, link)
         merged = "" if body == link else f", into which fixed joints merge {link!r},"
         message = f"{body!r}{merged} has another sensor {name_of(it)!r}"
-        yield Problem(it, message, "name", "rename one")
+        # Gazebo Classic reads no SDF model by its names.
+        level = WARNING if merged and is_for_classic(subject.inventory) else ""
+        yield Problem(it, message, "name", "rename one", level=level)
 
 
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
