@@ -71,7 +71,8 @@ def _run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
     _check_arguments(made, wanted)
     whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
-    others = tuple(it for it in whole.others if it not in seen.broken)
+    robots = dict.fromkeys(it.path for it in (*seen.robots, *seen.alike))
+    others = tuple(it for it in robots if it in whole.others)
     whole = whole._replace(broken=seen.broken, others=others)
     done = _deliver(options, whole, wanted.file)
     for path, fault in [*seen.broken.items()][:MOST_BROKEN]:

@@ -36,6 +36,8 @@ VALUES = "values of launch files"
 _USUAL_PROGRAMS = frozenset((
     "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "create", "spawner",
     "spawn_entity.py", "parameter_bridge", "gzserver", "gzclient", "rviz2", "rqt", "rqt_gui",
+    "component_container", "component_container_mt", "component_container_isolated",
+    "lifecycle_manager",
 ))  # fmt: skip
 _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
 
