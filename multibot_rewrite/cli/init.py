@@ -70,8 +70,10 @@ def _run(options: argparse.Namespace) -> int:
             made = _quietly(wanted, lambda it: as_named(seen, it))
         else:
             made = _quietly(wanted, lambda it: first_that_builds(seen, it))
+    _check_arguments(made, wanted)
     whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
-    others = tuple(it for it in whole.others if it not in seen.broken)
+    robots = dict.fromkeys(it.path for it in (*seen.robots, *seen.alike))
+    others = tuple(it for it in robots if it in whole.others)
     whole = whole._replace(broken=seen.broken, others=others)
     done = _deliver(options, whole, wanted.file)
     for path, fault in [*seen.broken.items()][:MOST_BROKEN]:
@@ -113,6 +115,15 @@ def _check_names(options: argparse.Namespace) -> None:
     if names and options.count:
         raise UsageError("--robots and --count: give one of them")
     check_robot_names(names)
+
+
+def _check_arguments(made: Proposal, wanted: Wanted) -> None:
+    """Raise UsageError for a value that no xacro of the fleet takes; an SRDF may be one that does."""
+    taken = {name for it in made.members for name, _ in it.looked.arguments}
+    left = [f"{name}:={value}" for name, value in wanted.arguments.items() if name not in taken]
+    if left and not any(it.companions.srdf.endswith(".xacro") for it in made.members):
+        files = ", ".join(it.looked.path for it in made.members)
+        raise UsageError(f"{left[0]}: no argument of {files} has this name")
 
 
 def _check_output(options: argparse.Namespace) -> None:

@@ -200,7 +200,8 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
     full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
     root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
     children: set[str] = set()
-    for number, it in enumerate(robot.tree):
+    tree = robot.tree
+    for number, it in enumerate(tree):
         place = Place(robot.spec.description, line_of(robot.member.source, "joint", number))
         # Two joints have one child in a closed loop of an SDF, which is no tree.
         if it.child not in children or robot.member.source.root.tag == "robot":
@@ -208,13 +209,14 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
             yield edge(it, root, place, topic)
     for it in _simulated(robot):
         yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
+    in_tree = {*tree}
     for (owner, node), sent in fleet.edges.items():
         if owner == name:
             place = _section(node, given)
             yield from (
                 edge(it, full.get(node, f"/{name}/{node}"), place, topic)
                 for it in sent
-                if it not in robot.tree
+                if it not in in_tree
             )
 
 

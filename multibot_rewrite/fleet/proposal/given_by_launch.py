@@ -37,6 +37,8 @@ _IN_EVERY_FLEET = frozenset(
         "joint_state_publisher",
         "joint_state_publisher_gui",
         "controller_manager",
+        "rclcpp_components",
+        "nav2_lifecycle_manager",
     )
 )
 # Letters of a value that is shown.

@@ -18,7 +18,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
-from multibot_rewrite.description.sources.expand import expand
+from multibot_rewrite.description.sources.expand import expand, expand_whole
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
@@ -110,8 +111,9 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     filled_in = filled(given, ANY)
     found = find_arguments(it.path, filled_in, tree, reach=reach, wanted=names_robots)
     own = {name: value for name, value in found.for_robots.items() if name not in given}
-    known = {one.name for one in found.arguments} | set(found.untried)
-    kept = {name: value for name, value in given.items() if name in known}
+    texts = expand_whole(it.path, filled_in, None, reach).texts
+    lacking = known_arguments(texts.values()).lacks(given)
+    kept = {name: value for name, value in given.items() if name not in lacking}
     return it._replace(arguments=tuple({**kept, **own}.items()))
 
 

@@ -100,10 +100,15 @@ def search(paths: Sequence[str]) -> Found:
     """
     for path in paths:
         if not os.path.exists(path):
-            raise UsageError(
-                f"{path}: there is no such file or folder; give a description or a folder"
+            what = (
+                "it is a link to nothing"
+                if os.path.islink(path)
+                else "there is no such file or folder"
             )
-    named = [os.path.normpath(it) for it in paths if not os.path.isdir(it)]
+            raise UsageError(f"{path or repr(path)}: {what}; give a description or a folder")
+        if not _can_be_named(path):
+            raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")
+    named = [*dict.fromkeys(os.path.normpath(it) for it in paths if not os.path.isdir(it))]
     meant = [it for it in named if it.endswith(_BESIDE)]
     files = [it for it in named if it not in meant]
     folders = [os.path.normpath(it) for it in paths if os.path.isdir(it)]
@@ -154,8 +159,14 @@ def _files(folder: str) -> Iterator[str]:
             if seen > MOST_FILES:
                 hint = "name the folder of one package"
                 raise UsageError(f"{folder}: it has more than {MOST_FILES} files; {hint}")
-            if name.endswith(_ENDS) and name[0] != ".":
-                yield os.path.normpath(os.path.join(above, name))
+            path = os.path.normpath(os.path.join(above, name))
+            if name.endswith(_ENDS) and name[0] != "." and _can_be_named(path):
+                yield path
+
+
+def _can_be_named(path: str) -> bool:
+    """May a fleet file, which is UTF-8, name a path?"""
+    return path.isascii() or not any("\ud800" <= it <= "\udfff" for it in path)
 
 
 def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:

@@ -221,12 +221,19 @@ def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
 
 def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
     """The frames above which no way ends, each with those of its parents that are such frames."""
-    left = dict(parents)
-    while True:
-        kept = {child: above & left.keys() for child, above in left.items() if above & left.keys()}
-        if kept == left:
-            return kept
-        left = kept
+    left = {child: above & parents.keys() for child, above in parents.items()}
+    below: dict[str, list[str]] = {}
+    for child, above in left.items():
+        for parent in above:
+            below.setdefault(parent, []).append(child)
+    ended = [child for child, above in left.items() if not above]
+    for parent in ended:  # grows
+        del left[parent]
+        for child in below.get(parent, ()):
+            left[child].discard(parent)
+            if not left[child]:
+                ended.append(child)
+    return left
 
 
 @system_rule(

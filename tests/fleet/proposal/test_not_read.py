@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Descriptions that ``multibot init`` cannot read or use: it says which, and why."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_choosing import PACKAGE, init, robot, taken
+
+from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
+from multibot_rewrite.fleet.proposal.companions import srdf_of
+from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch, readings
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.searching import Found, search
+
+WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+GZ = (
+    f'<robot name="tetra" {WIKI}><xacro:include filename="not_there.xacro"/><gazebo>'
+    '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/></gazebo></robot>'
+)
+
+
+@pytest.fixture
+def tetra(tmp_path: Path) -> Path:
+    """A bare base that can be read, and the simulated robot, which cannot."""
+    (tmp_path / "package.xml").write_text(PACKAGE.format("acme_tetra"))
+    (tmp_path / "base.urdf").write_text(robot("tetra", "left", "right"))
+    (tmp_path / "tetra_gz.xacro").write_text(GZ)
+    return tmp_path
+
+
+def test_what_was_not_read_is_named_with_the_reason(tetra: Path, capsys: Any) -> None:
+    assert taken(tetra)["description"] == "base.urdf"
+    said, text = capsys.readouterr().err, (tetra / "fleet.yaml").read_text()
+    assert "tetra_gz.xacro was not used: xacro failed" in said and "not_there.xacro" in said
+    assert "#   tetra_gz.xacro: xacro failed" in text
+    assert "The description has nothing for a simulator" in text
+    assert "for another: multibot init" not in said, "no other one can be read"
+
+
+@pytest.mark.parametrize("launched", ["tetra_gz.xacro", "tetra_gz.xacro' 'base.urdf"])
+def test_another_one_is_not_taken_for_what_launch_files_load(
+    launched: str, tetra: Path, capsys: Any
+) -> None:
+    (tetra / "sim.launch.py").write_text(f"files = '{launched}'\n")
+    assert init(tetra) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1 and "not_there.xacro" in said
+    assert "the launch files load it; for another one: multibot init" in said
+    assert "base.urdf" in said.partition("for another one")[2]
+    assert not (tetra / "fleet.yaml").exists()
+
+
+def test_a_part_that_cannot_be_read_stops_nothing(tetra: Path) -> None:
+    (tetra / "tetra_gz.xacro").rename(tetra / "gripper.xacro")
+    (tetra / "sim.launch.py").write_text("files = 'gripper.xacro' 'base.urdf'\n")
+    assert taken(tetra)["description"] == "base.urdf"
+
+
+@pytest.mark.parametrize(
+    ("package", "file", "named"),
+    [
+        ("tetra_description", "tetra.urdf.xacro", True), ("acme_tetra", "tetra.xacro", True),
+        ("acme_tetra_description", "tetra.xacro", True), ("tetra", "tetra.urdf", True),
+        ("tetra_description", "tetra_gz.xacro", False), ("acme", "base.urdf", False),
+        ("acme_tetra", "description.urdf", False),
+    ],
+)  # fmt: skip
+def test_a_package_is_named_after_its_robot(
+    package: str, file: str, named: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "package.xml").write_text(PACKAGE.format(package))
+    assert names_its_package(str(tmp_path / file)) is named
+
+
+def test_of_rivals_the_one_that_the_package_is_named_after_is_taken(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(PACKAGE.format("tractor_description"))
+    (tmp_path / "digger.urdf").write_text(robot("digger", "dig_left", "dig_right"))
+    (tmp_path / "tractor.urdf").write_text(robot("tractor", "pull_left", "pull_right"))
+    assert taken(tmp_path)["description"] == "tractor.urdf"
+    # A launch file says more than a name.
+    (tmp_path / "up.launch.py").write_text("x = 'digger.urdf'\n")
+    assert taken(tmp_path, "--force")["description"] == "digger.urdf"
+
+
+LOADS = [
+    "MoveItConfigsBuilder('arm', package_name='arm_moveit_config')", "MoveItConfigsBuilder('arm')",
+    "MoveItConfigsBuilder(robot_name='arm')", "load('arm_moveit_config', 'config/arm.srdf')",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("launch", LOADS)
+def test_the_srdf_is_that_of_the_package_that_launch_files_name(
+    launch: str, tmp_path: Path
+) -> None:
+    """The description's package has one as well, which is nearer and out of date."""
+    group = '<robot name="arm"><group name="g"><joint name="lift"/></group></robot>'
+    for name, folder in (("arm_description", "srdf"), ("arm_moveit_config", "config")):
+        (tmp_path / name / folder).mkdir(parents=True)
+        (tmp_path / name / "package.xml").write_text(PACKAGE.format(name))
+        (tmp_path / name / folder / "arm.srdf").write_text(group)
+    (tmp_path / "arm_description/arm.urdf").write_text(robot("arm", "lift"))
+    start = "x = 'arm_description', 'arm.urdf'\n"
+    (tmp_path / "up.launch.py").write_text(start)
+    found = search([str(tmp_path)])
+    arm = Looked(str(tmp_path / "arm_description/arm.urdf"), root=None)
+    stale, right = found.srdf
+    assert srdf_of(arm, found) == stale and not is_srdf_launched(right, found)
+    (tmp_path / "move.launch.py").write_text(f"{start}{launch}\n")
+    assert srdf_of(arm, search([str(tmp_path)])) == right
+
+
+def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> None:
+    shown = "Visualization Manager: {Displays: []}\n"
+    for name in ("car_description", "car_bringup", "aaa_car_tools"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").write_text(PACKAGE.format(name))
+        if name != "car_description":
+            (tmp_path / name / "car.rviz").write_text(shown)
+    (tmp_path / "car_description/car.urdf").write_text(robot("car", "wheel"))
+    (tmp_path / "car_bringup/up.launch.py").write_text("x = 'car.urdf'\n")
+    assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
+
+
+STARTED = """
+Node(package='imu_tools', executable='imu_node', name='imu', remappings=[('/imu', '/imu/raw')])
+Node(package='own', executable='twist.py')
+Node(package='own', executable='twist.py')
+Node(package='robot_localization', executable='ekf_node')
+Node(package='robot_state_publisher', executable='robot_state_publisher')
+Node(package='rviz2', executable='rviz2')
+ComposableNode(package='pcl', plugin='pcl::Filter')
+Node(package='own', executable=unknown)
+"""
+
+
+def test_nodes_that_only_launch_files_start_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.py"
+    file.write_text(STARTED)
+    read = readings([str(file)], "car.urdf", ("car.urdf",))
+    found = given_by_launch(read, ["robot_localization"], "jazzy").not_started
+    assert [text for _, _, text in found] == [
+        "imu of imu_tools, /imu:=/imu/raw", "twist.py of own", "pcl::Filter of pcl",
+    ]  # fmt: skip
+    assert {path for path, _, _ in found} == {str(file)} and found[0][1] == 2
+
+
+def test_the_fleet_file_names_them(tmp_path: Path) -> None:
+    (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
+    (tmp_path / "up.launch.py").write_text("Node(package='own', executable='twist.py')\n")
+    taken(tmp_path)
+    assert "#   up.launch.py:1: twist.py of own\n" in (tmp_path / "fleet.yaml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("# rows\n---\n- topic_name: a\n", "bridge"), ("[{topic_name: a}]\n", ""),
+        ("nodes:\n  - topic_name: a\n", ""), ("- ros_topic_name: a\n", "bridge"), ("", ""),
+    ],
+)  # fmt: skip
+def test_a_bridge_is_a_list(text: str, kind: str, tmp_path: Path) -> None:
+    """A file of knowledge with the same word is no bridge that is wrong."""
+    (tmp_path / "a.yaml").write_text(text)
+    (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
+    assert len(search([str(tmp_path)]).bridge) == (1 if kind else 0)
+
+
+def test_hidden_files_are_none_of_the_robot(tmp_path: Path) -> None:
+    for name in (".car.urdf", "car.urdf", "._car.rviz"):
+        (tmp_path / name).write_text(robot("car", "wheel"))
+    found = search([str(tmp_path)])
+    car = (f"{tmp_path}/car.urdf",)
+    assert found == Found(descriptions=car, every=car, folders=(str(tmp_path),))
+
+
+BROKEN = {
+    "link": (lambda path: path.symlink_to(path), "it is a link to nothing"),
+    "empty": (lambda path: path.write_text(""), "the file is empty"),
+    "binary": (lambda path: path.write_bytes(bytes(range(256)) * 9), "not well-formed XML"),
+    "UTF-16": (lambda path: path.write_bytes(b"\xff\xfe<\0r\0"), "the text is UTF-16"),
+    "no link": (lambda path: path.write_text('<robot name="a"/>'), "it has no link"),
+    "folder": (lambda path: path.mkdir(), "no description of a robot is there"),
+    "pipe": (os.mkfifo, "it is a pipe"),
+    "huge": (lambda path: path.write_bytes(b"<robot>" + b" " * 2**24), "over the limit"),
+    "deep": (lambda path: path.write_text("<a>" * 9000), "not well-formed XML"),
+}
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_a_file_that_is_no_robot(kind: str, tmp_path: Path, capsys: Any) -> None:
+    make, says = BROKEN[kind]
+    make(tmp_path / "robot.urdf")
+    assert main(["init", str(tmp_path / "robot.urdf"), "--yes", "-o", f"{tmp_path}/o/f.yaml"]) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1 and says in said
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_name_that_no_fleet_file_can_have(tmp_path: Path, capsys: Any) -> None:
+    odd = os.fsdecode(os.fsencode(tmp_path) + b"/car\xff.urdf")
+    Path(odd).write_text(robot("car", "wheel"))
+    assert main(["init", odd, "--yes", "-o", "-"]) == 2
+    assert "its name is no UTF-8, as that in a YAML file is; rename it" in capsys.readouterr().err
+    assert search([str(tmp_path)]).every == ()
+
+
+@pytest.mark.parametrize(("given", "code"), [("kind:=b", 0), ("kin:=b", 2), ("read:=b", 0)])
+def test_a_value_that_no_xacro_takes_is_refused(
+    given: str, code: int, tmp_path: Path, capsys: Any
+) -> None:
+    body = '<xacro:arg name="kind" default="a"/><link name="$(arg kind)"/>'
+    read = "<!-- $(arg no) --><xacro:if value=\"${'read' == 1}\">$(arg read)</xacro:if>"
+    xacro = tmp_path / "a.urdf.xacro"
+    xacro.write_text(f'<robot name="a" {WIKI}>{body}{read}</robot>')
+    file = tmp_path / "f.yaml"
+    assert main(["init", str(xacro), given, "--yes", "-o", str(file)]) == code
+    said = capsys.readouterr().err
+    assert (f"{given}: no argument of {xacro} has this name" in said) == (code == 2)
+    assert file.exists() == (code == 0)
+    urdf = tmp_path / "car.urdf"
+    urdf.write_text(robot("car", "wheel"))
+    assert main(["init", str(urdf), "x:=1", "--yes", "-o", "-"]) == 2
+
+
+def test_a_file_that_is_given_twice_is_one_robot(tmp_path: Path) -> None:
+    urdf = tmp_path / "car.urdf"
+    urdf.write_text(robot("car", "wheel"))
+    assert search([str(urdf), f"{tmp_path}/./car.urdf"]).descriptions == (str(urdf),)
+
+
+def test_the_schema_is_beside_the_fleet_file(tmp_path: Path, capsys: Any) -> None:
+    """Its comment is the same on every machine; what is printed has nothing beside it."""
+    urdf, folder = tmp_path / "car.urdf", tmp_path / "new"
+    urdf.write_text(robot("car", "wheel"))
+    schema = folder / schema_name(FLEET)
+    words = ["init", str(urdf), "--yes", "--force", "-o"]
+    assert main([*words, f"{folder}/f.yaml"]) == 0
+    line = "# yaml-language-server: $schema=.fleet.schema.json\n"
+    assert (folder / "f.yaml").read_text().startswith(line)
+    assert schema.read_bytes() == schema_text(FLEET)
+    # That of an older release is replaced, a file of somebody else stays.
+    schema.write_text('{"$id": "urn:multibot_rewrite:fleet", "old": 1}')
+    assert main([*words, f"{folder}/f.yaml"]) == 0 and schema.read_bytes() == schema_text(FLEET)
+    for other in ('{"$id": "mine"}', "[1]", "no JSON"):
+        schema.write_text(other)
+        assert main([*words, f"{folder}/f.yaml"]) == 0 and schema.read_text() == other
+        assert "yaml-language-server" not in (folder / "f.yaml").read_text()
+    capsys.readouterr()
+    assert main([*words, "-"]) == 0 and "yaml-language-server" not in capsys.readouterr().out
+    assert main([*words, "/dev/null"]) == 0

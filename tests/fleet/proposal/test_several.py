@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A fleet of several descriptions: it builds as it is written, and each robot has its own files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from test_choosing import PACKAGE, robot
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.file.fleet_data import FleetText
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.proposal.fleet_text import text_of
+from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_other_robots
+from multibot_rewrite.fleet.proposal.searching import Found
+
+MODEL = '<robot name="{0}"><link name="{0}_base"/></robot>'
+SECTION = "{}_node: {{ros__parameters: {{rate: 1}}}}\n"
+
+
+def files(folder: Path, **texts: str) -> None:
+    for name, text in texts.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
+    """The fleet file for these words, which init and build say builds."""
+    file = folder / "made" / "fleet.yaml"
+    assert main(["init", *words, "--yes", "-o", str(file), "--force"]) == 0
+    assert main(["build", str(file), "-o", str(folder / "out"), "-q"]) == 0
+    made = yaml.safe_load(file.read_text())
+    assert isinstance(made, dict)
+    return made
+
+
+@pytest.mark.parametrize(
+    "options",
+    [[], ["-n", "1"], ["-n", "3", "--layout", "L4"], ["--layout", "L1"], ["--distro", "jazzy"]],
+)  # fmt: skip
+def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, capsys: Any) -> None:
+    """Two robots of one description share its stack, which a YAML writer shortens to an alias."""
+    files(tmp_path, **{f"{it}/robot.urdf": MODEL.format(it) for it in ("a", "b", "c")})
+    paths = [str(tmp_path / it / "robot.urdf") for it in ("a", "b", "c")]
+    made = fleet_of(tmp_path, *paths, *options)
+    assert {it["stack"][0] for it in made["robots"]} == {"robot_state"}
+    assert {it["description"] for it in made["robots"]} == {
+        f"../{it}/robot.urdf" for it in ("a", "b", "c")
+    }
+    assert "does not build" not in capsys.readouterr().err
+
+
+def test_paths_are_from_the_folder_of_the_fleet_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    files(tmp_path, **{"src/a.urdf": MODEL.format("a"), "src/b.urdf": MODEL.format("b")})
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    made = fleet_of(tmp_path, "../src/a.urdf", "../src/b.urdf")
+    assert {it["description"] for it in made["robots"]} == {"../src/a.urdf", "../src/b.urdf"}
+
+
+def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
+    files(tmp_path, **{"a.urdf": MODEL.format("a")})
+    own = {"description": str(tmp_path / "a.urdf"), "stack": ["robot_state"]}
+    robots = [{"name": it, **own} for it in ("one", "two")]
+    assert [it.name for it in read_fleet({"robots": robots}, "", {}).robots] == ["one", "two"]
+    circle: list[Any] = []
+    circle.append(circle)
+    with pytest.raises(InputError, match="a value holds itself"):
+        read_fleet({"robots": circle}, "", {})
+
+
+def test_a_text_is_read_as_the_file_that_it_will_be(tmp_path: Path) -> None:
+    files(tmp_path, **{"a.urdf": MODEL.format("a")})
+    text = "robots: [{name: one, description: ../a.urdf}]\n"
+    made = read_fleet(FleetText(str(tmp_path / "sub" / "f.yaml"), text), "", {})
+    assert os.path.abspath(made.robots[0].description) == str(tmp_path / "a.urdf")
+    with pytest.raises(InputError, match=r"sub/f\.yaml:1: .*b\.urdf does not exist"):
+        read_fleet(FleetText(str(tmp_path / "sub" / "f.yaml"), text.replace("a.u", "b.u")), "", {})
+
+
+def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
+    for name in ("left", "right"):
+        files(
+            tmp_path / f"{name}_description",
+            **{
+                "package.xml": PACKAGE.format(f"{name}_description"),
+                "urdf/robot.urdf": robot(name, "wheel"),
+                "config/own.yaml": SECTION.format(name),
+            },
+        )
+    paths = [str(tmp_path / f"{it}_description/urdf/robot.urdf") for it in ("left", "right")]
+    made = fleet_of(tmp_path, *paths, "-n", "1")
+    own = {it["name"]: it["companions"]["params"] for it in made["robots"]}
+    assert own == {f"{it}1": [f"../{it}_description/config/own.yaml"] for it in ("left", "right")}
+
+
+def test_of_one_folder_a_file_is_of_the_robot_it_is_called_after() -> None:
+    """rover.rviz is not the arm's; what is called after neither may be of both."""
+    arm, rover = Looked("w/arm.urdf"), Looked("w/rover.urdf")
+    found = Found(
+        rviz=("w/rover.rviz", "w/rover_nav.rviz", "w/roverlike.rviz"), params=("w/arm.yaml",)
+    )
+    assert of_other_robots(arm, [arm, rover], found) == {"w/rover.rviz", "w/rover_nav.rviz"}
+    assert of_other_robots(rover, [arm, rover], found) == {"w/arm.yaml"}
+    assert of_other_robots(arm, [arm], found) == set()
+
+
+def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:
+    group = '<robot name="{0}"><group name="{0}_group"><link name="{0}_base"/></group></robot>'
+    files(tmp_path, **{"rover.srdf": group.format("rover")})
+    files(tmp_path, **{"kinematics.yaml": "arm_group: {kinematics_solver: kdl}\n"})
+    srdf, file = str(tmp_path / "rover.srdf"), str(tmp_path / "kinematics.yaml")
+    found = Found(srdf=(srdf,), moveit=(file,))
+    of_others = moveit_of_others(Looked(str(tmp_path / "rover.urdf")), srdf, found)
+    assert of_others == {file: "it names no group of rover.srdf"}
+    (tmp_path / "more").mkdir()
+    own = tmp_path / "more" / "kinematics.yaml"
+    own.write_text("rover_group: {kinematics_solver: kdl}\n")
+    found = Found(srdf=(srdf,), moveit=(str(own),))
+    assert moveit_of_others(Looked(str(tmp_path / "rover.urdf")), srdf, found) == {}
+
+
+def test_what_another_robot_of_the_fleet_has_is_not_left_over(tmp_path: Path) -> None:
+    """The files of other packages are nobody's business either."""
+    files(tmp_path, **{"arm.urdf": robot("arm", "lift_arm"), "rover.urdf": robot("rover", "turn")})
+    joints = {"a": {"ros__parameters": {"joints": ["lift_arm", "arm_base", "lift_arm_wheel"]}}}
+    files(tmp_path, **{"config.yaml": yaml.safe_dump(joints)})
+    paths = [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
+    made = fleet_of(tmp_path, *paths, "-n", "1")
+    assert made["robots"][0]["companions"] == {"params": ["../config.yaml"]}
+    assert "config.yaml: it is for" not in (tmp_path / "made/fleet.yaml").read_text()
+
+
+def test_files_of_packages_that_the_robot_is_not_from_are_not_listed(tmp_path: Path) -> None:
+    for name in ("car_description", "other"):
+        files(
+            tmp_path / name,
+            **{
+                "package.xml": PACKAGE.format(name),
+                "first.rviz": "Visualization Manager: {Displays: []}\n",
+                "second.rviz": "Visualization Manager: {Displays: []}\n",
+            },
+        )
+    files(tmp_path, **{"car_description/car.urdf": robot("car", "wheel")})
+    fleet_of(tmp_path, str(tmp_path))
+    text = (tmp_path / "made/fleet.yaml").read_text()
+    assert "#   ../car_description/second.rviz: first.rviz of another folder was taken" in text
+    assert "../other/" not in text
+
+
+def test_a_value_with_odd_signs_is_what_is_written() -> None:
+    from test_fleet_text import ONE
+
+    odd = "a: #'\n"
+    (member,) = ONE.members
+    looked = member.looked._replace(arguments=(("x", odd),))
+    made = ONE._replace(members=[member._replace(looked=looked)])
+    assert yaml.safe_load(text_of(made, "w/f.yaml"))["arguments"] == {"x": odd}
