@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
+from typing import Any
 
 from multibot_rewrite.base.config import configured_vocabulary
-from multibot_rewrite.base.naming import SEPARATORS
+from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
 from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
@@ -29,6 +30,7 @@ from multibot_rewrite.cli.rewrite_use import (
     is_stopped,
     tell,
 )
+from multibot_rewrite.cli.shared_names import FRAMES, TOPICS, check_shared
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.verdict import given, not_proved
@@ -86,11 +88,17 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     file = input_name(options)
-    given = {**rewriting(options), "world_systems": options.world_systems}
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
-    rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
+
+    def made(naming: Mapping[str, Any]) -> Iterator[Rewrite]:
+        how = {**rewriting(options), **naming, "world_systems": options.world_systems}
+        return rewrite_all(source, names, again=options.force, file=file, **how)
+
+    rewrites = made({})
     first = next(rewrites)
+    if options.shared:
+        _check_shared(options, first, made)
     # Robots with descriptions or numbers of their own are all made before the first is here.
     is_numbered = any(it.code == NUMBERED for it in first.findings)
     others = list(rewrites) if first.prepared.job.naming.own or is_numbered else []
@@ -109,6 +117,27 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     why = first.prepared.job.why or why_here(options.distro)
     tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
+
+
+def _check_shared(
+    options: argparse.Namespace,
+    first: Rewrite,
+    made: Callable[[Mapping[str, Any]], Iterator[Rewrite]],
+) -> None:
+    """Raise UsageError for a name of ``--shared`` that the description has not."""
+    names: dict[str, set[str]] = {FRAMES: set(), TOPICS: set()}
+    for name in chain.from_iterable(first.template.inventory.names):
+        kinds = {name.kind, *name.kinds}
+        if not kinds.isdisjoint(FRAME_KINDS):
+            names[FRAMES].add(name.text.strip("/"))
+        if not kinds.isdisjoint(TOPIC_KINDS):
+            names[TOPICS].add(name.text.strip("/"))
+
+    def result(given: Mapping[str, Any]) -> object:
+        found = next(made(given))
+        return found.data, found.findings
+
+    check_shared(options, (first.data, first.findings), result, names)
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
