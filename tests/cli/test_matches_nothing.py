@@ -60,7 +60,10 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        (f"{REWRITE} --shared scan", "no frame 'scan'; topics are written with a slash: --shared /sc"),
+        (
+            f"{REWRITE} --shared scan",
+            "no frame 'scan'; topics are written with a slash: --shared /sc",
+        ),
         (f"{REWRITE} --shared /nosuch", "--shared /nosuch: the input has no topic '/nosuch'\n"),
         (f"{REWRITE} --shared map,/scann", "no topic '/scann'; did you mean '/scan'?"),
         (f"{REWRITE} --shared base_lnk", "no frame 'base_lnk'; did you mean 'base_link'?"),
@@ -72,13 +75,21 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
         (f"{BESIDE} --shared hal", "no frame 'hal'"),
         ("urdf-lint rover.urdf --shared /nosuch", "no topic '/nosuch'"),
         ("urdf-lint . --robots a,b --shared base_lnk", "no frame 'base_lnk'"),
-        ("multibot view fleet.yaml --shared scan -o out/v.html", "a fleet file has its own, leave out"),
+        (
+            "multibot view fleet.yaml --shared scan -o out/v.html",
+            "a fleet file has its own, leave out",
+        ),
         *(
             (f"{command} --select {code}", f"--select: no rule has the code '{code}'")
             for code in ("MB9999", "XX")
             for command in (
-                REWRITE, BESIDE, "urdf-lint rover.urdf", "multibot build", "multibot plan fleet.yaml",
-                "multibot check --from graph.json", "multibot check fleet.yaml --from graph.json",
+                REWRITE,
+                BESIDE,
+                "urdf-lint rover.urdf",
+                "multibot build",
+                "multibot plan fleet.yaml",
+                "multibot check --from graph.json",
+                "multibot check fleet.yaml --from graph.json",
                 "multibot view fleet.yaml",
             )
         ),
@@ -88,13 +99,19 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
         ("multibot plan rover.urdf r1 --roots nosuch", "argument --roots: 'nosuch' is no folder"),
         ("urdf-lint rover.urdf sim:=gz", "NAME:=VALUE is for xacro, rover.urdf is no xacro"),
         ("urdf-lint rover.urdf --urdf rover.urdf", "--urdf is for an SRDF or a file beside"),
-        ("multibot check --from graph.json --domain 5", "graph.json is a graph of domain 67; leave it out"),
+        (
+            "multibot check --from graph.json --domain 5",
+            "graph.json is a graph of domain 67; leave it out",
+        ),
         ("multibot check fleet.yaml --from graph.json --domain 5", "is a graph of domain 67"),
         ("multibot plan rover.urdf r1 --stack nosuch", "stack 'nosuch' is not known"),
-        ("multibot snapshot --from graph.json --form nodes --node /nosuch", "no node has this name"),
+        (
+            "multibot snapshot --from graph.json --form nodes --node /nosuch",
+            "no node has this name",
+        ),
         ("multibot rename nosuch new .", "no description has a link 'nosuch'"),
     ],
-)  # fmt: skip
+)
 def test_what_matches_nothing_is_an_error_of_the_call(
     line: str, said: str, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -128,13 +145,25 @@ def test_what_matches_something_is_taken(line: str, here: Path) -> None:
     ("topics", "frames", "said"),
     [
         ("/cmd_vell", "map", "3:1: warning: MF838 /cmd_vell * did you mean '/cmd_vel'?"),
-        ("/base_link", "map", "3:1: warning: MF838 /base_link * it is a frame: write it below shared_frames"),
-        ("/clock", "scan", "4:1: warning: MF838 scan * it is a topic: write it below shared_topics"),
+        (
+            "/base_link",
+            "map",
+            "3:1: warning: MF838 /base_link * it is a frame: write it below shared_frames",
+        ),
+        (
+            "/clock",
+            "scan",
+            "4:1: warning: MF838 scan * it is a topic: write it below shared_topics",
+        ),
         # A node that is not known may have it.
-        ("/fleet_state", "map", "3:1: note: MF838 /fleet_state * correct it, unless a node that is not known"),
+        (
+            "/fleet_state",
+            "map",
+            "3:1: note: MF838 /fleet_state * correct it, unless a node that is not known",
+        ),
         ("/cmd_vel", "base_link", ""),
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("command", ["build -o out", "plan fleet.yaml -o out/p.yaml"])
 def test_a_name_of_a_fleet_file_that_nothing_has(
     topics: str,
