@@ -10,6 +10,7 @@ from itertools import chain
 from typing import Any
 
 from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
 from multibot_rewrite.base.releases import (
     facts_of_release,
@@ -79,7 +80,16 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     given = filled(xacro_args(options), robot)
     read = read_whole(source, {} if options.xacro else given, options.trust)
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
-    stripped = _strip(options, read.data, robot)
+    try:
+        stripped = _strip(options, read.data, robot)
+    except RewriteRefused as error:
+        from multibot_rewrite.cli.undo_options import (
+            with_missing_options,  # a mistake alone needs it
+        )
+
+        raise with_missing_options(
+            error, options, lambda other: _strip(other, read.data, robot)
+        ) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, proved by rewriting again")
