@@ -80,7 +80,7 @@ def _holds(reason: Reason, mention: MentionPlace) -> bool:
 def surveyed(paths: Sequence[str]) -> Survey:
     """What is known of all files below the paths; those that cannot be read are left out."""
     tree, found = builtin_tree((), NEWEST_LTS), []
-    for path in find_files(paths, (".urdf", ".sdf")):
+    for path in find_files(paths, (".urdf", ".sdf"), everything=True).files:
         try:
             read = read_whole(path, {}, False)
             found.append(survey(collect(read_document(read.data, read.file), tree), tree))

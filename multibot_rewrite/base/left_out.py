@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import os
-import subprocess
 from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache
-
-from multibot_rewrite.base.child import git
 
 # What colcon, npm and Python make; colcon writes the first marker into its own three.
 MADE = frozenset(("build", "install", "log", "node_modules", "__pycache__"))
@@ -50,6 +47,10 @@ def ignored_by_git(paths: Iterable[str]) -> set[str]:
 
 
 def _ignored(tree: str, paths: list[str]) -> list[str]:
+    import subprocess  # a command that looks into no folder needs no git
+
+    from multibot_rewrite.base.child import git
+
     # The real folder: git refuses a path that a link leads out of the tree by its text.
     named = {_in_tree(path): path for path in paths}
     try:

@@ -150,6 +150,7 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "--fail": "--fail-on LEVEL",
         "--no-color": "--color never",
         "--json": "--format json",
+        "snapshot --json": "-o FILE.json",
         "--sarif": "--format sarif",
         "--sros2": "multibot plan FLEET --form sros2",
     }

@@ -68,10 +68,10 @@ class CoverageReport(NamedTuple):
 
 def run(options: argparse.Namespace) -> int:
     """Read, add up, report; returns the exit code."""
-    there = find_files(plain_words(options), SUFFIXES, options.no_default_excludes)
-    paths = there.files
-    if there.left_out:
-        note(options, there.left_out)
+    found_files = find_files(plain_words(options), SUFFIXES, options.no_default_excludes)
+    paths = found_files.files
+    if found_files.left_out:
+        note(options, found_files.left_out)
     check_xacro(options, paths)
     if options.output:
         check_target(options.output, [*paths, *options.vocabulary])

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.shared import counts, in_words
@@ -31,7 +31,7 @@ from multibot_rewrite.cli.output import (
 from multibot_rewrite.cli.parser import UNUSABLE
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
-from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
+from multibot_rewrite.cli.usage import check_xacro, plain_words, policy, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
 from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
 from multibot_rewrite.companions.kinds import is_linted
@@ -66,12 +66,16 @@ def run(options: argparse.Namespace) -> int:
     asked = options.distro or config.distro
     if doubt := release_doubt(asked):
         note(options, f"warning: {doubt}")
+    alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
     said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_TELLING)))
     config = config._replace(settings=config.settings._replace(distro=said.release))
+    _check_selecting(options, paths)
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
+    if options.shared and paths != [STDIN] and not options.fix:
+        _check_shared(options, alone, config.settings, paths, findings[len(unreadable) :])
     if options.write_baseline:
         return _write_baseline(options, findings)
     return _conclude(options, config, paths, findings, said.why or why_here(asked))
@@ -106,6 +110,33 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
     from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
 
     return changed_since(options.changed_since, kept), refused
+
+
+def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
+    """Raise UsageError for an option that none of the files is for."""
+    if STDIN in paths or not paths:
+        return
+    check_xacro(options, paths)
+    alone = (".urdf", ".xacro", ".sdf")
+    if options.urdf and all(it.endswith(alone) and ".srdf" not in it for it in paths):
+        raise UsageError("--urdf is for an SRDF or a file beside a description, and there is none")
+
+
+def _check_shared(
+    options: argparse.Namespace,
+    configured_alone: Configured,
+    settings: Settings,
+    paths: Sequence[str],
+    findings: Sequence[Finding],
+) -> None:
+    """Raise UsageError for a name of ``--shared`` that is in none of the files and changes nothing."""
+    from multibot_rewrite.cli.shared_names import check_shared  # few ask for it
+
+    def linted(naming: Mapping[str, Any]) -> list[Finding]:
+        changed = with_options(configured_alone, **{**given(options), **naming})
+        return lint_files(paths, settings._replace(naming=changed.settings.naming))
+
+    check_shared(options, findings, linted, {}, paths)
 
 
 def _check_targets(options: argparse.Namespace, paths: Sequence[str]) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
+from typing import Any
 
 from multibot_rewrite.base.config import configured_vocabulary
-from multibot_rewrite.base.naming import SEPARATORS
+from multibot_rewrite.base.findings.finding import RewriteRefused
+from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
 from multibot_rewrite.base.releases import (
     facts_of_release,
     release_doubt,
@@ -29,6 +31,7 @@ from multibot_rewrite.cli.rewrite_use import (
     is_stopped,
     tell,
 )
+from multibot_rewrite.cli.shared_names import FRAMES, TOPICS, check_shared
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.verdict import given, not_proved
@@ -77,7 +80,16 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     given = filled(xacro_args(options), robot)
     read = read_whole(source, {} if options.xacro else given, options.trust)
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
-    stripped = _strip(options, read.data, robot)
+    try:
+        stripped = _strip(options, read.data, robot)
+    except RewriteRefused as error:
+        from multibot_rewrite.cli.undo_options import (
+            with_missing_options,  # a mistake alone needs it
+        )
+
+        raise with_missing_options(
+            error, options, lambda other: _strip(other, read.data, robot)
+        ) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, proved by rewriting again")
@@ -86,11 +98,17 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     file = input_name(options)
-    given = {**rewriting(options), "world_systems": options.world_systems}
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
-    rewrites = rewrite_all(source, names, again=options.force, file=file, **given)
+
+    def made(naming: Mapping[str, Any]) -> Iterator[Rewrite]:
+        how = {**rewriting(options), **naming, "world_systems": options.world_systems}
+        return rewrite_all(source, names, again=options.force, file=file, **how)
+
+    rewrites = made({})
     first = next(rewrites)
+    if options.shared:
+        _check_shared(options, first, made)
     # Robots with descriptions or numbers of their own are all made before the first is here.
     is_numbered = any(it.code == NUMBERED for it in first.findings)
     others = list(rewrites) if first.prepared.job.naming.own or is_numbered else []
@@ -109,6 +127,27 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     why = first.prepared.job.why or why_here(options.distro)
     tell(options, summary(first, names, _own_arguments(options, names), why))
     return DONE
+
+
+def _check_shared(
+    options: argparse.Namespace,
+    first: Rewrite,
+    made: Callable[[Mapping[str, Any]], Iterator[Rewrite]],
+) -> None:
+    """Raise UsageError for a name of ``--shared`` that the description has not."""
+    names: dict[str, set[str]] = {FRAMES: set(), TOPICS: set()}
+    for name in chain.from_iterable(first.template.inventory.names):
+        kinds = {name.kind, *name.kinds}
+        if not kinds.isdisjoint(FRAME_KINDS):
+            names[FRAMES].add(name.text.strip("/"))
+        if not kinds.isdisjoint(TOPIC_KINDS):
+            names[TOPICS].add(name.text.strip("/"))
+
+    def result(given: Mapping[str, Any]) -> object:
+        found = next(made(given))
+        return found.data, found.findings
+
+    check_shared(options, (first.data, first.findings), result, names)
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from typing import Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_here, why_here
@@ -17,6 +19,7 @@ from multibot_rewrite.cli.rewrite_use import (
     is_stopped,
     tell,
 )
+from multibot_rewrite.cli.shared_names import check_shared
 from multibot_rewrite.cli.usage import rewriting
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.description.sources.read import Source
@@ -39,7 +42,13 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
         what = "--undo" if options.undo else "--form changes"
         raise UsageError(f"{what} is for descriptions, {input_name(options)} is none")
     before = read_whole(source, {}, options.trust)
-    every = list(rewrite_files(before.data, names, file=input_name(options), **rewriting(options)))
+
+    def made(naming: Mapping[str, Any]) -> list[RewrittenFile]:
+        how = {**rewriting(options), **naming}
+        return list(rewrite_files(before.data, names, file=input_name(options), **how))
+
+    every = made({})
+    check_shared(options, every, made, {})
     check_unread(options, names, before.read)
     release = release_here(options.distro or "")
     if is_stopped(options, (finding for it in every for finding in it.findings), names, release):

@@ -49,6 +49,14 @@ def path(text: str) -> str:
     return text
 
 
+def folders(text: str) -> list[str]:
+    """``a,b`` as two folders that are there."""
+    found = names(text)
+    if gone := next((it for it in found if not os.path.isdir(it)), ""):
+        raise argparse.ArgumentTypeError(f"{gone!r} is no folder")
+    return found
+
+
 def source(text: str) -> tuple[str, str]:
     """What a graph is read from, behind the kind of it: one of ``SOURCES``."""
     if text.endswith(".json5") or (_ADDRESS.fullmatch(text) and not os.path.exists(text)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import NoReturn
 
 from multibot_rewrite.base.bounded import MAX_BYTES
@@ -52,18 +52,16 @@ def find_files(
     such a folder unless ``unreadable`` goes on.
     """
     left_out: list[str] = []
-    found: dict[str, str] = {}
-    below: list[str] = []
+    every: list[str] = []
     for path in paths:
         if not os.path.exists(path):
             raise UsageError(f"{path}: there is no such file or folder")
-        if not os.path.isdir(path):
-            found.setdefault(os.path.realpath(path), path)
-            continue
         kept = None if everything else left_out
-        below += filter(wanted, _below(path, suffixes, unreadable, kept))
-    ignored = set() if everything else _ignored(paths, below)
-    for path in below:
+        below = _below(path, suffixes, unreadable, kept)
+        every += filter(wanted, below) if os.path.isdir(path) else (path,)
+    ignored = set() if everything else _ignored(paths, every)
+    found: dict[str, str] = {}
+    for path in every:
         if path not in ignored:
             found.setdefault(os.path.realpath(path), path)
     result = FoundFiles(list(found.values()), unique(left_out), sorted(ignored))
@@ -74,9 +72,10 @@ def find_files(
     return result
 
 
-def _ignored(named: Iterable[str], below: Iterable[str]) -> set[str]:
-    """Return the files that git ignores, but for those in a folder that is named and ignored itself."""
-    found = ignored_by_git(below)
+def _ignored(named: Collection[str], every: Iterable[str]) -> set[str]:
+    """Return the files that git ignores, but for those that are named, or in a folder that is named and
+    ignored itself."""
+    found = ignored_by_git(it for it in every if it not in named)
     folders = [it for it in named if os.path.isdir(it)] if found else []
     meant = [f"{it.rstrip('/')}/" for it in ignored_by_git(folders)]
     return {it for it in found if not it.startswith(tuple(meant))}

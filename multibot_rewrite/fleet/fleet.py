@@ -16,6 +16,7 @@ from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
@@ -140,7 +141,8 @@ def _with_bridge_and_findings(
     table = table._replace(problems=(*table.problems, *wrong, *findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.names)
     own = topics if any(it.robot for it in topics) else ()
-    return fleet._replace(table=table, bridged=bridged_as(own))
+    gaps = tuple(shared_by_nothing(fleet))
+    return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
 
 
 def facts_of(

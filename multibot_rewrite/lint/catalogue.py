@@ -64,6 +64,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",
             "fleet.checks.across_domains",
+            "fleet.checks.shared_names",
             "fleet.robots.own_ports",
             "fleet.outputs.given_world",
             "fleet.robots.robot_nodes",

@@ -751,8 +751,8 @@ def test_a_refused_rewrite_is_told_beside_or_first(capsys: pytest.CaptureFixture
     error = RewriteRefused((Finding("MB1", "error", "is bad"),))
     assert str(error) == "graph: error: MB1 is bad"
     usual = {
-        "format": "text", "color": "never", "verbose": False, "program": "p", "command": "p",
-        "fail_on": "error", "output": None, "input": "a.urdf",
+        "format": "text", "color": "never", "verbose": False, "quiet": False, "program": "p",
+        "command": "p", "fail_on": "error", "output": None, "input": "a.urdf",
     }  # fmt: skip
     assert process._refused(options(**usual, findings_first=False), error) == 1
     beside = capsys.readouterr()

@@ -413,6 +413,9 @@ def test_every_code_is_explained_by_code_name_and_beginning(
     assert said(capsys, "multibot", "inspect", "undeclared-link") == one
     group = said(capsys, "multibot", "inspect", "MB20")[1]
     assert group.count("\nWhy: ") == sum(code.startswith("MB20") for code in rules()) > 2
+    many = said(capsys, "multibot", "inspect", "MB2,MB501")[1].splitlines()
+    codes = [it for it in rules() if it.startswith("MB2") or it == "MB501"]
+    assert [line.split()[0] for line in many] == ["code", *codes]
     listed = said(capsys, "multibot", "inspect")[1].partition("\ncode  ")[2].splitlines()[1:]
     assert [line.split()[0] for line in listed] == list(rules())
     shown = json.loads(said(capsys, "multibot", "inspect", "mb202", "--form", "json")[1])

@@ -141,6 +141,7 @@ LINT = Command(
         Example("urdf-lint urdf/ --format sarif -o out/lint.sarif"),
         Example("urdf-lint rover.urdf --fix --diff", "show what --fix would change"),
         Example("multibot inspect MB202", "what a finding is, why, the fix"),
+        Example("multibot inspect MB", "all rules"),
     ),
     (
         OptionGroup(

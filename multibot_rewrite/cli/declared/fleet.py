@@ -77,12 +77,13 @@ A fleet file, as multibot init writes it; only robots is required (docs/fleet-fi
 
   layout: frames-per-robot
   description: rover.urdf
-  companions: {params: params.yaml, rviz: one_robot.rviz}
+  companions: {params: params.yaml, rviz: one_robot.rviz}   # files for one robot
   robots:
     - {name: robot1, pose: {x: 0.0, y: 0.0}}
     - {name: robot2, pose: {x: 0.0, y: 2.0}}
 
-Then ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
+A build makes them for every robot, of RViz configs one for all robots where it can. Then\
+ ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
  whether they run as planned."""
 _FLEET = Option(
     ("fleet",),

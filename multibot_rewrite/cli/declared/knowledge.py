@@ -30,11 +30,12 @@ INSPECT = Command(
     "Explain a finding's code, a plugin, a xacro's arguments.",
     (
         Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
+        Example("multibot inspect MB", "all rules of urdf-lint; MG: those of check"),
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
         Example("multibot inspect urdf/", "what is known of all .urdf and .sdf, and what is not"),
         Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
         Example("multibot inspect --suggest rover.urdf -o acme.vocab", "draft what is missing"),
-        Example("multibot inspect", "all that is known"),
+        Example("multibot inspect", "all that is known: plugins, then rules"),
     ),
     (
         OptionGroup(

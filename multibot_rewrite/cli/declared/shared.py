@@ -94,7 +94,8 @@ KNOWN_NODES = (
     ),
 )
 ROOTS = several(
-    "--roots", "A,B", "folders to look for packages in, beside those that are installed", []
+    *("--roots", "A,B", "folders to look for packages in, beside those that are installed", []),
+    read=values.folders,
 )
 FINDINGS = OptionGroup(
     "findings",

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.checks.across_domains import not_across
 from multibot_rewrite.fleet.checks.judged import (
     apart,
@@ -17,6 +18,7 @@ from multibot_rewrite.fleet.checks.judged import (
     not_sent,
     whose_names,
 )
+from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
 from multibot_rewrite.fleet.checks.written_files import written_findings
 from multibot_rewrite.fleet.checks.written_system import of_each_kind, with_robots, written_system
 from multibot_rewrite.fleet.fleet import Fleet
@@ -77,8 +79,19 @@ def gaps_of(
     known = {it for it in found if it.code in codes() and it.level != NOTE}
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
-    known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet)}
+    known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
     return tuple(sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+
+
+def _shared(plan: FleetPlan) -> Iterator[Finding]:
+    """Yield a finding for each shared name that nothing of the fleet has."""
+    specs = [it.spec for it in plan.robots]
+    filled = {path: text.encode() for it in specs for path, text in it.filled}
+    beside = (path for it in specs for paths in it.companions.values() for path in paths)
+    launched = (order.file for it in specs for order in it.launch)
+    files = dict.fromkeys((*beside, *launched, *plan.file.files[1:]))
+    texts = (filled.get(path) or data_of_file(path) for path in files)
+    return shared_by_nothing(plan.fleet, texts, dict(plan.file.shared_places))
 
 
 def sorted_out(

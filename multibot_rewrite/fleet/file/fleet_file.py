@@ -49,7 +49,7 @@ class FleetFile(NamedTuple):
     ``apart`` are the domains of robots that are not in one; ``why`` is what says the release.
     ``installed`` is where the results are when they are used, empty for where
     they are written. ``simulator_world`` is the user's world for it, which the file names at
-    ``world_place``."""
+    ``world_place``. ``shared_places`` are the file and line of the lists of shared names, by key."""
 
     file: str
     policy: Policy
@@ -72,6 +72,7 @@ class FleetFile(NamedTuple):
     world_place: tuple[str, int] = ("", 1)
     apart: Apart = TOGETHER
     why: str = ""
+    shared_places: tuple[tuple[str, tuple[str, int]], ...] = ()
 
 
 def read_fleet(
@@ -118,6 +119,7 @@ def read_fleet(
         read.places.get(("simulator_world",), (read.file, 1)),
         apart_of(read, {it.name: it.namespace for it in robots}),
         why,
+        tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
     )
 
 

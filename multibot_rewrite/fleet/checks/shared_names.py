@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names that all robots of a fleet are to share, and that none of its robots has."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Protocol
+
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.naming import FRAME_KINDS, TF_TOPICS, TOPIC_KINDS, Naming
+from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.transforms import Edges
+
+TOPICS, FRAMES = "shared_topics", "shared_frames"
+NOWHERE: Mapping[str, tuple[str, int]] = {}
+_UNKNOWN = "correct it, unless a node that is not known has it"
+# What may be between a name and the robot's.
+_BETWEEN = "/_-."
+NOBODYS = declare(
+    "MF838",
+    "shared-by-nothing",
+    WARNING,
+    what="A name of `shared_topics` or `shared_frames` (`--shared`) is that of no topic or frame of the"
+    " robots. It is a note where nothing in them is called nearly so: a node that is not known may have"
+    " it.",
+    why="A name that is mistyped, or a topic among the frames, is not shared: each robot gets its own.",
+    fix="Correct it. In `--shared` topics have a slash in front, frames have none.",
+    bad="""\
+layout: frames-per-robot
+shared_frames: [base_lnk]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+layout: frames-per-robot
+shared_frames: [base_link]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=2,
+    formats=("fleet",),
+)
+
+
+class NamesOfFleet(Protocol):
+    """What is asked of a fleet: its names, and the words that stand for each robot in them."""
+
+    @property
+    def naming(self) -> Naming: ...
+    @property
+    def inventories(self) -> Mapping[str, Inventory]: ...
+    @property
+    def table(self) -> Table: ...
+    @property
+    def edges(self) -> Edges: ...
+    @property
+    def words(self) -> Mapping[str, str]: ...
+
+
+def shared_by_nothing(
+    fleet: NamesOfFleet,
+    texts: Iterable[bytes] = (),
+    places: Mapping[str, tuple[str, int]] = NOWHERE,
+) -> Iterator[Finding]:
+    """Yield a finding for each shared name that no description and no node of the robots has.
+
+    A name that is in one of ``texts``, those of further files of the robots, is not missed. ``places``
+    are the file and line of the keys of a fleet file.
+    """
+    usual_topics = {*(it.strip("/") for it in SHARED_TOPICS), *TF_TOPICS}
+    asked_topics = sorted(fleet.naming.shared_topics - usual_topics)
+    asked_frames = sorted(fleet.naming.shared_frames - {*WORLD_FRAMES})
+    if not asked_topics and not asked_frames:
+        return
+    frames, topics = _described(fleet, FRAME_KINDS), _described(fleet, TOPIC_KINDS)
+    frames |= {
+        it for sent in fleet.edges.values() for edge in sent for it in (edge.child, edge.parent)
+    }
+    topics |= {it.endpoint.name.strip("/") for it in fleet.table.names}
+    further = b"\n".join(texts)
+    asked = (
+        *((it, topics, frames, "/") for it in asked_topics),
+        *((it, frames, topics, "") for it in asked_frames),
+    )
+    for name, own, others, slash in asked:
+        if name not in own and name.encode() not in further:
+            file, line = places.get(TOPICS if slash else FRAMES, ("", 0))
+            found = _finding(name, own, others, slash)
+            yield found._replace(file=file, line=line, column=min(line, 1))
+
+
+def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
+    """Return the names of some kinds in the descriptions, with and without the robot's name."""
+    words: dict[str, list[str]] = {}
+    for word, robot in fleet.words.items():
+        words.setdefault(robot, []).append(word)
+    found: set[str] = set()
+    for robot, inventory in fleet.inventories.items():
+        named = (it for names in inventory.names for it in names)
+        texts = {
+            it.text.strip("/") for it in named if it.kind in kinds or not _apart(it.kinds, kinds)
+        }
+        found |= texts
+        found |= {text.replace(word, "").strip(_BETWEEN) for text in texts for word in words[robot]}
+    return found
+
+
+def _apart(some: Iterable[str], others: Collection[str]) -> bool:
+    return not any(it in others for it in some)
+
+
+def _finding(name: str, own: Collection[str], others: Collection[str], slash: str) -> Finding:
+    what, other, key = ("topic", "frame", FRAMES) if slash else ("frame", "topic", TOPICS)
+    message = f"{slash}{name} is to be shared, and no robot has a {what} of that name"
+    near = nearest(name, sorted(own), MISTYPED)
+    if name in others:
+        hint = f"it is a {other}: write it below {key}, or --shared {'' if slash else '/'}{name}"
+    else:
+        hint = f"did you mean {slash + near!r}?" if near else ""
+    level, names = WARNING if hint else NOTE, (f"{slash}{name}",)
+    return NOBODYS.finding(message, hint or _UNKNOWN, level=level, names=names)

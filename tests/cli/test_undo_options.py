@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An undo that lacks an option names it, where that option takes the rewrite back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES
+
+from multibot_rewrite.cli.urdf_postfix import main
+
+ROVER = FIXTURES / "robots" / "rover.urdf"
+
+
+@pytest.mark.parametrize(
+    ("made_with", "undone_with", "missing"),
+    [
+        ("--affix prefix", "", "--affix prefix"),
+        ("--affix prefix --separator _", "", "--affix prefix --separator _"),
+        ("--affix prefix --separator _", "--affix prefix", "--separator _"),
+        ("--layout frames-per-robot", "", "--layout frames-per-robot"),
+        ("--layout both --affix prefix", "--layout both", "--affix prefix"),
+    ],
+)
+def test_the_missing_options_are_named_and_take_it_back(
+    made_with: str,
+    undone_with: str,
+    missing: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    made, back = str(tmp_path / "made.urdf"), tmp_path / "back.urdf"
+    assert main([str(ROVER), "robot1", *made_with.split(), "-o", made]) == 0
+    undo = [made, "robot1", "--undo", *undone_with.split(), "-o", str(back)]
+    capsys.readouterr()
+    assert main(undo) == 1
+    assert f"(the file was made with {missing}: give that, too)" in capsys.readouterr().err
+    assert not back.exists()
+    assert main([*undo, *missing.split()]) == 0
+    assert back.read_bytes() == ROVER.read_bytes()
+
+
+def test_what_no_option_takes_back_is_told_as_before(capsys: pytest.CaptureFixture[str]) -> None:
+    """The source itself was not rewritten at all, and not for another robot."""
+    assert main([str(ROVER), "robot1", "--undo"]) == 1
+    assert "the robot and the options that the file was made with" in capsys.readouterr().err
