@@ -197,3 +197,24 @@ def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
     # Locks as well: a file with the node's section and without locks has none.
     assert ("robot1/pause_navigation" in made.text("plan.yaml")) is not own
     assert ("'topics.joystick.topic': 'joy_vel'" in launch.replace('"', "'")) is not own
+
+
+@pytest.mark.more
+@pytest.mark.parametrize(
+    ("layout", "name", "static"),
+    [
+        ("tf-per-robot", "platform", "/platform/tf_static"), ("tf-per-robot", "tf", "/tf/tf_static"),
+        ("both", "tf_bot", "/tf_bot/tf_static"), ("postfix", "platform", "/tf_static/platform"),
+        ("postfix", "tf", "/tf_static/tf"),
+    ],
+)  # fmt: skip
+def test_a_robot_may_have_tf_in_its_name(
+    layout: str, name: str, static: str, tmp_path: Path
+) -> None:
+    (tmp_path / "fleet.yaml").write_text(
+        f"layout: {layout}\ndescription: {ROBOTS / 'rover.urdf'}\n"
+        f"robots: [{{name: {name}}}, {{name: other, pose: {{x: 3}}}}]\n"
+    )
+    rows = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode().splitlines()
+    (line,) = (it for it in rows if it.startswith(f"rviz2 -d {name}/"))
+    assert f" -r /tf_static:={static}" in line

@@ -54,15 +54,22 @@ def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
         RvizText(
             it.robot.name,
             _text([*_displays(shared, ""), group], [it], _root(plan, it.robot)),
-            remaps=_tf_topics(it.robot),
+            remaps=_tf_topics(it.robot, layout.namespaced),
         )
         for it, group in zip(robots, lines, strict=True)
     )
 
 
-def _tf_topics(robot: Robot) -> tuple[tuple[str, str], ...]:
+def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
+    """Return the rules for both topics of tf. The robot's name may have ``tf`` in it, or be it: the
+    topic is the last part of a name in a namespace, else the first one of that name."""
     tf, static = TF_TOPICS
-    return ((f"/{tf}", robot.tf_topic), (f"/{static}", robot.tf_topic.replace(tf, static)))
+    parts = robot.tf_topic.split("/")
+    places = [at for at, it in enumerate(parts) if it == tf]
+    if places:
+        parts[places[-1 if namespaced else 0]] = static
+    other = "/".join(parts) if places else f"/{static}{robot.tf_topic.removeprefix(f'/{tf}')}"
+    return (f"/{tf}", robot.tf_topic), (f"/{static}", other)
 
 
 def _root(plan: System, robot: Robot) -> str:

@@ -65,7 +65,7 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list
         if done.error:
             found.append(Difference(done.error, Place(path, 1)))
         else:
-            planned = _Planned(starts, it, os.path.realpath(folder))
+            planned = _planned(starts, it, os.path.realpath(folder))
             found += _differences([*planned.actions()], done.actions)
     return [*dict.fromkeys(found)]
 
@@ -99,17 +99,13 @@ class _Around(NamedTuple):
 
 
 class _Planned(NamedTuple):
-    """What a fleet is to start in one launch; ``home`` is the folder of the build."""
+    """What a fleet is to start in one launch; ``home`` is the folder of the build, ``arguments`` are
+    the values of the launch arguments."""
 
     starts: FleetStarts
     launch: Launching
     home: str
-
-    @property
-    def arguments(self) -> dict[str, Any]:
-        """The launch arguments with their values."""
-        usual = {name: self.value(it) for name, it, _ in launch_arguments(self.starts)}
-        return {**usual, **self.launch.arguments}
+    arguments: Mapping[str, Any] = {}
 
     def actions(self) -> Iterator[Action]:
         """Yield all actions in the order of the launch."""
@@ -226,6 +222,12 @@ class _Planned(NamedTuple):
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         return it
+
+
+def _planned(starts: FleetStarts, launch: Launching, home: str) -> _Planned:
+    found = _Planned(starts, launch, home)
+    usual = {name: found.value(it) for name, it, _ in launch_arguments(starts)}
+    return found._replace(arguments={**usual, **launch.arguments})
 
 
 def _change(number: int, transition: int) -> dict[str, Any]:
