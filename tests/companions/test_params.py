@@ -1096,3 +1096,20 @@ def test_the_camera_of_mavros_is_no_realsense(beside: str, line: str, told: bool
     """mavros px4_config.yaml: ``/**/camera`` beside ``/**/setpoint_position``."""
     text = section("/**/setpoint_position", beside) + section("/**/camera", line)
     assert ("MB422" in codes(made(text, L4)[1])) == told
+
+
+@pytest.mark.parametrize(
+    ("pattern", "full", "matches"),
+    [
+        ("/**/a/**/b", "/a/a/x/b", True),
+        ("/**/a/**/b", "/x/b/a", False),
+        ("/**/**/b", "/b", True),
+        ("/a/**", "/a", True),
+        ("/a/*/**", "/a", False),
+        ("/**/a/*", "/a/a", True),
+        ("/**" + "/**/a" * 30 + "/b", "/a" * 3_000, False),
+    ],
+)
+def test_several_wildcards_stand_for_any_share(pattern: str, full: str, matches: bool) -> None:
+    """The last one once took as many ways as thirty numbers up to 3,000 have orders."""
+    assert is_for(pattern, full) == matches

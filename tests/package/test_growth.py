@@ -51,6 +51,18 @@ def test_cost_grows_with_the_number(what: str, work: Callable[[bytes], None]) ->
     assert growth(prepared, SMALL, LARGE) < SLACK
 
 
+@pytest.mark.slow
+def test_cost_grows_with_the_number_of_sections() -> None:
+    """Of a parameter file: each node once looked through the sections of all others."""
+
+    def prepared(count: int) -> Callable[[], None]:
+        nodes = (f"n{at}:\n  ros__parameters:\n    frame_id: f{at}\n" for at in range(count))
+        data = "".join(nodes).encode()
+        return lambda: lint_data("params.yaml", data, Settings()) and None
+
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
 def test_the_format_of_a_root_is_asked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[object] = []
     ask = Tree.format_of

@@ -67,6 +67,14 @@ GROWING: dict[str, Callable[[int], str]] = {
         _each(count, '<material name="n#"><color rgba="1 1 1 1"/></material>')
         + _each(count, f"{_MESH}</visual></link>")
     ),
+    "comments": lambda count: _ONE + _each(count, "<!-- part # of <many> -->"),
+    "comments in one line": lambda count: GROWING["comments"](count).replace("\n", " "),
+    "comments for the lint": lambda count: (
+        _each(count, "<!-- urdf-lint: ignore MB401 - part # -->") + _ONE
+    ),
+    "blocks of CDATA": lambda count: (
+        f"{_ONE}<gazebo><own>{_each(count, '<![CDATA[a < b]]>')}</own></gazebo>"
+    ),
     "remap rules": lambda count: (
         _ONE
         + '<gazebo><plugin name="x" filename="libgazebo_ros_diff_drive.so"><ros>'

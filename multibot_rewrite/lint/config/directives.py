@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import accumulate
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
@@ -29,6 +30,7 @@ _DIRECTIVE = lazy_compile(rb"<!--\s*urdf-lint\s*(?:(:)\s*)?(?=\S)([^\s:]*)(|[\s:
 # A dash or a colon with spaces around it, so that MB401-MB405 and MB401:MB402 are errors.
 _REASON = lazy_compile(rb"(?::|(?<=\s)(?:-|\xe2\x80\x93|\xe2\x80\x94))(?=\s|$)")
 _WORD = lazy_compile(rb"[^\s,]+")
+_LINE_END = lazy_compile(rb"[^\S\n]*(?:\n|\Z)")
 _LIKE_A_CODE = lazy_compile(r"[A-Za-z]{1,3}-?\d+")
 # What only some expansions of a xacro file hold.
 _SOMETIMES = frozenset({b"xacro:macro", b"xacro:if", b"xacro:unless"})
@@ -82,15 +84,18 @@ def read_directives(source: bytes) -> list[Directive]:
     """The ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
-    spans = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
+    sometimes = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
+    reached = _reached(sorted(sometimes))
     tags = [it for it in parts if it.kind in (_OPEN, _EMPTY)]
-    found = []
-    for at, part in enumerate(parts):
+    below = _elements_below(source, parts, ends)
+    found, before, last = [], _OTHER, 0
+    for part, element in zip(parts, below, strict=True):
         if part.kind == _COMMENT and (it := _directive(source, part)):
-            element = _below(source, parts, at, ends) if it.word == IGNORE else None
-            it = _in_place(it._replace(element=element), tags)
-            idle = it.word == IGNORE and _is_idle(it, tags, _kind_before(parts, at))
-            found.append(it._replace(sometimes=_meets(it, spans), idle=idle))
+            alone = it.word == IGNORE and _has_its_lines(source, part, last)
+            it = _in_place(it._replace(element=element if alone else None), tags)
+            idle = it.word == IGNORE and _is_idle(it, tags, before)
+            found.append(it._replace(sometimes=_meets(it, reached), idle=idle))
+        before, last = part.kind if part.kind != _COMMENT else before, part.end
     return found
 
 
@@ -185,24 +190,25 @@ def _fault(text: str, start: int) -> DirectiveFault | None:
     )
 
 
-def _below(
-    source: bytes, parts: Sequence[Part], at: int, ends: dict[int, int]
-) -> tuple[int, int] | None:
-    """The element after a comment on lines of its own; other comments may be in between."""
-    comment = parts[at]
-    before = source[source.rfind(b"\n", 0, comment.start) + 1 : comment.start]
-    after = source[comment.end : _line_end(source, comment.end)]
-    if before.strip() or after.strip():
-        return None
-    last = comment.end
-    for number in range(at + 1, len(parts)):
-        part = parts[number]
-        if source[last : part.start].strip() or part.kind in (_CLOSE, _OTHER):
-            return None
-        if part.kind != _COMMENT:
-            return part.start, ends.get(number, part.end)
-        last = part.end
-    return None
+def _elements_below(
+    source: bytes, parts: Sequence[Part], ends: Mapping[int, int]
+) -> list[tuple[int, int] | None]:
+    """Return for each part the element that comes next, with nothing but comments in between."""
+    below: list[tuple[int, int] | None] = [None] * len(parts)
+    for at in range(len(parts) - 2, -1, -1):
+        part = parts[at + 1]
+        if part.kind in (_CLOSE, _OTHER) or source[parts[at].end : part.start].strip():
+            continue
+        element = part.start, ends.get(at + 1, part.end)
+        below[at] = below[at + 1] if part.kind == _COMMENT else element
+    return below
+
+
+def _has_its_lines(source: bytes, comment: Part, last: int) -> bool:
+    """Is nothing else on the lines of a comment? ``last`` is the end of the part before it."""
+    before = source[last : comment.start].rpartition(b"\n")
+    begins = not before[2].strip() and (bool(before[1]) or last == 0)
+    return begins and _LINE_END.match(source, comment.end) is not None
 
 
 def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
@@ -222,13 +228,16 @@ def _is_idle(it: Directive, tags: Sequence[Part], before: int) -> bool:
     return not it.element and not on_the_lines and before != _OPEN
 
 
-def _kind_before(parts: Sequence[Part], at: int) -> int:
-    """The kind of what is in front of a comment, other comments aside."""
-    kinds = (parts[number].kind for number in range(at - 1, -1, -1))
-    return next((kind for kind in kinds if kind != _COMMENT), _OTHER)
+def _reached(spans: Sequence[tuple[int, int]]) -> tuple[list[int], list[int]]:
+    """Return the starts of spans in their order, and how far those up to each one go."""
+    return [it[0] for it in spans], [*accumulate((it[1] for it in spans), max)]
 
 
-def _meets(it: Directive, spans: Iterable[tuple[int, int]]) -> bool:
-    reach = it.element or (it.start, it.end)
-    everywhere = it.word == IGNORE_FILE
-    return any(everywhere or (start < reach[1] and reach[0] < end) for start, end in spans)
+def _meets(it: Directive, reached: tuple[list[int], list[int]]) -> bool:
+    """Is what the comment is about in one of the spans, in part at least?"""
+    starts, ends = reached
+    if it.word == IGNORE_FILE:
+        return bool(starts)
+    begin, end = it.element or (it.start, it.end)
+    before = bisect_left(starts, end)
+    return before > 0 and ends[before - 1] > begin

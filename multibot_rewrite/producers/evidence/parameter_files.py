@@ -8,9 +8,10 @@ controller_manager/spawner.py (``type`` of a controller's own section is set as 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from operator import itemgetter
 
 import yaml
 
@@ -77,7 +78,8 @@ def given_nodes(
     # A node of Nav2 makes helpers that have its parameters, and none of its topics and actions.
     own = (it.name for it in sections if not it.name.endswith(INNER))
     names = dict.fromkeys(filter(None, (*own, *controllers)))
-    return [_node(name, sections, controllers.get(name), known) for name in names]
+    near = _by_name(sections)
+    return [_node(name, near(name), controllers.get(name), known) for name in names]
 
 
 def _check_name(name: str, place: Place) -> None:
@@ -174,6 +176,17 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
         if section.name and given is not None and given.value in known.types:
             above = section.name.rpartition("/")[0]
             yield section.name, _Controller(given, f"{above}/{MANAGER}" if above else MANAGER)
+
+
+def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
+    """Return what finds the sections that may be a node's, in their order: those of its name, and all
+    with wildcards."""
+    wild: list[tuple[int, _Section]] = []
+    named: dict[str, list[tuple[int, _Section]]] = {}
+    for number, it in enumerate(sections):
+        of = wild if "*" in it.raw.path else named.setdefault(it.name, [])
+        of.append((number, it))
+    return lambda name: [it for _, it in sorted([*named.get(name, ()), *wild], key=itemgetter(0))]
 
 
 def _own(sections: Sequence[_Section], name: str) -> list[_Section]:
