@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
+from paths import ROBOTS
 from test_choosing import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
@@ -165,3 +166,17 @@ def test_a_value_with_odd_signs_is_what_is_written() -> None:
     looked = member.looked._replace(arguments=(("x", odd),))
     made = ONE._replace(members=[member._replace(looked=looked)])
     assert yaml.safe_load(text_of(made, "w/f.yaml"))["arguments"] == {"x": odd}
+
+
+def test_robots_of_two_simulators_are_the_first_reason(tmp_path: Path, capsys: Any) -> None:
+    """Both publish /clock, which says nothing to who has named two robots."""
+    for name in ("rover.urdf", "rover_gz.urdf"):
+        (tmp_path / name).write_bytes((ROBOTS / name).read_bytes())
+    words = ["init", str(tmp_path / "rover.urdf"), str(tmp_path / "rover_gz.urdf")]
+    assert main([*words, "--yes", "-o", str(tmp_path / "f.yaml")]) == 1
+    first = capsys.readouterr().err.splitlines()[0]
+    rover, other = tmp_path / "rover.urdf", tmp_path / "rover_gz.urdf"
+    what = f"{rover} is for Gazebo Classic and {other} for gz-sim: no simulator runs both"
+    assert first.endswith(f"It does not build yet: {what}")
+    assert main([*words, "--simulator", "none", "--yes", "-o", str(tmp_path / "g.yaml")]) == 0
+    assert "no simulator runs both" not in capsys.readouterr().err
