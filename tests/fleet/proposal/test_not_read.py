@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_choosing import PACKAGE, init, robot, taken
+from small_robots import PACKAGE, init, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main

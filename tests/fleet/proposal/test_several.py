@@ -10,13 +10,12 @@ from typing import Any
 import pytest
 import yaml
 from paths import ROBOTS
-from test_choosing import PACKAGE, robot
+from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_other_robots
 from multibot_rewrite.fleet.proposal.searching import Found
@@ -156,16 +155,6 @@ def test_files_of_packages_that_the_robot_is_not_from_are_not_listed(tmp_path: P
     text = (tmp_path / "made/fleet.yaml").read_text()
     assert "#   ../car_description/second.rviz: first.rviz of another folder was taken" in text
     assert "../other/" not in text
-
-
-def test_a_value_with_odd_signs_is_what_is_written() -> None:
-    from test_fleet_text import ONE
-
-    odd = "a: #'\n"
-    (member,) = ONE.members
-    looked = member.looked._replace(arguments=(("x", odd),))
-    made = ONE._replace(members=[member._replace(looked=looked)])
-    assert yaml.safe_load(text_of(made, "w/f.yaml"))["arguments"] == {"x": odd}
 
 
 def test_robots_of_two_simulators_are_the_first_reason(tmp_path: Path, capsys: Any) -> None:
