@@ -17,6 +17,7 @@ import yaml
 from fleet_folder import fleet_folder
 from paths import ROOT
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
@@ -509,8 +510,7 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
     assert len(EXAMPLES) >= 4
     line = re.search(r"yaml-language-server: \$schema=(\S+)", PAGE)
     assert line is not None
-    named = line[1].rpartition("/")[2]
-    assert (ROOT / "multibot_rewrite" / "fleet" / named).exists()
+    assert line[1] == editors.schema_name(editors.FLEET)
     assert yaml.safe_load(EXAMPLES[0])["robots"]
 
 

@@ -26,7 +26,13 @@ from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked, without_names
-from multibot_rewrite.fleet.proposal.propose import Choice, Proposal, affix_of, propose
+from multibot_rewrite.fleet.proposal.propose import (
+    Choice,
+    Proposal,
+    affix_of,
+    propose,
+    two_simulators,
+)
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
@@ -179,8 +185,10 @@ def with_faults_of_sources(it: Proposal, wanted: Wanted) -> Proposal:
 
 
 def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:
-    notes = (f"It does not build yet: {line}" for _, line in errors[:3])
-    return it._replace(notes=(*it.notes, *notes))
+    lines = [line for _, line in errors[:3]]
+    if lines and (cause := two_simulators(it.members)):
+        lines.insert(0, cause)
+    return it._replace(notes=(*it.notes, *(f"It does not build yet: {line}" for line in lines)))
 
 
 def in_layout(it: Proposal, layout: Choice) -> Proposal:

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 import yaml
 from lxml import etree
+from small_robots import PACKAGE, init, robot, taken
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import may_be_partners
@@ -19,27 +20,6 @@ from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.system.records import NOWHERE
-
-PACKAGE = "<package><name>{}</name></package>"
-
-
-def robot(name: str, *joints: str, more: str = "") -> str:
-    """A base with a wheel for each joint."""
-    parts = "".join(
-        f'<link name="{it}_wheel"/><joint name="{it}" type="continuous"><parent link="{name}_base"/>'
-        f'<child link="{it}_wheel"/><axis xyz="0 1 0"/></joint>'
-        for it in joints
-    )
-    return f'<robot name="{name}"><link name="{name}_base"/>{parts}{more}</robot>'
-
-
-def init(folder: Path, *words: str) -> int:
-    return main(["init", str(folder), *words, "-n", "2", "--yes", "-o", str(folder / "fleet.yaml")])
-
-
-def taken(folder: Path, *words: str) -> Any:
-    assert init(folder, *words) == 0
-    return yaml.safe_load((folder / "fleet.yaml").read_text())
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_choosing import PACKAGE, init, robot, taken
+from small_robots import PACKAGE, init, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
@@ -16,7 +16,7 @@ from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its
 from multibot_rewrite.fleet.proposal.companions import srdf_of
 from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch, readings
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
 
 WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 GZ = (
@@ -110,7 +110,10 @@ def test_the_srdf_is_that_of_the_package_that_launch_files_name(
     found = search([str(tmp_path)])
     arm = Looked(str(tmp_path / "arm_description/arm.urdf"), root=None)
     stale, right = found.srdf
+    (tmp_path / "move.launch.py").write_text("load('other_config', 'config/arm.srdf')\n")
+    found = search([str(tmp_path)])
     assert srdf_of(arm, found) == stale and not is_srdf_launched(right, found)
+    text_of.cache_clear()
     (tmp_path / "move.launch.py").write_text(f"{start}{launch}\n")
     assert srdf_of(arm, search([str(tmp_path)])) == right
 

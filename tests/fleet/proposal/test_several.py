@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 import yaml
-from test_choosing import PACKAGE, robot
+from paths import ROBOTS
+from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_other_robots
 from multibot_rewrite.fleet.proposal.searching import Found
@@ -157,11 +157,15 @@ def test_files_of_packages_that_the_robot_is_not_from_are_not_listed(tmp_path: P
     assert "../other/" not in text
 
 
-def test_a_value_with_odd_signs_is_what_is_written() -> None:
-    from test_fleet_text import ONE
-
-    odd = "a: #'\n"
-    (member,) = ONE.members
-    looked = member.looked._replace(arguments=(("x", odd),))
-    made = ONE._replace(members=[member._replace(looked=looked)])
-    assert yaml.safe_load(text_of(made, "w/f.yaml"))["arguments"] == {"x": odd}
+def test_robots_of_two_simulators_are_the_first_reason(tmp_path: Path, capsys: Any) -> None:
+    """Both publish /clock, which says nothing to who has named two robots."""
+    for name in ("rover.urdf", "rover_gz.urdf"):
+        (tmp_path / name).write_bytes((ROBOTS / name).read_bytes())
+    words = ["init", str(tmp_path / "rover.urdf"), str(tmp_path / "rover_gz.urdf")]
+    assert main([*words, "--yes", "-o", str(tmp_path / "f.yaml")]) == 1
+    first = capsys.readouterr().err.splitlines()[0]
+    rover, other = tmp_path / "rover.urdf", tmp_path / "rover_gz.urdf"
+    what = f"{rover} is for Gazebo Classic and {other} for gz-sim: no simulator runs both"
+    assert first.endswith(f"It does not build yet: {what}")
+    assert main([*words, "--simulator", "none", "--yes", "-o", str(tmp_path / "g.yaml")]) == 0
+    assert "no simulator runs both" not in capsys.readouterr().err
