@@ -31,11 +31,12 @@ def option_hint(wrong: str, command: str, known: Collection[str], takes_fleet: b
 
 def _by_meaning(wrong: str, command: str, known: Collection[str]) -> str:
     """Return the answer that is known for the option in this command; "" if there is none."""
-    other = other_words.OPTIONS.get(f"{command} {wrong}") or other_words.OPTIONS.get(wrong, "")
+    word = f"-{wrong.removeprefix('-').replace('_', '-')}"
+    other = other_words.OPTIONS.get(f"{command} {word}") or other_words.OPTIONS.get(word, "")
     option = other.replace(",", "").partition(" ")[0]
     if not option.startswith("-") or option in known:
         return f"use {other}" if other else ""
-    return f"{option} does that, which {_commands_with(option)} take"
+    return f"{option} does that, which {_takers(option)}"
 
 
 def _fleet_key(wrong: str) -> str:
@@ -50,8 +51,8 @@ def _fleet_key(wrong: str) -> str:
 
 def _by_letters(wrong: str, known: Collection[str]) -> Iterator[str]:
     """Yield the commands that have the option, and the command's own one that is most like it."""
-    if elsewhere := _commands_with(wrong):
-        yield f"{elsewhere} take it"
+    if takers := _takers(wrong):
+        yield f"{takers} it"
     if near := _nearest(wrong.lstrip("-"), known):
         yield f"did you mean '{near}'?"
 
@@ -71,10 +72,11 @@ def _begun(word: str, known: Iterable[str]) -> str:
     return next((it for it in known if len(word) > _BEGUN and it.startswith(f"--{word}")), "")
 
 
-def _commands_with(option: str) -> str:
-    """Return the commands that have an option, as they are typed; "" if none has."""
+def _takers(option: str) -> str:
+    """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
     names = [name for name, command in _every_command().items() if _has(command, option)]
-    return shorten(names)
+    verb = "takes" if len(names) == 1 else "take"
+    return f"{shorten(names)} {verb}" if names else ""
 
 
 def _has(command: Command, option: str) -> bool:
