@@ -90,11 +90,11 @@ def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     return _hint(nearest(name, known, alike))
 
 
-def did_you_mean_one_of(word: str, choices: Iterable[str]) -> str:
+def did_you_mean_one_of(word: str, choices: Iterable[str], alike: float = CHOICE) -> str:
     """The same for a word of a short list: less alike will do, and the beginning of one."""
     words = list(choices)
     begun = (it for it in words if len(word) >= _BEGINNING and it.startswith(word))
-    return _hint(min(begun, key=len, default="") or nearest(word, words, CHOICE))
+    return _hint(min(begun, key=len, default="") or nearest(word, words, alike))
 
 
 def _hint(near: str) -> str:

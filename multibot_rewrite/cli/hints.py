@@ -3,50 +3,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.base import other_words
 from multibot_rewrite.base.nearest import CHOICE, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.options import Command
-from multibot_rewrite.cli.parser import Parser
 
-FLEET = "fleet"
 # A beginning of so few letters says nothing.
 _BEGUN = 2
 
 
-def option_hint(wrong: str, parser: Parser) -> str:
+def option_hint(wrong: str, command: str, known: Collection[str], takes_fleet: bool) -> str:
     """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
 
     An option that begins with it comes first. Then its meaning counts: a key of the fleet file, a word
     of other tools, an option of another command. Its letters come last.
     """
-    begun = _begun(wrong.lstrip("-"), parser.known())
-    hints = [f"did you mean '{begun}'?"] if begun else _by_meaning(wrong, parser)
-    return "".join(f"; {it}" for it in hints or _by_letters(wrong, parser))
+    if begun := _begun(wrong.lstrip("-"), known):
+        return f"; did you mean '{begun}'?"
+    if key := _fleet_key(wrong) if takes_fleet else "":
+        return f"; write the key {key}: into the fleet file"
+    hint = _by_meaning(wrong, command, known)
+    return "".join(f"; {it}" for it in ([hint] if hint else _by_letters(wrong, known)))
 
 
-def _by_meaning(wrong: str, parser: Parser) -> list[str]:
-    """Return the one answer that is known for the option in this command; empty if there is none."""
-    command = parser.prog.rpartition(" ")[2]
-    key = _fleet_key(wrong, parser)
-    if key:
-        return [f"write the key {key}: into the fleet file"]
-    other = other_words.OPTIONS.get(f"{command} {wrong}") or other_words.OPTIONS.get(wrong)
-    if not other:
-        return []
+def _by_meaning(wrong: str, command: str, known: Collection[str]) -> str:
+    """Return the answer that is known for the option in this command; "" if there is none."""
+    word = f"-{wrong.removeprefix('-').replace('_', '-')}"
+    other = other_words.OPTIONS.get(f"{command} {word}") or other_words.OPTIONS.get(word, "")
     option = other.replace(",", "").partition(" ")[0]
-    if not option.startswith("-") or option in parser.known():
-        return [f"use {other}"]
-    return [f"{option} does that, which {_commands_with(option)} take"]
+    if not option.startswith("-") or option in known:
+        return f"use {other}" if other else ""
+    return f"{option} does that, which {_takers(option)}"
 
 
-def _fleet_key(wrong: str, parser: Parser) -> str:
-    """Return the key of a fleet file that the option would be, where a command takes a fleet file."""
-    if all(it.dest != FLEET for it in parser._actions):
-        return ""
+def _fleet_key(wrong: str) -> str:
+    """Return the key of a fleet file that the option would be; "" if it is none."""
     from multibot_rewrite.fleet.file.fleet_data import schema
 
     word = wrong.lstrip("-").replace("-", "_")
@@ -55,12 +49,11 @@ def _fleet_key(wrong: str, parser: Parser) -> str:
     return key if key in top else ""
 
 
-def _by_letters(wrong: str, parser: Parser) -> Iterator[str]:
+def _by_letters(wrong: str, known: Collection[str]) -> Iterator[str]:
     """Yield the commands that have the option, and the command's own one that is most like it."""
-    elsewhere = _commands_with(wrong)
-    if elsewhere:
-        yield f"{elsewhere} take it"
-    if near := _nearest(wrong.lstrip("-"), parser.known()):
+    if takers := _takers(wrong):
+        yield f"{takers} it"
+    if near := _nearest(wrong.lstrip("-"), known):
         yield f"did you mean '{near}'?"
 
 
@@ -79,10 +72,11 @@ def _begun(word: str, known: Iterable[str]) -> str:
     return next((it for it in known if len(word) > _BEGUN and it.startswith(f"--{word}")), "")
 
 
-def _commands_with(option: str) -> str:
-    """Return the commands that have an option, as they are typed; "" if none has."""
+def _takers(option: str) -> str:
+    """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
     names = [name for name, command in _every_command().items() if _has(command, option)]
-    return shorten(names)
+    verb = "takes" if len(names) == 1 else "take"
+    return f"{shorten(names)} {verb}" if names else ""
 
 
 def _has(command: Command, option: str) -> bool:

@@ -9,7 +9,7 @@ from functools import partial
 
 from multibot_rewrite.base import other_words
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.nearest import ALIKE, did_you_mean_one_of
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
@@ -47,7 +47,7 @@ def find_command(word: str) -> Command:
         raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
     if word in other_words.COMMANDS:
         raise UsageError(f"there is no command {word!r}; use {other_words.COMMANDS[word]}")
-    near = did_you_mean_one_of(word, COMMANDS)
+    near = did_you_mean_one_of(word, COMMANDS, ALIKE)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
 

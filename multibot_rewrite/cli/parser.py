@@ -50,6 +50,10 @@ class Parser(argparse.ArgumentParser):
         """The names of all options."""
         return [name for action in self._actions for name in action.option_strings]
 
+    def arguments(self) -> list[str]:
+        """Return the names of all arguments without a dash."""
+        return [action.dest for action in self._actions if not action.option_strings]
+
 
 class _Short(argparse.Action):
     """``-h``: the help that fits a screen."""
@@ -186,7 +190,9 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
     if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
 
-        parser.error(f"unknown option {wrong}{option_hint(wrong, parser)}")
+        command, takes_fleet = parser.prog.rpartition(" ")[2], "fleet" in parser.arguments()
+        hint = option_hint(wrong, command, parser.known(), takes_fleet)
+        parser.error(f"unknown option {wrong}{hint}")
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:
         hint = "; a list is written A,B" if _is_behind_list(unknown[0], words, parser) else ""

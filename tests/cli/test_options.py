@@ -156,6 +156,10 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
 @pytest.mark.parametrize(
     ("line", "hint"),
     [
+        ("multibot remove", "unknown command 'remove'; see multibot --help"),
+        ("multibot nodes", "use multibot snapshot"),
+        ("urdf-lint a --tf_prefix x", "unknown option --tf_prefix; use --affix prefix"),
+        ("urdf-lint a --xacro x", "unknown option --xacro; urdf-postfix takes it;"),
         ("multibot chek", "unknown command 'chek'; did you mean 'check'?"),
         (
             "multibot plan --layuot L1",

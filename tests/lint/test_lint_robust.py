@@ -156,7 +156,7 @@ def codes(found: list[Finding]) -> dict[str, set[str]]:
 
 @pytest.fixture(scope="module")
 def found(bad: Path) -> list[Finding]:
-    paths = find_files([str(bad)], (".urdf", ".xacro"))
+    paths = find_files([str(bad)], (".urdf", ".xacro")).files
     assert not any("pipe" in path for path in paths)
     endless = [path for path in paths if "MB004" in BAD.get(Path(path).name, (b"", set()))[1]]
     others = [path for path in paths if path not in endless]
@@ -433,7 +433,7 @@ def test_many_mutants(corpus: dict[str, Path], part: int) -> None:
 @pytest.fixture(scope="module")
 def by_jobs() -> list[list[Finding]]:
     homes = [str(FIXTURES / "robots"), str(FIXTURES / "lint")]
-    paths = find_files(homes, (".urdf", ".xacro", ".srdf"))
+    paths = find_files(homes, (".urdf", ".xacro", ".srdf"), everything=True).files
     settings = Settings(arguments=(ArgumentSet("*", (("sim", "gz"),)),))
     return [lint_files(paths, settings, jobs=jobs) for jobs in (1, 2, 4)]
 
