@@ -17,6 +17,7 @@ STRING = r'(?<!\\)"(?:[^"\\]|\\.)*"'
 # Inside an expression ${...} of xacro, and inside a substitution $(...).
 IN_EXPRESSION = r"(?:[^$}]|\$(?!\{))*"
 IN_SUBSTITUTION = r"(?:[^$)]|\$(?!\())*"
+FILLED_IN = rf"\$\{{{IN_EXPRESSION}\}}|\$\({IN_SUBSTITUTION}\)"
 _SILENT = lazy_compile(SILENT)
 
 

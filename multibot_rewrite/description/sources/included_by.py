@@ -11,7 +11,7 @@ from contextlib import suppress
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.left_out import source_folders
-from multibot_rewrite.base.markup import IN_EXPRESSION, IN_SUBSTITUTION
+from multibot_rewrite.base.markup import FILLED_IN
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.description.sources.packages import package_of
@@ -21,7 +21,7 @@ from multibot_rewrite.description.sources.read import XACRO, has_xacro
 MOST_FILES, MOST_BYTES = 20_000, 4_000_000
 TESTS = frozenset(("test", "tests"))
 _INCLUDED = lazy_compile(rb"""<(?:\w+:)?include\b[^<>]*\bfilename\s*=\s*["']([^"'<]+)["']""")
-_FILLED = lazy_compile(rf"\$\{{{IN_EXPRESSION}\}}|\$\({IN_SUBSTITUTION}\)")
+_FILLED = lazy_compile(FILLED_IN)
 _MACRO = lazy_compile(rb"<\w+:macro\b")
 _FIND = lazy_compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 

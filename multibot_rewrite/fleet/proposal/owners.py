@@ -10,6 +10,7 @@ from contextlib import suppress
 from functools import lru_cache
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
+from multibot_rewrite.base.markup import FILLED_IN
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED
@@ -22,7 +23,7 @@ from multibot_rewrite.fleet.proposal.searching import Found, home_of
 MOST = 60
 _NAMED = re.compile(rb"""<(?:link|joint)\b[^<>]*?\bname\s*=\s*["']([^"'<]+)["']""")
 _GROUP = re.compile(rb"""<group\b[^<>]*?\bname\s*=\s*["']([^"'<]+)["']""")
-_FILLED_IN = re.compile(r"\$[({](?:[^$)}]|\$(?![({]))*[)}]")
+_FILLED_IN = re.compile(FILLED_IN)
 _KEY = re.compile(rb"^[ \t-]*[\w./][\w./-]*:", re.MULTILINE)
 _WORD = re.compile(r"[\w.-]+")
 # How many names of a file another description has to have for each that is the robot's own: the files
