@@ -60,6 +60,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
             "fleet.checks.other_manager",
+            "fleet.robots.hardware_services",
             "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
             "fleet.robots.named_twice",

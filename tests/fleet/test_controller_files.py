@@ -109,6 +109,15 @@ def test_each_robot_loads_its_own_of_what_cmake_installs_elsewhere(
 
 
 @pytest.mark.slow
+def test_what_cmake_installs_elsewhere_is_found_without_being_listed(package: Path) -> None:
+    text = "install(DIRECTORY config/ DESTINATION share/my_arm/control)\n"
+    (package / "CMakeLists.txt").write_text(text)
+    alone = FLEET.replace("companions: {params: [config/arm.yaml]}\n", "")
+    found = built(package, f"{package}/control/arm.yaml", fleet=alone)
+    assert found == [f"{package}/out/{robot}/arm.yaml" for robot in ("robot1", "robot2")]
+
+
+@pytest.mark.slow
 def test_what_is_said_of_another_file_can_be_done(
     package: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

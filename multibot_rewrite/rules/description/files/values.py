@@ -65,7 +65,7 @@ unknown_word = rule(
     "sensor, of a ros2_control or a virtual joint, or a version of URDF. Or it is the name of"
     " a joint property, or the class of a plugin or controller in parameters. It is a warning"
     " for a parameter of a plugin, where it is nearly such a word, and for a class that "
-    "another release has; a note for a class of a package that is not known.",
+    "another release has. It is a note for a class of a package that is not known.",
     why="urdfdom rejects the file ('has no known type'), or the sensor or hardware does not "
     "exist. srdfdom takes a virtual joint for fixed, and a plugin takes its default. "
     "pluginlib throws for a class that no package registers: a server of Nav2 does not "
