@@ -180,6 +180,8 @@ def _two_systems(topic: str) -> str:
 )
 def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
     """Yield each system that sends on a topic which an earlier one has."""
+    if sum("::" in it.get("name", "") for it in subject.elements.every("plugin")) < 2:
+        return
     from multibot_rewrite.base.naming import make_naming
     from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, model_name, plugin_topics
 
