@@ -171,7 +171,7 @@ def _two_systems(topic: str) -> str:
     WARNING,
     what="Two systems of Gazebo in a robot send on the same topic, one that they are given or their "
     "default.",
-    why="Readers get the data of both in turn: the odometry of one jumps to that of the other, or tf "
+    why="Readers get the data of both in turn. The odometry of one jumps to that of the other, or tf "
     "has the poses of links among the odometry.",
     fix="Give one of them a topic of its own.",
     bad=_two_systems(""),
