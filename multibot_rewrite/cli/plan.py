@@ -125,6 +125,9 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"
         note(options, f"{item.robot}: warning: {message} ({item.hint})")
+    if not any(it.robot for it in carried):
+        note(options, "no robot has a topic in Gazebo to bridge")
+        return ""
     return as_yaml(carried)
 
 

@@ -44,6 +44,8 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 TF_ELEMENT = "tf_topic"
 IMAGE = "gz.msgs.Image"
 _MODELS = "model/"
+# What sdformat writes where a sensor of contacts has none (sdf/1.12/contact.sdf, Contact.cc:116).
+_DEFAULT = "__default_topic__"
 # Cameras whose info is below their topic, and no name that they are given.
 _INFO_BELOW = frozenset({"rgbd_camera", "rgbd", "segmentation_camera", "segmentation"})
 # Robot -> what its model is spawned as, if not as the robot is called.
@@ -233,6 +235,7 @@ def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]
     if not rows or not all(it.startswith(GZ_LIBRARIES) for it in loaded if it):
         return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
     base, what = text_at(sensor, rows[0].at), f"sensor {sensor.get('name')}"
+    base = "" if base == _DEFAULT else base
     if not base:
         part = f"/sensor/{sensor.get('name')}/"
         yield UnbridgedTopic(robot, "sensor", _line(sensor), what, OF_WORLD, GIVE_TOPIC, part)

@@ -288,3 +288,19 @@ def test_topics_of_a_bridge_are_once_with_all_that_it_does() -> None:
         '- ros_topic_name: "/x"\n  gz_topic_name: "/x"\n  ros_type_name: "a/msg/B"\n'
         '  gz_type_name: "gz.msgs.B"\n  direction: ROS_TO_GZ\n'
     )
+
+
+@pytest.mark.parametrize(
+    ("inside", "carried"),
+    [
+        ("<contact><topic>bump</topic></contact>", ["bump"]),
+        # Contact.cc:115 reads the one below <contact> alone, and knows this text.
+        ("<topic>bump</topic>", []),
+        ("<contact><topic>__default_topic__</topic></contact>", []),
+    ],
+)
+def test_the_topic_of_a_contact_sensor(inside: str, carried: list[str]) -> None:
+    sensor = f'<sensor name="s" type="contact">{inside}</sensor>'
+    found, left = bridged_topics({"a": inventory(sensor)}, make_naming("L4"))
+    assert [it.gz for it in found if it.robot] == carried
+    assert len(left) == (0 if carried else 1)

@@ -354,6 +354,24 @@ def test_plan_and_build_have_the_same_rows(
     assert order == sorted(built, key=str) and len(planned) > 5
 
 
+EXAMPLES = sorted((FIXTURES.parent / "examples").rglob("fleet*.yaml"))
+
+
+@pytest.mark.parametrize("fleet", EXAMPLES, ids=lambda it: f"{it.parent.name}-{it.stem}")
+def test_plan_and_build_of_an_example_have_the_same_topics(
+    fleet: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A row of a user's file takes the place of one for the same topic."""
+    main(["build", str(fleet), "-o", str(tmp_path / "out")])
+    capsys.readouterr()
+    assert main(["plan", str(fleet), "--form", "bridge"]) == 0
+    planned = {it["gz_topic_name"] for it in rows(capsys.readouterr().out or "[]")}
+    files = (tmp_path / "out").rglob("bridge.yaml")
+    built = [row for it in files for row in rows(it.read_text())]
+    names = {row.get("gz_topic_name") or row["topic_name"] for row in built}
+    assert names == planned or (planned <= names and "companions" in fleet.read_text())
+
+
 def test_the_data_speaks_of_types_that_bridges_convert() -> None:
     pairs = bridge_data()["pairs"]
     groups = (*bridge_data()["sensors"].values(), *bridge_data()["plugins"].values())

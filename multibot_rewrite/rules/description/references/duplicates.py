@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     "MB201",
     "duplicate-name",
     ERROR,
-    what="Two things of one kind have the same name: links, joints and materials of a robot, sensors "
-    "of a link and of the links that fixed joints merge into it, <ros2_control> elements, nodes of "
-    "plugins. It is a warning for transmissions, and for the joints, sensors and gpios of one "
-    "<ros2_control>. So it is for a system of Gazebo that is loaded again with the same parameters.",
+    what="Two things of one kind have the same name: links, joints and materials of a robot, "
+    "sensors of a link, <ros2_control> elements, nodes of plugins. Links that fixed joints merge "
+    "count as one. It is a warning for "
+    "transmissions, and for the joints, sensors and gpios of one <ros2_control>. So it is for a "
+    "system of Gazebo that is loaded again with the same parameters.",
     why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
     "with such sensors, ros2_control's resource manager the hardware. gazebo_ros gives the second "
     "plugin a null pointer, and gzserver crashes. Interfaces of the second joint are mixed up with "

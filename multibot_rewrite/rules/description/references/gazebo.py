@@ -171,7 +171,7 @@ def _two_systems(topic: str) -> str:
     WARNING,
     what="Two systems of Gazebo in a robot send on the same topic, one that they are given or their "
     "default.",
-    why="Readers get the data of both in turn: the odometry of one jumps to that of the other, or tf "
+    why="Readers get the data of both in turn. The odometry of one jumps to that of the other, or tf "
     "has the poses of links among the odometry.",
     fix="Give one of them a topic of its own.",
     bad=_two_systems(""),
@@ -180,6 +180,8 @@ def _two_systems(topic: str) -> str:
 )
 def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
     """Yield each system that sends on a topic which an earlier one has."""
+    if sum("::" in it.get("name", "") for it in subject.elements.every("plugin")) < 2:
+        return
     from multibot_rewrite.base.naming import make_naming
     from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, model_name, plugin_topics
 
