@@ -60,6 +60,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
+            "fleet.checks.lacking",
             "fleet.checks.other_manager",
             "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
