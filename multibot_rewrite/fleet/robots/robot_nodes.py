@@ -109,12 +109,13 @@ def robot_nodes(
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
-    nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
+    of_srdf = () if whole else tuple(_of_srdf(spec, nodes, known))
+    nodes = (*nodes, *of_srdf)
     has, started = described(member, spec), launched.started if launched else {}
     fits = fitting_frames(member, nodes, has.sent)
     known = {name: with_frames(it, fits) for name, it in known.items()}
     own_fits = [with_frames(it, fits) for it in nodes]
-    free = free_nodes(stack, given, started)
+    free = free_nodes((*stack, *of_srdf), given, started)
     # A stack of the user's own says what its nodes hear.
     has = has._replace(offered={}) if file.nodes else has
     fitting = fitted(own_fits, free, given, known, has, spec)
