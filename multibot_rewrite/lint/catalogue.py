@@ -59,6 +59,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
+            "fleet.checks.lacking",
             "fleet.checks.other_manager",
             "fleet.robots.hardware_services",
             "fleet.robots.joined_robots",

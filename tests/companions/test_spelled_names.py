@@ -280,7 +280,7 @@ DEFAULTS: dict[tuple[str, str], tuple[str | None, str | None]] = {
 @pytest.mark.parametrize(("kind", "default"), DEFAULTS)
 def test_a_default_that_robots_would_share_is_written_out(kind: str, default: str) -> None:
     """A stem and a prefix stand in front: a postfix has no place for them."""
-    node = SimpleNamespace(defaults=(Param("p", kind, default),))
+    node = SimpleNamespace(name="n", defaults=(Param("p", kind, default),))
     shared = "# multibot: the default is every robot's"
     off = "# multibot: the default puts the namespace before frames"
     comment = off if kind in ("off", "no_prefix") else shared

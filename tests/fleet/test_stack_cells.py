@@ -78,7 +78,7 @@ def test_a_fault_between_two_ends_of_the_build_is_seen(
         with monkeypatch.context() as patch:
             nothing = {
                 "_typed": lambda node, choice, wanted: node,
-                "_without_second_senders": lambda nodes, given, sent: nodes,
+                "_without_second_senders": lambda nodes, free, sent: nodes,
                 "fitting_frames": lambda member, nodes, sent: {},
             }
             where = "robots.robot_nodes" if wrong == "fitting_frames" else "robots.fitting"

@@ -44,9 +44,8 @@ SENSED = (
 _NAMING = make_naming("tf-per-robot")
 
 
-def driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
-    """Return the transforms that plugins of the description send, under the names that it has; none of
-    a real robot."""
+def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
+    """The transforms that plugins of the description send; none of a real robot."""
     if spec.simulator == REAL:
         return ()
     source = member.source
@@ -100,40 +99,57 @@ def changed_frames(
 
 class _Choice(NamedTuple):
     """A node whose commands are stamped or not as a parameter says: the type that it has now, whether
-    a file sets the parameter, and the node's section in the files."""
+    a file sets the parameter, and whether the build may."""
 
     node: NodeFacts
     type: str
     is_set: bool
-    section: GivenNode | None
+    is_free: bool
+
+
+class Described(NamedTuple):
+    """What a description has for the nodes of its robot: the transforms that its plugins send, the
+    topics of its sensors by type, and its root, where a usual link of the body is below it."""
+
+    sent: tuple[Edge, ...]
+    offered: Mapping[str, Sequence[str]]
+    root: str
+
+
+def described(member: Member, spec: RobotSpec) -> Described:
+    """Return what the description has, under the names that it has there."""
+    return Described(_driven(member, spec), _offered(member, spec), _root(member))
+
+
+def free_nodes(
+    stack: Iterable[NodeFacts], given: Iterable[GivenNode], started: Collection[str]
+) -> frozenset[str]:
+    """Return the nodes of a stack that no parameter file has a section for and no launch file of the
+    robot starts: what they are set to is the build's to choose."""
+    filed = [f"/{it.name}" for it in given]
+    names = {it.name for it in stack} - {*started}
+    return frozenset(it for it in names if not any(one.endswith(f"/{it}") for one in filed))
 
 
 def fitted(
     nodes: Sequence[NodeFacts],
+    free: Collection[str],
     given: Sequence[GivenNode],
     known: Mapping[str, NodeFacts],
-    sent: Sequence[Edge],
+    has: Described,
     spec: RobotSpec,
-    member: Member,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes, those without a section in a file with the settings that fit the others;
-    ``sent`` are the transforms of the description's plugins."""
-    root, offered = _root(member), _offered(member, spec)
+    """Return the nodes, those that are ``free`` with the settings that fit the others."""
     settled = [
-        it
-        if _section(it, given)
-        else _settled(_rooted(_as_listed(_hearing(it, nodes, offered), spec), root))
+        _settled(_rooted(_as_listed(_hearing(it, nodes, has.offered), spec), has.root))
+        if it.name in free
+        else it
         for it in nodes
     ]
-    choices = {it.node.name: it for it in _choices(settled, given, known)}
+    choices = {it.node.name: it for it in _choices(settled, free, given, known)}
     wanted = _wanted(tuple(choices.values()), settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
-    return tuple(_without_second_senders(typed, given, sent))
-
-
-def _section(node: NodeFacts, given: Iterable[GivenNode]) -> GivenNode | None:
-    last = f"/{node.name}"
-    return next((it for it in given if f"/{it.name}".endswith(last)), None)
+    return tuple(_without_second_senders(typed, free, has.sent))
 
 
 def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
@@ -218,16 +234,20 @@ def _values(node: NodeFacts) -> dict[str, Given]:
 
 
 def _choices(
-    nodes: Iterable[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+    nodes: Iterable[NodeFacts],
+    free: Collection[str],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
     for node in nodes:
         ends = [*_either(known.get(node.kind, node)), *_either(node)]
         if ends:
-            section = _section(node, given)
-            values = section.values if section else _values(node)
+            last = f"/{node.name}"
+            sections = (it.values for it in given if f"/{it.name}".endswith(last))
+            values = next(sections, _values(node))
             chosen = chosen_type(ends[0].types, lookup(node, values)) or ends[0].type
             is_set = not _switches(ends).isdisjoint(values)
-            yield _Choice(node, chosen, is_set, section)
+            yield _Choice(node, chosen, is_set, node.name in free)
 
 
 def _either(node: NodeFacts) -> Iterator[Endpoint]:
@@ -263,14 +283,14 @@ def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotS
         and (end.remapped or end.name) in topics
     ]
     fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
-    of_files = [it.type for it in choices if it.section]
+    of_files = [it.type for it in choices if not it.is_free]
     usual = {it.type for it in choices}
     return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
 
 
 def _typed(node: NodeFacts, choice: _Choice | None, wanted: str) -> NodeFacts:
     """The node with ends of the wanted type, and the parameter for it where that is not the default."""
-    if choice is None or choice.section:
+    if choice is None or not choice.is_free:
         return node
     switch = () if choice.type == wanted else _switch(choice, wanted)
     if switch is None:
@@ -296,17 +316,16 @@ def _of_type(end: Endpoint, wanted: str) -> Endpoint:
 
 
 def _without_second_senders(
-    nodes: Sequence[NodeFacts], given: Sequence[GivenNode], sent: Sequence[Edge]
+    nodes: Sequence[NodeFacts], free: Collection[str], sent: Sequence[Edge]
 ) -> Iterator[NodeFacts]:
-    """The nodes, those without a section with their transforms off where another one sends them: two
-    would take the frame from each other."""
+    """The nodes, free ones with their transforms off where another one sends them: two would take the
+    frame from each other."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
-    filed = {it.name for it in nodes if _section(it, given)}
-    in_files = (it for node in nodes if node.name in filed for it in sent_by(node, ""))
+    in_files = (it for node in nodes if node.name not in free for it in sent_by(node, ""))
     taken = {_place(it, bodies) for it in (*sent, *in_files)}
     for node in nodes:
         own = {_place(it, bodies) for it in sent_by(node, "")}
-        switch = "" if node.name in filed or own.isdisjoint(taken) else _switch_of(node)
+        switch = _switch_of(node) if node.name in free and not own.isdisjoint(taken) else ""
         yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
         taken |= set() if switch else own
 

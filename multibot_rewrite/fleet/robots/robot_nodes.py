@@ -29,9 +29,10 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting import (
     changed_frames,
-    driven,
+    described,
     fitted,
     fitting_frames,
+    free_nodes,
     with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
@@ -114,22 +115,26 @@ def robot_nodes(
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
-    nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
-    sent = driven(member, spec)
-    fits = fitting_frames(member, nodes, sent)
+    of_srdf = () if whole else tuple(_of_srdf(spec, nodes, known))
+    nodes = (*nodes, *of_srdf)
+    has, started = described(member, spec), launched.started if launched else {}
+    fits = fitting_frames(member, nodes, has.sent)
     known = {name: with_frames(it, fits) for name, it in known.items()}
-    fitting = fitted([with_frames(it, fits) for it in nodes], given, known, sent, spec, member)
+    own_fits = [with_frames(it, fits) for it in nodes]
+    free = free_nodes((*stack, *of_srdf), given, started)
+    # A stack of the user's own says what its nodes hear.
+    has = has._replace(offered={}) if file.nodes else has
+    fitting = fitted(own_fits, free, given, known, has, spec)
     frames, nodes = changed_frames(fitting, nodes), fitting
     written = _as_written(nodes, own, parameters, file.distro)
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
-    started = launched.started if launched else {}
     lost = set_by_launch(given, started, parameters)
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    more = unsimulated, arguments, frames, sent
+    more = unsimulated, arguments, frames, has.sent
     return RobotEvidence(given, known, marked, said, spawned, *more)
 
 
