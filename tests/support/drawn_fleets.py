@@ -475,8 +475,13 @@ CAUSES = {
         and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"]),
     ),
     "hardware of a simulator on a real robot": Cause(
-        lambda data, _: _first(data).update(description="gz_arm.urdf", simulator="none"),
-        lambda fleet: any(kind == "gz arm" and it == "none" for _, kind, it in rows(fleet)),
+        lambda data, _: _first(data).update(
+            description="gz_arm.urdf", simulator="none", stack=["ros2_control"]
+        ),
+        lambda fleet: any(
+            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("stack", ())
+            for row, kind, it in rows(fleet)
+        ),
     ),
     "two simulators": Cause(
         lambda data, _: (
@@ -514,7 +519,8 @@ CAUSES = {
             data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),
             _first(data).update(description="gz_arm.urdf", simulator="gazebo"),
         ),
-        lambda fleet: "domains" in fleet.data and any(kind == "gz arm" for kind in fleet.kinds),
+        lambda fleet: "domains" in fleet.data
+        and any(kind == "gz arm" for _, kind in simulated(fleet)),
     ),
 }
 
