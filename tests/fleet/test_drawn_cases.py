@@ -10,7 +10,6 @@ import pytest
 from drawn_builds import judge, run
 from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, Data, DrawnFleet
 
-from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
@@ -22,7 +21,7 @@ def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
     each = tuple(kinds.split(", "))
     texts = {it: KINDS[it].text.replace("ROBOT", "robot") for it in KINDS}
     files = {f"{it.replace(' ', '_')}{KINDS[it].ending}": text for it, text in texts.items()}
-    paths = {kind: path for kind, path in zip(KINDS, files, strict=True)}
+    paths = dict(zip(KINDS, files, strict=True))
     rows = [
         {"description": paths[kind], "pose": {"x": 3 * at}, **row}
         for at, (row, kind) in enumerate(zip(robots, each, strict=True))
@@ -36,7 +35,8 @@ CASES = {
     # base_link and lidar_link are alike behind a long prefix, and no slip of each other.
     "a prefix that makes frames alike": fleet(
         f"{CART}, {GZ}", {"name": "burger", "prefix": "burger0"}, {"name": "left", "prefix": "left1"},
-        layout="both", separators={"link": "_"},
+        layout="both", separators={"link": "_"}, stack="teleop",
+        companions={"params": ["nav.yaml"]},
     ),
     "a drive of the other robot": fleet(
         f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", stack="nav2"
@@ -120,14 +120,3 @@ def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
     judge(CASES["configs of one name"], tmp_path)
     names = {it.name for it in (tmp_path / "out").glob("*.rviz")}
     assert names == {"one.rviz", "arm_one.rviz"}
-
-
-def test_the_bridge_to_another_robot_is_still_an_error(tmp_path: Path) -> None:
-    """Swapped names make no exception: the rows themselves are compared."""
-    judge(CASES["models with the names of each other"], tmp_path)
-    rows = tmp_path / "out" / "a" / "bridge.yaml"
-    text = rows.read_text()
-    assert "/a/cmd_vel" in text
-    rows.write_text(text.replace("gz_topic_name: /a/cmd_vel", "gz_topic_name: /b/cmd_vel"))
-    launch = str(tmp_path / "out" / "fleet.launch.py")
-    assert main(["check-launch", launch, "--select", "MG705"]) in (0, 1, 3)

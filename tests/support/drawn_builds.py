@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drawn fleets are built: each builds as its file says, or ends with an error that is in its input.
 
-    python tests/support/drawn_builds.py [COUNT] [SEED]     with a fresh seed, which is printed
+python tests/support/drawn_builds.py [COUNT] [SEED]     with a fresh seed, which is printed
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import contextlib
 import io
 import os
 import random
-import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -18,7 +17,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from drawn_fleets import Data, DrawnFleet, causes_of, drawn, rows, simulated
+from drawn_fleets import Data, DrawnFleet, causes_of, drawn, simulated
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
@@ -27,14 +26,15 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.read import read_own
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.records import LaunchGraph
 
 NAV2 = {"nav2", "nav2_slam", "navigation", "nav2_composed"}
 LATE = ("kilted", "lyrical", "rolling")
 # What is known and not mended yet: take a line out to have such fleets judged.
 KNOWN: dict[str, Callable[[DrawnFleet], bool]] = {
     "the bridge's Twist and the monitor's TwistStamped": lambda it: (
-        it.data["distro"] in LATE and any(NAV2 & {*row.get("stack", ())} for row, _ in simulated(it))
+        it.data["distro"] in LATE
+        and any(NAV2 & {*row.get("stack", ())} for row, _ in simulated(it))
     ),
     "a drive and a filter both send the odometry": lambda it: any(
         "robot_localization" in row.get("stack", ()) for row, _ in simulated(it)
@@ -109,7 +109,7 @@ def _without_paths(data: bytes) -> bytes:
 def _assert_started(fleet: DrawnFleet, out: Path, folder: Path) -> None:
     """The launch file starts each robot under its names, and all that is planned.
 
-    A domain_bridge calls its nodes by the domains that its file names, which check-launch does not read.
+    A domain_bridge calls its nodes by the domains in its file, which check-launch does not read.
     """
     launch = str(out / "fleet.launch.py")
     graph = read_own(launch, str(folder))
@@ -119,17 +119,24 @@ def _assert_started(fleet: DrawnFleet, out: Path, folder: Path) -> None:
         # 3: what is not known may hide something.
         assert code in (0, 3), said
         assert " error: " not in said, said
-    spaces = [row.get("namespace", row["name"]).strip("/") for row in fleet.data["robots"]]
-    layout = fleet.data["layout"]
-    for row, space in zip(fleet.data["robots"], spaces, strict=True):
-        own = [it for it in graph.nodes if it.executable == "robot_state_publisher"]
-        where = {f"{it.namespace.rstrip('/')}/{it.name}" for it in own}
-        side = fleet.data["affix"]
-        named = f"{space}_robot_state_publisher" if side == "prefix" else f"robot_state_publisher_{space}"
-        wanted = f"/{named}" if layout == "postfix" else f"/{space}/robot_state_publisher"
-        assert wanted in where, (wanted, where)
+    found = [it for it in graph.nodes if it.executable == "robot_state_publisher"]
+    where = {f"{it.namespace.rstrip('/')}/{it.name}" for it in found}
+    assert where == {*map(_publisher(fleet), fleet.data["robots"])}
     models = [row.get("model", row["name"]) for row, _ in simulated(fleet)]
     assert sorted(_spawned(graph)) == sorted(models)
+
+
+def _publisher(fleet: DrawnFleet) -> Callable[[Data], str]:
+    """How each robot's robot_state_publisher is called, by the layout."""
+
+    def name(row: Data) -> str:
+        space = row.get("namespace", row["name"]).strip("/")
+        if fleet.data["layout"] != "postfix":
+            return f"/{space}/robot_state_publisher"
+        is_first = fleet.data["affix"] == "prefix"
+        return f"/{space}_robot_state_publisher" if is_first else f"/robot_state_publisher_{space}"
+
+    return name
 
 
 def _spawned(graph: LaunchGraph) -> Iterator[str]:

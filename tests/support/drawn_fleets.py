@@ -182,7 +182,20 @@ Visualization Manager:
 # Robots are called as one likes: like each other's parts, their files, frames, topics, words of YAML,
 # Python or this package.
 NAMES = (
-    *("r1", "r2", "robot1", "robot2", "robot10", "r", "r1_a", "r1_b", "a", "robot", "rover", "scout"),
+    *(
+        "r1",
+        "r2",
+        "robot1",
+        "robot2",
+        "robot10",
+        "r",
+        "r1_a",
+        "r1_b",
+        "a",
+        "robot",
+        "rover",
+        "scout",
+    ),
     *("burger", "waffle", "arm", "left", "right", "left_arm", "map", "base_link", "scan", "gz"),
     *("name", "odom", "tf", "cmd_vel", "lidar_link", "clock", "bridge", "rviz", "launch", "world"),
     *("start", "sim", "params", "plan", "no", "null", "true", "off", "file", "model", "Robot1"),
@@ -261,7 +274,9 @@ class _Making(NamedTuple):
 def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
     """The kinds of one simulator; a simulator's hardware is on no real robot."""
     left = GZ if maybe(draw, 2) else CLASSIC
-    known = [it for it, kind in KINDS.items() if kind.simulator != left and release in kind.releases]
+    known = [
+        it for it, kind in KINDS.items() if kind.simulator != left and release in kind.releases
+    ]
     return [it for it in known if it != "gz arm" or simulator != "none"]
 
 
@@ -277,7 +292,7 @@ def _own_words(draw: st.DrawFn, key: str, names: list[str], layout: str) -> list
 
 
 def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) -> Data:
-    draw, data, files, shared = making
+    draw, data, _, shared = making
     its = KINDS[kind]
     row: Data = {"name": name}
     row |= {data["affix"] if key == "tag" else key: word for key, word in words.items()}
@@ -288,7 +303,9 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
         row["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, 255])))
     if maybe(draw, 1) and kind != "gz arm":
         row["simulator"] = draw(st.sampled_from(("none", "gazebo")))
-    stacks = [it for it in STACKS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it]
+    stacks = [
+        it for it in STACKS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
+    ]
     for key, made in (
         ("stack", lambda: draw(st.sampled_from(stacks))),
         ("companions", lambda: _companions(making, kind, name)),
@@ -307,7 +324,11 @@ def _description(making: _Making, kind: str, name: str) -> str:
     path = draw(st.sampled_from((stem, stem, name, f"{name}_description/robot", f"urdf/{stem}")))
     title = draw(st.sampled_from((stem, name, "robot"))).replace("world", "rover")
     # A file that is there already is the first robot's.
-    path = f"{path}{its.ending}" if f"{path}{its.ending}" not in making.files else f"{stem}{its.ending}"
+    path = (
+        f"{path}{its.ending}"
+        if f"{path}{its.ending}" not in making.files
+        else f"{stem}{its.ending}"
+    )
     making.files.setdefault(path, its.text.replace("ROBOT", title))
     if "controllers.yaml" in its.text:
         making.files[os.path.join(os.path.dirname(path), "controllers.yaml")] = CONTROLLERS
@@ -423,24 +444,32 @@ CAUSES = {
     ),
     "levels where names get no namespace": Cause(
         lambda data, _: (data.update(layout="postfix"), _first(data).update(namespace="a/b")),
-        lambda fleet: fleet.data["layout"] == "postfix"
-        and any("/" in row.get("namespace", "").strip("/") for row in fleet.data["robots"]),
+        lambda fleet: (
+            fleet.data["layout"] == "postfix"
+            and any("/" in row.get("namespace", "").strip("/") for row in fleet.data["robots"])
+        ),
     ),
     "a postfix at run time": Cause(
         lambda data, _: data.update(layout="frame-prefix", affix="postfix"),
         lambda fleet: (fleet.data["layout"], fleet.data["affix"]) == ("frame-prefix", "postfix"),
     ),
     "a file that is not there": Cause(_with("description", "nosuch.urdf"), _missing),
-    "an unknown key": Cause(_with("nmae", "x"), lambda fleet: any("nmae" in it for it in fleet.data["robots"])),
+    "an unknown key": Cause(
+        _with("nmae", "x"), lambda fleet: any("nmae" in it for it in fleet.data["robots"])
+    ),
     "an unknown stack": Cause(
-        _with("stack", ["nav3"]), lambda fleet: any("nav3" in it.get("stack", ()) for it in fleet.data["robots"])
+        _with("stack", ["nav3"]),
+        lambda fleet: any("nav3" in it.get("stack", ()) for it in fleet.data["robots"]),
     ),
     "arguments without a xacro": Cause(
         _with("arguments", {"mast": "low"}),
-        lambda fleet: any("arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)),
+        lambda fleet: any(
+            "arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)
+        ),
     ),
     "two underscores": Cause(
-        _with("name", "r__1"), lambda fleet: any("__" in row["name"] for row in fleet.data["robots"])
+        _with("name", "r__1"),
+        lambda fleet: any("__" in row["name"] for row in fleet.data["robots"]),
     ),
     "a step without a count": Cause(
         _with("step", {"x": 1}), lambda fleet: any("step" in row for row in fleet.data["robots"])
@@ -467,12 +496,15 @@ CAUSES = {
     ),
     "MoveIt where links get their prefix at run time": Cause(
         lambda data, fleet: (
-            data.update(layout="frame-prefix", affix="prefix"), data.pop("separators", None),
+            data.update(layout="frame-prefix", affix="prefix"),
+            data.pop("separators", None),
             [row.pop("postfix", None) for row in data["robots"]],
             _first(data).update(stack=["moveit"], description="arm.urdf", srdf="arm.srdf"),
         ),
-        lambda fleet: fleet.data["layout"] == "frame-prefix"
-        and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"]),
+        lambda fleet: (
+            fleet.data["layout"] == "frame-prefix"
+            and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"])
+        ),
     ),
     "hardware of a simulator on a real robot": Cause(
         lambda data, _: _first(data).update(
@@ -497,11 +529,15 @@ CAUSES = {
             data.update(layout="tf-per-robot"),
             _first(data).update(description="world.urdf", simulator="gazebo"),
         ),
-        lambda fleet: fleet.data["layout"] in ("tf-per-robot", "frame-prefix")
-        and any(row["description"] == "world.urdf" for row, _ in simulated(fleet)),
+        lambda fleet: (
+            fleet.data["layout"] in ("tf-per-robot", "frame-prefix")
+            and any(row["description"] == "world.urdf" for row, _ in simulated(fleet))
+        ),
     ),
     "a parameter file is called as one that is written": Cause(
-        lambda data, _: _first(data).update(companions={"params": ["start_pose.yaml"]}, pose={"x": -9}),
+        lambda data, _: _first(data).update(
+            companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
+        ),
         lambda fleet: any(
             "pose" in row and "start_pose.yaml" in row.get("companions", {}).get("params", ())
             for row in fleet.data["robots"]
@@ -519,8 +555,9 @@ CAUSES = {
             data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),
             _first(data).update(description="gz_arm.urdf", simulator="gazebo"),
         ),
-        lambda fleet: "domains" in fleet.data
-        and any(kind == "gz arm" for _, kind in simulated(fleet)),
+        lambda fleet: (
+            "domains" in fleet.data and any(kind == "gz arm" for _, kind in simulated(fleet))
+        ),
     ),
 }
 

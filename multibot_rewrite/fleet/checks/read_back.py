@@ -82,8 +82,8 @@ def _of_launch(
     found: Launched, whose: Whose, told: Set[str], elsewhere: Set[str]
 ) -> Iterator[Finding]:
     """What ``multibot check-launch`` calls an error and the build has not ``told``, but for names that
-    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources. ``whose``
-    the names are is known by the plan: a robot may have other words in frames than in topics."""
+    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources.
+    ``whose`` is by the plan: a robot may have other words in frames than in topics."""
     from multibot_rewrite.lint.launched import bridge_findings
 
     seen = index(found.system, whose)

@@ -111,7 +111,7 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
 
 
 def _beside(robot: RobotSpec, choice: _Choice) -> _Choice:
-    """Return the choice; nothing where a given value is the robot's name: a name would have it twice."""
+    """Return the choice; none where a given value is the robot's name: a name would have it twice."""
     given = ((name, text) for name, text in robot.arguments.items() if ROBOT not in text)
     named = next((name for name, text in given if name_robot({name: text}, robot.words)), "")
     if not (named and choice.value):
