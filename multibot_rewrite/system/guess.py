@@ -197,11 +197,12 @@ def _not_parts(
 
 
 def _sent_in(namespaces: Collection[str], edges: Iterable[Edge]) -> Mapping[str, frozenset[str]]:
-    """Return the namespaces whose nodes send each frame."""
+    """Return the namespaces whose nodes send each frame. On a topic of all robots nobody knows who of
+    its senders sends a frame."""
     found: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
         spaces = {it for it in namespaces for node in edge.publishers if node.startswith(f"{it}/")}
-        for frame in (edge.child, edge.parent):
+        for frame in (edge.child, edge.parent) if len(spaces) == 1 else ():
             found[frame] |= spaces
     return {frame: frozenset(spaces) for frame, spaces in found.items()}
 
