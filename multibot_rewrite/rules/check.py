@@ -12,7 +12,7 @@ from fnmatch import fnmatchcase
 from types import ModuleType
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
@@ -57,6 +57,7 @@ from multibot_rewrite.rules.system import nodes as running_nodes
 from multibot_rewrite.rules.system import transforms as any_transforms
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.names import topic_names_miss
+from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
@@ -199,7 +200,8 @@ def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Fin
         absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
         compared = it.code in differing.COMPARED and not told.isdisjoint(it.names)
         if not (by_plan or absent or compared or _is_meant(plan, seen, it)):
-            yield it
+            # Nothing sends it by the plan either, whatever another robot has.
+            yield it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
 
 
 def _all_in(finding: Finding, loose: Set[str]) -> bool:

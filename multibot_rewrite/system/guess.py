@@ -41,7 +41,6 @@ _PART = re.compile(
     r"|gripper|controller|manager|server|caster|steering|finger|torso).*"
 )
 _NUMBER = re.compile(r"\d+")
-NOT_SENT: Mapping[str, frozenset[str]] = {}
 
 
 class GuessedRobot(NamedTuple):
@@ -78,8 +77,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
-        sent = _sent_in(namespaces, graph.edges)
-        return tuple(with_frames(it, frames, sent) for it in found)
+        return tuple(with_frames(it, frames) for it in found)
     words = _last_words(graph)
     if words:
         return tuple(with_frames(GuessedRobot(it, ""), frames) for it in words)
@@ -225,31 +223,16 @@ def _not_parts(
     return {word for word, found in above.items() if found <= {word}}
 
 
-def _sent_in(namespaces: Collection[str], edges: Iterable[Edge]) -> Mapping[str, frozenset[str]]:
-    """Return the namespaces whose nodes send each frame."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for edge in edges:
-        spaces = {it for it in namespaces for node in edge.publishers if node.startswith(f"{it}/")}
-        for frame in (edge.child, edge.parent):
-            found[frame] |= spaces
-    return {frame: frozenset(spaces) for frame, spaces in found.items()}
-
-
-def with_frames(
-    robot: GuessedRobot, frames: Iterable[str], sent: Mapping[str, frozenset[str]] = NOT_SENT
-) -> GuessedRobot:
-    """With the way in which most frames have its name. A word of frames that nodes of other robots send
-    is no robot's: ``link`` in ``base_link``."""
+def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
+    """With the way in which most frames have its name."""
     word = robot.namespace.rpartition("/")[2] or robot.name
     times: dict[tuple[str, str], int] = defaultdict(int)
     for frame in frames:
-        spaces = sent.get(frame, frozenset())
-        counts = -1 if spaces - {robot.namespace} else 1
         for separator in ("/", *SEPARATORS):
-            times[word + separator, ""] += counts * frame.startswith(word + separator)
-            times["", separator + word] += counts * frame.endswith(separator + word)
+            times[word + separator, ""] += frame.startswith(word + separator)
+            times["", separator + word] += frame.endswith(separator + word)
     way = max(times, key=times.__getitem__, default=("", ""))
-    return robot._replace(before=way[0], behind=way[1]) if times.get(way, 0) > 0 else robot
+    return robot._replace(before=way[0], behind=way[1]) if times.get(way) else robot
 
 
 def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:

@@ -6,7 +6,10 @@ What a draw may hold comes from docs/fleet-file.md and the schema, never from wh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
+from itertools import combinations
+from math import dist
 from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
@@ -109,44 +112,41 @@ def _with_argument(text: str) -> str:
 
 
 MOBILE, MANIPULATOR = "mobile", "arm"
+GZ, CLASSIC, NONE = "gz", "classic", ""
 
 
 class Kind(NamedTuple):
-    """A sort of robot: the text of its description for a robot element called so, its ending, what it
-    is, and the releases that have its plugins."""
+    """A sort of robot: its description (a robot element called ROBOT) with the ending of its file, what
+    it is, the simulator that its plugins are for, and the releases that have these."""
 
     text: str
     ending: str
     what: str
+    simulator: str
     releases: tuple[str, ...] = RELEASES
 
 
 KINDS = {
-    "gz rover": Kind(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), ".urdf", MOBILE),
-    "plain cart": Kind(_robot("ROBOT", *BASE), ".urdf", MOBILE),
+    "gz rover": Kind(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), ".urdf", MOBILE, GZ),
+    "plain cart": Kind(_robot("ROBOT", *BASE), ".urdf", MOBILE, NONE),
     "xacro rover": Kind(
         _with_argument(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE, xacro=True)),
-        ".urdf.xacro",
-        MOBILE,
+        ".urdf.xacro", MOBILE, GZ,
     ),
-    "classic rover": Kind(_robot("ROBOT", *BASE, CLASSIC_DRIVE), ".urdf", MOBILE, ("humble",)),
+    "classic rover": Kind(
+        _robot("ROBOT", *BASE, CLASSIC_DRIVE), ".urdf", MOBILE, CLASSIC, ("humble",)
+    ),
     "arm": Kind(
         _robot("ROBOT", *ARM, CONTROL.replace("HARDWARE", "mock_components/GenericSystem")),
-        ".urdf",
-        MANIPULATOR,
+        ".urdf", MANIPULATOR, NONE,
     ),
     "gz arm": Kind(
         _robot(
-            "ROBOT",
-            *ARM,
-            CONTROL.replace("HARDWARE", "gz_ros2_control/GazeboSimSystem"),
-            GZ_CONTROL.replace("controllers.yaml", "$(find my_arm)/controllers.yaml"),
+            "ROBOT", *ARM, CONTROL.replace("HARDWARE", "gz_ros2_control/GazeboSimSystem"), GZ_CONTROL
         ),
-        ".urdf",
-        MANIPULATOR,
-        ("jazzy", "kilted", "lyrical", "rolling"),
+        ".urdf", MANIPULATOR, GZ, RELEASES[1:],
     ),
-}
+}  # fmt: skip
 SRDF = """\
 <robot name="ROBOT"><group name="arm"><joint name="shoulder"/><joint name="elbow"/></group></robot>
 """
@@ -174,47 +174,53 @@ Visualization Manager:
   Class: ""
   Displays:
     - {Class: rviz_default_plugins/LaserScan, Name: scan, Topic: {Value: /scan}}
-    - {Class: rviz_default_plugins/RobotModel, Name: model, Description Topic: {Value: /robot_description}}
+    - {Class: rviz_default_plugins/TF, Name: TF}
   Global Options:
     Fixed Frame: map
 """
 
-# Plain words that a newcomer may call a robot, some of which mean something elsewhere.
+# Robots are called as one likes: like each other's parts, their files, frames, topics, words of YAML,
+# Python or this package.
 NAMES = (
     *(
         "r1",
         "r2",
+        "robot1",
+        "robot2",
+        "robot10",
         "r",
         "r1_a",
         "r1_b",
         "a",
-        "robot1",
-        "robot2",
-        "robot10",
         "robot",
         "rover",
         "scout",
     ),
     *("burger", "waffle", "arm", "left", "right", "left_arm", "map", "base_link", "scan", "gz"),
-    *("name", "world", "odom", "tf", "cmd_vel", "lidar_link", "clock", "bridge", "rviz", "launch"),
+    *("name", "odom", "tf", "cmd_vel", "lidar_link", "clock", "bridge", "rviz", "launch", "world"),
     *("start", "sim", "params", "plan", "no", "null", "true", "off", "file", "model", "Robot1"),
     *("base", "wheel", "joint", "link", "shared_nodes", "site", "self", "None", "partial"),
 )
-WORDS = (*("alpha", "beta", "p1", "p2", "red", "blue", "site_a", "fleet_1"), *NAMES)
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
-MOBILE_STACKS = (
-    *([], ["nav2"], ["localization"], ["slam_toolbox"], ["nav2_slam"], ["robot_localization"]),
-    *(["teleop"], ["nav2_composed"], ["navigation"], ["nav2", "robot_localization"]),
-)
-ARM_STACKS = ([], ["ros2_control"], ["ros2_control", "moveit"], ["moveit"])
+STACKS = {
+    MOBILE: (
+        *([], ["nav2"], ["localization"], ["slam_toolbox"], ["nav2_slam"], ["robot_localization"]),
+        *(["teleop"], ["nav2_composed"], ["navigation"], ["localization", "teleop"]),
+    ),
+    MANIPULATOR: ([], ["ros2_control"], ["ros2_control", "moveit"], ["moveit"]),
+}
+OWN = ("namespace", "tag", "model")
 
 
 class DrawnFleet(NamedTuple):
-    """A fleet as data, the files that it names, and what was done to it on purpose."""
+    """What a fleet file holds, the files that it names, and the kind of each of its robots."""
 
     data: Data
     files: Mapping[str, str]
-    kinds: tuple[str, ...] = ()
+    kinds: tuple[str, ...]
+
+
+# ---------------------------------------------------------------- fleets that build
 
 
 def maybe(draw: st.DrawFn, of_ten: int = 3) -> bool:
@@ -224,140 +230,369 @@ def maybe(draw: st.DrawFn, of_ten: int = 3) -> bool:
 
 @st.composite
 def fleets(draw: st.DrawFn) -> DrawnFleet:
-    """A fleet that its pages allow."""
-    release = draw(st.sampled_from(RELEASES))
-    layout = draw(st.sampled_from(LAYOUTS))
-    data: Data = {"layout": layout, "distro": release}
-    side = "prefix" if layout == "frame-prefix" else draw(st.sampled_from(("prefix", "postfix")))
-    if layout != "frame-prefix" or draw(st.booleans()):
-        data["affix"] = side
-    if maybe(draw, 2) and layout != "frame-prefix":
+    """A fleet that its pages allow, but for what chance brings together."""
+    release, layout = draw(st.sampled_from(RELEASES)), draw(st.sampled_from(LAYOUTS))
+    at_run_time = layout == "frame-prefix"
+    side = "prefix" if at_run_time else draw(st.sampled_from(("prefix", "postfix")))
+    data: Data = {"layout": layout, "distro": release, "affix": side}
+    if maybe(draw, 2) and not at_run_time:
         data["separators"] = {"link": draw(st.sampled_from(("_", "-")))}
     if maybe(draw, 2):
         data["simulator"] = draw(st.sampled_from(("none", "gazebo")))
-    if maybe(draw, 1):
-        data["use_sim_time"] = draw(st.booleans())
-    if maybe(draw, 1):
-        data["sros2"] = True
+    data |= {key: True for key in ("sros2", "fill_arguments") if maybe(draw, 1)}
     if maybe(draw, 1):
         data["zenoh"] = {"router": "tcp/10.0.0.1:7447"}
     names = draw(st.lists(st.sampled_from(NAMES), min_size=2, max_size=4, unique=True))
-    files: dict[str, str] = {}
-    kinds = _kinds(draw, release, data.get("simulator", ""))
+    known = _kinds(draw, release, data.get("simulator", ""))
+    kinds = [draw(st.sampled_from(known))] * len(names)
+    if draw(st.booleans()):
+        kinds = [draw(st.sampled_from(known)) for _ in names]
+    making = _Making(draw, data, {}, {})
+    own = draw(st.sampled_from(((), ("tag",), ("namespace",), ("model",), OWN)))
+    words = {key: _own_words(draw, key, names, layout) for key in own}
     posed = maybe(draw, 8)
-    first = draw(st.sampled_from(kinds))
-    alike = draw(st.booleans())
-    robots, used = [], []
-    namespaced = layout != "postfix"
-    free = {key: list(WORDS) for key in ("namespace", "tag", "model")}
-    tag = draw(
-        st.sampled_from(((), (side,), ("namespace",), ("model",), (side, "namespace", "model")))
-    )
-    # Robots of one kind have the files of one, unless they differ in them.
-    shared: Data = {}
-    for at, name in enumerate(names):
-        kind = first if alike else draw(st.sampled_from(kinds))
-        used.append(kind)
-        robot: Data = {"name": name}
-        for key in tag:
-            robot[key] = _own_word(draw, key, name, at, namespaced)
-        robot["description"] = _described(draw, kind, name, files, names)
-        if KINDS[kind].ending.endswith("xacro") and maybe(draw, 5):
-            robot["arguments"] = {"mast": draw(st.sampled_from(("low", "high", name)))}
-        if posed:
-            robot["pose"] = _pose(draw, at)
-        if maybe(draw, 2):
-            robot["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, at])))
-        what = KINDS[kind].what
-        stacks = MOBILE_STACKS if what == MOBILE else ARM_STACKS
-        if layout == "frame-prefix":
-            stacks = [it for it in stacks if "moveit" not in it]
-        key = f"stack {what}"
-        own = key not in shared or maybe(draw, 2)
-        stack = draw(st.sampled_from(stacks)) if own else shared[key]
-        shared.setdefault(key, stack)
-        if stack:
-            robot["stack"] = stack[0] if len(stack) == 1 else list(stack)
-        if "moveit" in stack:
-            robot["srdf"] = _written(
-                draw, files, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name
-            )
-        key = f"companions {what}"
-        own = key not in shared or maybe(draw, 2)
-        given = _companions(draw, what, files, name) if own else shared[key]
-        shared.setdefault(key, given)
-        if given:
-            robot["companions"] = dict(given)
-        if maybe(draw, 1) and kind != "gz arm":
-            robot["simulator"] = draw(st.sampled_from(("none", "gazebo")))
-        robots.append(robot)
-    data["robots"] = robots
-    _domains(draw, data, names)
-    return DrawnFleet(data, files, tuple(used))
+    data["robots"] = [
+        _robot_row(making, name, kinds[at], {key: it[at] for key, it in words.items()})
+        | ({"pose": _pose(draw, at)} if posed else {})
+        for at, name in enumerate(names)
+    ]
+    if maybe(draw, 1) and "gz arm" not in kinds:
+        data["domains"] = {name: 11 + at for at, name in enumerate(names)}
+        data |= {"crossing": ["robot_description"]} if draw(st.booleans()) else {}
+    return DrawnFleet(data, making.files, tuple(kinds))
+
+
+class _Making(NamedTuple):
+    """A fleet that is made; ``shared`` is what robots of one sort have from the first of them."""
+
+    draw: st.DrawFn
+    data: Data
+    files: dict[str, str]
+    shared: Data
 
 
 def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
-    """The kinds of robots of one simulator."""
-    family = (
-        ("classic rover", "plain cart", "arm")
-        if maybe(draw, 2)
-        else tuple(KINDS)[:3] + tuple(KINDS)[4:]
-    )
-    known = [it for it in family if release in KINDS[it].releases]
+    """The kinds of one simulator; a simulator's hardware is on no real robot."""
+    left = GZ if maybe(draw, 2) else CLASSIC
+    known = [
+        it for it, kind in KINDS.items() if kind.simulator != left and release in kind.releases
+    ]
     return [it for it in known if it != "gz arm" or simulator != "none"]
 
 
-def _own_word(draw: st.DrawFn, key: str, name: str, at: int, namespaced: bool) -> str:
-    forms = [f"{name}_x", f"w{at}", f"x_{name}", f"{name}{at}"]
-    if key == "namespace" and namespaced:
-        forms += [f"site/{name}", f"/site/{name}", f"fleet_{at}/site/{name}"]
-    if key == "model":
-        forms += [f"{name}-1", f"{name}.m", f"m/{name}", f"{name}_red"]
-    return draw(st.sampled_from(forms))
+def _own_words(draw: st.DrawFn, key: str, names: list[str], layout: str) -> list[str]:
+    """A word for each robot: of its own, with its name in it, or another robot's name."""
+    if maybe(draw, 2):
+        return [*names[1:], names[0]]
+    forms = ["{}_x", "x_{}", "w{at}", "{}{at}"]
+    forms += ["site/{}", "/fleet/site{at}/{}"] if key == "namespace" and layout != "postfix" else []
+    forms += ["{}-1", "{}.m", "m/{}", "{}_red"] if key == "model" else []
+    texts = [draw(st.sampled_from(forms)).format(it, at=at) for at, it in enumerate(names)]
+    return texts if len({*texts}) == len(texts) else names
 
 
-def _described(
-    draw: st.DrawFn, kind: str, name: str, files: dict[str, str], names: list[str]
-) -> str:
+def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) -> Data:
+    draw, data, _, shared = making
     its = KINDS[kind]
-    stem = kind.replace(" ", "_")
-    form = draw(st.integers(0, 5))
-    path = {3: f"{name}", 4: f"{name}_description/robot", 5: f"urdf/{stem}"}.get(form, stem)
-    title = {2: name, 3: name}.get(form, stem)
-    path = f"{path}{its.ending}"
-    files.setdefault(path, its.text.replace("ROBOT", title))
+    row: Data = {"name": name}
+    row |= {data["affix"] if key == "tag" else key: word for key, word in words.items()}
+    row["description"] = _description(making, kind, name)
+    if its.ending.endswith("xacro") and draw(st.booleans()):
+        row["arguments"] = {"mast": draw(st.sampled_from(("low", "high")))}
+    if maybe(draw, 2):
+        row["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, 255])))
+    if maybe(draw, 1) and kind != "gz arm":
+        row["simulator"] = draw(st.sampled_from(("none", "gazebo")))
+    stacks = [
+        it for it in STACKS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
+    ]
+    for key, made in (
+        ("stack", lambda: draw(st.sampled_from(stacks))),
+        ("companions", lambda: _companions(making, kind, name)),
+    ):
+        value = made() if (key, kind) not in shared or maybe(draw, 2) else shared[key, kind]
+        shared.setdefault((key, kind), value)
+        row |= {key: value} if value else {}
+    if "moveit" in row.get("stack", ()):
+        row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name)
+    return row
+
+
+def _description(making: _Making, kind: str, name: str) -> str:
+    """The path of a description: called by its kind, like its robot, or like all others."""
+    draw, its, stem = making.draw, KINDS[kind], kind.replace(" ", "_")
+    path = draw(st.sampled_from((stem, stem, name, f"{name}_description/robot", f"urdf/{stem}")))
+    title = draw(st.sampled_from((stem, name, "robot"))).replace("world", "rover")
+    # A file that is there already is the first robot's.
+    path = (
+        f"{path}{its.ending}"
+        if f"{path}{its.ending}" not in making.files
+        else f"{stem}{its.ending}"
+    )
+    making.files.setdefault(path, its.text.replace("ROBOT", title))
+    if "controllers.yaml" in its.text:
+        making.files[os.path.join(os.path.dirname(path), "controllers.yaml")] = CONTROLLERS
     return path
 
 
-def _written(
-    draw: st.DrawFn, files: dict[str, str], stem: str, ending: str, text: str, name: str
-) -> str:
-    path = draw(st.sampled_from((stem, f"config/{stem}", name, f"{name}/{stem}", f"{stem}_{name}")))
-    files.setdefault(f"{path}{ending}", text)
-    return f"{path}{ending}"
+def _written(making: _Making, stem: str, ending: str, text: str, name: str) -> str:
+    paths = (stem, f"config/{stem}", f"my_{name}", f"{name}/{stem}", f"{stem}_{name}")
+    path = f"{making.draw(st.sampled_from(paths))}{ending}"
+    making.files.setdefault(path, text)
+    return path
 
 
-def _companions(draw: st.DrawFn, what: str, files: dict[str, str], name: str) -> Data:
+def _companions(making: _Making, kind: str, name: str) -> Data:
+    draw, what = making.draw, KINDS[kind].what
     found: Data = {}
-    if maybe(draw, 5):
+    if draw(st.booleans()) and kind != "gz arm":
         text = NAV_PARAMS if what == MOBILE else CONTROLLERS
-        found["params"] = _written(draw, files, f"{what}_params", ".yaml", text, name)
+        found["params"] = [_written(making, f"{what}_params", ".yaml", text, name)]
+    if maybe(draw, 2) and what == MOBILE:
+        given = {"amcl": {"base_frame_id": "base_link", "scan_topic": "scan"}}
+        found["params"] = [*found.get("params", ()), given]
     if maybe(draw, 2):
-        found["rviz"] = _written(draw, files, "one", ".rviz", RVIZ, name)
+        found["rviz"] = _written(making, "one", ".rviz", RVIZ, name)
     return found
 
 
 def _pose(draw: st.DrawFn, at: int) -> Data:
     pose: Data = {"x": 3 * at + draw(st.sampled_from((0, 0.0, 0.5, 1e-05)))}
-    if maybe(draw):
-        pose["y"] = draw(st.sampled_from((-1, 0.25, 10)))
-    if maybe(draw):
-        pose["yaw"] = draw(st.sampled_from((1.57, -3.14, 0)))
-    return pose
+    pose |= {"y": draw(st.sampled_from((-1, 0.25, 10)))} if maybe(draw) else {}
+    return pose | ({"yaw": draw(st.sampled_from((1.57, -3.14, 0)))} if maybe(draw) else {})
 
 
-def _domains(draw: st.DrawFn, data: Data, names: list[str]) -> None:
-    if maybe(draw, 1):
-        data["domains"] = {name: 11 + at for at, name in enumerate(names)}
-        if maybe(draw, 5):
-            data["crossing"] = ["odom"]
+# ---------------------------------------------------------------- causes of errors
+
+
+def rows(fleet: DrawnFleet) -> Iterator[tuple[Data, str, str]]:
+    """Each robot with its kind, and what ``simulator`` says of it."""
+    for row, kind in zip(fleet.data["robots"], fleet.kinds, strict=True):
+        yield row, kind, row.get("simulator", fleet.data.get("simulator", ""))
+
+
+def simulated(fleet: DrawnFleet) -> list[tuple[Data, str]]:
+    """The robots that are put into a simulator: hardware of ros2_control alone is a real robot's."""
+    return [(row, kind) for row, kind, it in rows(fleet) if it != "none" and (kind != "arm" or it)]
+
+
+def _share_a_word(fleet: DrawnFleet) -> bool:
+    side = fleet.data["affix"]
+    every = [
+        [row["name"] for row in fleet.data["robots"]],
+        *([row.get(key, row["name"]).strip("/") for row in fleet.data["robots"]]
+          for key in ("namespace", side, "model")),
+        [str(sorted(row["pose"].items())) for row in fleet.data["robots"] if "pose" in row],
+    ]  # fmt: skip
+    return any(len({*own}) < len(own) for own in every)
+
+
+def _stand_in_each_other(fleet: DrawnFleet) -> bool:
+    """The boxes reach a quarter of a metre; robots that are all at the origin are placed by others."""
+    poses = [row.get("pose", {}) for row, _ in simulated(fleet)]
+    places = [tuple(it.get(axis, 0) for axis in "xyz") for it in poses]
+    moved = any(any(it) for it in places)
+    return moved and any(dist(*pair) < 0.2 for pair in combinations(places, 2))
+
+
+def _missing(fleet: DrawnFleet) -> bool:
+    named = (row["description"] for row in fleet.data["robots"])
+    return any(it not in fleet.files for it in named)
+
+
+class Cause(NamedTuple):
+    """A reason for an error in the input: how it is put into a fleet, and whether a fleet has it."""
+
+    put: Callable[[Data, DrawnFleet], object]
+    holds: Callable[[DrawnFleet], bool]
+
+
+def _first(data: Data) -> Data:
+    row: Data = data["robots"][0]
+    return row
+
+
+def _with(key: str, value: object) -> Callable[[Data, DrawnFleet], object]:
+    return lambda data, _: _first(data).update({key: value})
+
+
+def _same(key: str) -> Callable[[Data, DrawnFleet], object]:
+    """The first two robots get one value."""
+
+    def put(data: Data, fleet: DrawnFleet) -> None:
+        name = data["affix"] if key == "tag" else key
+        for row in data["robots"][:2]:
+            row[name] = {"x": 7} if key == "pose" else "same"
+
+    return put
+
+
+CAUSES = {
+    "robots share a name": Cause(_same("name"), _share_a_word),
+    "robots share a namespace": Cause(_same("namespace"), _share_a_word),
+    "robots share a prefix or postfix": Cause(_same("tag"), _share_a_word),
+    "robots share a model": Cause(_same("model"), _share_a_word),
+    "robots share a pose": Cause(_same("pose"), _share_a_word),
+    "a word for the other side": Cause(
+        lambda data, _: _first(data).update(
+            {"postfix" if data["affix"] == "prefix" else "prefix": "other"}
+        ),
+        lambda fleet: any(
+            ("postfix" if fleet.data["affix"] == "prefix" else "prefix") in row
+            for row in fleet.data["robots"]
+        ),
+    ),
+    "levels where names get no namespace": Cause(
+        lambda data, _: (data.update(layout="postfix"), _first(data).update(namespace="a/b")),
+        lambda fleet: (
+            fleet.data["layout"] == "postfix"
+            and any("/" in row.get("namespace", "").strip("/") for row in fleet.data["robots"])
+        ),
+    ),
+    "a postfix at run time": Cause(
+        lambda data, _: data.update(layout="frame-prefix", affix="postfix"),
+        lambda fleet: (fleet.data["layout"], fleet.data["affix"]) == ("frame-prefix", "postfix"),
+    ),
+    "a file that is not there": Cause(_with("description", "nosuch.urdf"), _missing),
+    "an unknown key": Cause(
+        _with("nmae", "x"), lambda fleet: any("nmae" in it for it in fleet.data["robots"])
+    ),
+    "an unknown stack": Cause(
+        _with("stack", ["nav3"]),
+        lambda fleet: any("nav3" in it.get("stack", ()) for it in fleet.data["robots"]),
+    ),
+    "arguments without a xacro": Cause(
+        _with("arguments", {"mast": "low"}),
+        lambda fleet: any(
+            "arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)
+        ),
+    ),
+    "two underscores": Cause(
+        _with("name", "r__1"),
+        lambda fleet: any("__" in row["name"] for row in fleet.data["robots"]),
+    ),
+    "a step without a count": Cause(
+        _with("step", {"x": 1}), lambda fleet: any("step" in row for row in fleet.data["robots"])
+    ),
+    "a robot without its domain": Cause(
+        lambda data, _: data.update(domains={data["robots"][0]["name"]: 5}),
+        lambda fleet: any(
+            row["name"] not in fleet.data.get("domains", {row["name"]: 0})
+            for row in fleet.data["robots"]
+        ),
+    ),
+    "a topic that no robot has crosses": Cause(
+        lambda data, _: data.update(
+            domains={row["name"]: at for at, row in enumerate(data["robots"])}, crossing=["nosuch"]
+        ),
+        lambda fleet: "nosuch" in fleet.data.get("crossing", ()),
+    ),
+    "robots stand in each other": Cause(
+        lambda data, _: [
+            row.update(pose={"x": 5 + at / 100}, simulator="gazebo")
+            for at, row in enumerate(data["robots"])
+        ],
+        _stand_in_each_other,
+    ),
+    "MoveIt where links get their prefix at run time": Cause(
+        lambda data, fleet: (
+            data.update(layout="frame-prefix", affix="prefix"),
+            data.pop("separators", None),
+            [row.pop("postfix", None) for row in data["robots"]],
+            _first(data).update(stack=["moveit"], description="arm.urdf", srdf="arm.srdf"),
+        ),
+        lambda fleet: (
+            fleet.data["layout"] == "frame-prefix"
+            and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"])
+        ),
+    ),
+    "hardware of a simulator on a real robot": Cause(
+        lambda data, _: _first(data).update(
+            description="gz_arm.urdf", simulator="none", stack=["ros2_control"]
+        ),
+        lambda fleet: any(
+            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("stack", ())
+            for row, kind, it in rows(fleet)
+        ),
+    ),
+    "two simulators": Cause(
+        lambda data, _: (
+            data.update(distro="humble", simulator="gazebo"),
+            [row.pop("simulator", None) for row in data["robots"]],
+            data["robots"][0].update(description="classic_rover.urdf"),
+            data["robots"][1].update(description="gz_rover.urdf"),
+        ),
+        lambda fleet: {CLASSIC, GZ} <= {KINDS[kind].simulator for _, kind in simulated(fleet)},
+    ),
+    "a description called world": Cause(
+        lambda data, _: (
+            data.update(layout="tf-per-robot"),
+            _first(data).update(description="world.urdf", simulator="gazebo"),
+        ),
+        lambda fleet: (
+            fleet.data["layout"] in ("tf-per-robot", "frame-prefix")
+            and any(row["description"] == "world.urdf" for row, _ in simulated(fleet))
+        ),
+    ),
+    "a parameter file is called as one that is written": Cause(
+        lambda data, _: _first(data).update(
+            companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
+        ),
+        lambda fleet: any(
+            "pose" in row and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            for row in fleet.data["robots"]
+        ),
+    ),
+    "simulated time without a simulator": Cause(
+        lambda data, _: (
+            data.update(use_sim_time=True, simulator="none"),
+            [row.pop("simulator", None) for row in data["robots"]],
+        ),
+        lambda fleet: fleet.data.get("use_sim_time") is True and not simulated(fleet),
+    ),
+    "a manager in a simulator has another domain": Cause(
+        lambda data, _: (
+            data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),
+            _first(data).update(description="gz_arm.urdf", simulator="gazebo"),
+        ),
+        lambda fleet: (
+            "domains" in fleet.data and any(kind == "gz arm" for _, kind in simulated(fleet))
+        ),
+    ),
+}
+
+
+@st.composite
+def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
+    """A fleet with a cause put into it."""
+    fleet = draw(fleets())
+    data: Data = {**fleet.data, "robots": [dict(row) for row in fleet.data["robots"]]}
+    CAUSES[cause].put(data, fleet)
+    return with_kinds(fleet, data)
+
+
+def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
+    """The fleet with the files that a cause has named, and the kinds that robots then are of."""
+    named = {f"{kind.replace(' ', '_')}{it.ending}": kind for kind, it in KINDS.items()}
+    named["world.urdf"] = "gz rover"
+    files, kinds = {**fleet.files}, []
+    for row, before, kind in zip(data["robots"], fleet.data["robots"], fleet.kinds, strict=True):
+        path, old = row["description"], before["description"]
+        kinds.append(named.get(path, kind) if path != old else kind)
+        if path != old and path in named:
+            files[path] = KINDS[named[path]].text.replace("ROBOT", path.partition(".")[0])
+            row.pop("arguments", None)
+    files |= {"controllers.yaml": CONTROLLERS, "arm.srdf": SRDF.replace("ROBOT", "arm")}
+    files |= {"start_pose.yaml": NAV_PARAMS}
+    return DrawnFleet(data, files, tuple(kinds))
+
+
+def causes_of(fleet: DrawnFleet) -> list[str]:
+    """The causes that a fleet has."""
+    return [name for name, it in CAUSES.items() if it.holds(fleet)]
+
+
+# One of eight has a cause put into it.
+drawn = st.integers(0, 7).flatmap(
+    lambda it: st.sampled_from(sorted(CAUSES)).flatmap(faulty) if it == 7 else fleets()
+)

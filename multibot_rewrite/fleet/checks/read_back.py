@@ -34,7 +34,6 @@ from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.facts import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
@@ -42,10 +41,11 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
+from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
-from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.ownership import Whose, whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, SERVES, Place, System
 
 _GIVES = (PUBLISHES, SERVES)
@@ -98,7 +98,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
         started = made.starts.nodes
-        of_launch = _of_launch(found, codes, _given_elsewhere(made.planned, started))
+        by_plan = whose_by_plan(made.planned)
+        of_launch = _of_launch(found, by_plan, codes, _given_elsewhere(made.planned, started))
         alone = [
             it
             for it in of_launch
@@ -110,13 +111,17 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
-def _of_launch(found: Launched, told: Set[str], elsewhere: Set[str]) -> Iterator[Finding]:
+def _of_launch(
+    found: Launched, whose: Whose, told: Set[str], elsewhere: Set[str]
+) -> Iterator[Finding]:
     """What ``multibot check-launch`` calls an error and the build has not ``told``, but for names that
-    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources."""
+    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources.
+    ``whose`` is by the plan: a robot may have other words in frames than in topics."""
     from multibot_rewrite.lint.launched import bridge_findings
 
-    seen = diagnose(found.system)
-    between = (placed(as_sure(it, found, seen.whose), found) for it in seen.findings)
+    seen = index(found.system, whose)
+    judged = inconclusive_where_in_doubt(judge(seen), found.system)
+    between = (placed(as_sure(it, found, seen), found) for it in judged)
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)

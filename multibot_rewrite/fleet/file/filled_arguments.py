@@ -25,7 +25,7 @@ from multibot_rewrite.description.reports.xacro_arguments import (
 )
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
-from multibot_rewrite.description.sources.own_names import ROBOT, filled
+from multibot_rewrite.description.sources.own_names import ROBOT, filled, name_robot
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
@@ -102,11 +102,21 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
         own = first.setdefault(tuple(it.arguments.items()), own)
         paths = [path for path in (it.description, it.simulated) if it.fills and path]
         every = (one for path in paths if is_xacro(path) for one in found(path, own))
-        choices = [_choice(one, naming, it) for one in every if one.name not in it.arguments]
+        free = [one for one in every if one.name not in it.arguments]
+        choices = [_beside(it, _choice(one, naming, it)) for one in free]
         values = {one.name: one.value for one in choices if one.value}
         robots.append(it._replace(arguments={**it.arguments, **values}))
         notes[it.name] = [_note(it, one) for one in choices if one.value or one.reason]
     return WithArguments(file._replace(robots=tuple(robots)), notes)
+
+
+def _beside(robot: RobotSpec, choice: _Choice) -> _Choice:
+    """Return the choice; none where a given value is the robot's name: a name would have it twice."""
+    given = ((name, text) for name, text in robot.arguments.items() if ROBOT not in text)
+    named = next((name for name, text in given if name_robot({name: text}, robot.words)), "")
+    if not (named and choice.value):
+        return choice
+    return _Choice(choice.name, reason=f"{named} names the robot already")
 
 
 def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:

@@ -71,8 +71,8 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
-    """Is a name of another robot that runs nothing which the robot has not, but for what sends the
-    name, and of which the nodes that both have send the same frames?"""
+    """Is a name of another robot that runs nothing which the robot has not, but for its sender, and of
+    which the nodes that both have send the same frames?"""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small fleets that drawn ones have led to: nothing in them is wrong, and each builds."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from drawn_builds import judge, run
+from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, Data, DrawnFleet
+
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+GZ, CART, XACRO = "gz rover", "plain cart", "xacro rover"
+
+
+def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
+    """A fleet of robots of these kinds, three metres apart."""
+    each = tuple(kinds.split(", "))
+    texts = {it: KINDS[it].text.replace("ROBOT", "robot") for it in KINDS}
+    files = {f"{it.replace(' ', '_')}{KINDS[it].ending}": text for it, text in texts.items()}
+    paths = dict(zip(KINDS, files, strict=True))
+    rows = [
+        {"description": paths[kind], "pose": {"x": 3 * at}, **row}
+        for at, (row, kind) in enumerate(zip(robots, each, strict=True))
+    ]
+    more = {"nav.yaml": NAV_PARAMS, "one.rviz": RVIZ, "arm/one.rviz": RVIZ}
+    data = {"distro": "jazzy", "affix": "prefix", **keys, "robots": rows}
+    return DrawnFleet(data, {**files, **more}, each)
+
+
+CASES = {
+    # base_link and lidar_link are alike behind a long prefix, and no slip of each other.
+    "a prefix that makes frames alike": fleet(
+        f"{CART}, {GZ}", {"name": "burger", "prefix": "burger0"}, {"name": "left", "prefix": "left1"},
+        layout="both", separators={"link": "_"}, stack="teleop",
+        companions={"params": ["nav.yaml"]},
+    ),
+    "a drive of the other robot": fleet(
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", stack="nav2"
+    ),
+    "only one of them has a lidar": fleet(
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="both", stack="localization"
+    ),
+    "a robot called as a topic": fleet(
+        f"{GZ}, {GZ}", {"name": "gz", "namespace": "gz_x"}, {"name": "cmd_vel", "namespace": "c"},
+        layout="postfix",
+    ),
+    "models with the names of each other": fleet(
+        f"{GZ}, {GZ}", {"name": "a", "model": "b"}, {"name": "b", "model": "a"}, layout="both"
+    ),
+    "a robot called as a frame": fleet(
+        f"{GZ}, {GZ}", {"name": "r1", "companions": {"params": ["nav.yaml"]}}, {"name": "base_link"},
+        layout="both",
+    ),
+    "a robot called as frames end": fleet(
+        f"{GZ}, {CART}", {"name": "gz"}, {"name": "link"}, layout="tf-per-robot"
+    ),
+    "a robot called as joints end": fleet(
+        f"{CART}, {CART}", {"name": "joint"}, {"name": "r2"}, layout="tf-per-robot"
+    ),
+    "prefixes that are no namespaces": fleet(
+        f"{XACRO}, {GZ}", {"name": "r1", "namespace": "r2"}, {"name": "r2", "namespace": "r1"},
+        layout="postfix",
+    ),
+    "configs of one name": fleet(
+        f"{GZ}, {GZ}", {"name": "r1", "companions": {"rviz": "one.rviz"}},
+        {"name": "r2", "companions": {"rviz": "arm/one.rviz"}}, layout="frames-per-robot",
+    ),
+    "costmaps without namespaces, behind a prefix": fleet(
+        f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", stack="navigation"
+    ),
+    "an argument that is the robot's name": fleet(
+        f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
+        layout="both", separators={"link": "_"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_fleet_without_a_fault_builds(case: str, tmp_path: Path) -> None:
+    judge(CASES[case], tmp_path)
+
+
+NAMESPACES = fleet(
+    f"{GZ}, {GZ}", {"name": "r1", "namespace": "alpha"}, {"name": "r2", "namespace": "beta"},
+    layout="frames-per-robot",
+)  # fmt: skip
+SWAPPED = fleet(
+    f"{GZ}, {CART}", {"name": "r1", "namespace": "r2"}, {"name": "r2", "namespace": "r1"},
+    layout="frames-per-robot",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("drawn", [NAMESPACES, SWAPPED])
+def test_findings_name_robots_by_their_names(drawn: DrawnFleet, tmp_path: Path) -> None:
+    judge(drawn, tmp_path)
+    file = str(tmp_path / "fleet.yaml")
+    code, said = run("build", file, "-o", str(tmp_path / "out"), "--format", "json")
+    assert code == 0
+    found = json.loads(said[said.index("{") : said.rindex("}") + 1])
+    named = [it["robots"] for it in found["findings"] if it.get("robots")]
+    assert named
+    assert {robot for robots in named for robot in robots} <= {"r1", "r2"}
+    assert "the same for r1" not in run("build", file, "-o", str(tmp_path / "other"))[1]
+
+
+def test_the_words_of_a_robot_are_those_of_no_other(tmp_path: Path) -> None:
+    judge(SWAPPED, tmp_path)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    assert plan.words == {"r1": "r1", "r2": "r2"}
+    judge(NAMESPACES, tmp_path / "more")
+    plan = plan_fleet(read_fleet(str(tmp_path / "more" / "fleet.yaml"), "", {}))
+    assert plan.words == {"r1": "r1", "r2": "r2", "alpha": "r1", "beta": "r2"}
+
+
+def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
+    judge(CASES["configs of one name"], tmp_path)
+    names = {it.name for it in (tmp_path / "out").glob("*.rviz")}
+    assert names == {"one.rviz", "arm_one.rviz"}
