@@ -16,14 +16,12 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
+from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.colours import palette, read_colour
 from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.files.judge import judged_once
-from multibot_rewrite.spelling.table import build_table
 
 ROBOTS = ("robot1", "robot2")
 DECLARED = {"link": dict.fromkeys(("base_link", "base_scan", "wheel")), "joint": {"hip": None}}
@@ -652,14 +650,10 @@ def test_frames_and_topics_may_have_two_words() -> None:
 
 
 def test_names_follow_the_table_where_they_do_not_follow_the_rule() -> None:
-    facts = built_in(NEWEST_LTS).stacks["navigation"].nodes
-    robot = robots_of(declared(), "L4", ["r"])[0]
-    naming = robot.names.naming._replace(topics="prefix")
-    known = fleet_topics(build_table(["r"], facts, naming, release=NEWEST_LTS), facts, "r")
-    names = robot.topics._replace(naming=naming)
-    wanted = known["/global_costmap/costmap"]
-    assert wanted != robot_topic(names, "/global_costmap/costmap")
-    assert robot_topic(names, "global_costmap/costmap", known) == wanted
+    names = robots_of(declared(), "L4", ["r"])[0].topics
+    known = {"/global_costmap/costmap": "/costmap_of_r"}
+    assert robot_topic(names, "/global_costmap/costmap") == "/global_costmap/costmap/r"
+    assert robot_topic(names, "global_costmap/costmap", known) == "/costmap_of_r"
 
 
 def test_known_classes_have_known_words() -> None:

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from multibot_rewrite.fleet.proposal.given_by_launch import readings, started_elsewhere
 from small_robots import PACKAGE, init, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.given_by_launch import given_by_launch, readings
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
 
@@ -146,9 +146,9 @@ def test_nodes_that_only_launch_files_start_are_named(tmp_path: Path) -> None:
     file = tmp_path / "a.launch.py"
     file.write_text(STARTED)
     read = readings([str(file)], "car.urdf", ("car.urdf",))
-    found = given_by_launch(read, ["robot_localization"], "jazzy").not_started
+    found = started_elsewhere(read, ["robot_localization"], "jazzy")
     assert [text for _, _, text in found] == [
-        "imu of imu_tools, /imu:=/imu/raw", "twist.py of own", "pcl::Filter of pcl",
+        "imu (imu_tools imu_node): /imu:=/imu/raw", "twist.py (own)", "pcl::Filter (pcl)",
     ]  # fmt: skip
     assert {path for path, _, _ in found} == {str(file)} and found[0][1] == 2
 
@@ -157,7 +157,7 @@ def test_the_fleet_file_names_them(tmp_path: Path) -> None:
     (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
     (tmp_path / "up.launch.py").write_text("Node(package='own', executable='twist.py')\n")
     taken(tmp_path)
-    assert "#   up.launch.py:1: twist.py of own\n" in (tmp_path / "fleet.yaml").read_text()
+    assert "#   up.launch.py:1: twist.py (own)\n" in (tmp_path / "fleet.yaml").read_text()
 
 
 @pytest.mark.parametrize(
