@@ -40,7 +40,6 @@ def system_rule(
     all_ends: bool = False,
     meant: tuple[str, ...] = (),
     robot_wide: bool = False,
-    **words: str | int,
 ) -> Callable[[_Check], Rule]:
     """Makes a function a rule about any system: it gets an ``Index`` and yields what its own
     ``finding`` makes.
@@ -48,12 +47,11 @@ def system_rule(
     ``absence``: the rule finds that something is missing, which an incomplete view cannot prove.
     ``all_ends``: a finding names one node, and is about all nodes that use the names. ``meant`` are
     roles: where all who have them at the names of a finding are planned to, it is no fault.
-    ``robot_wide``: what a plan finds of a robot is all that there is of it. The other ``words`` are
-    those of ``findings.rule.declare``; the examples are lines of ``tests/support/graph_examples.py``
-    that begin with ``running:``.
+    ``robot_wide``: what a plan finds of a robot is all that there is of it. The examples are lines of
+    ``tests/support/graph_examples.py`` that begin with ``running:``.
     """
     options = system_options(absence, drawn, all_ends, meant, robot_wide)
-    return rule(code, name, level, formats=(SYSTEM,), options=options, **words)
+    return rule(code, name, level, formats=(SYSTEM,), options=options)
 
 
 def system_options(
@@ -76,7 +74,6 @@ def pair_rule(
     absence: bool = False,
     drawn: Drawn = "",
     nodes: bool = True,
-    **words: str | int,
 ) -> Callable[[_Check], Rule]:
     """Makes a function a rule about a plan and what is seen: it gets the ``Index`` of
     each.
@@ -85,7 +82,7 @@ def pair_rule(
     ``system_rule``.
     """
     options = {"absence": absence, "drawn": drawn, "all_ends": False, "nodes": nodes}
-    return rule(code, name, level, formats=(PAIR,), options=options, **words)
+    return rule(code, name, level, formats=(PAIR,), options=options)
 
 
 def found_by_plan(*rules: Rule, nodes: bool = True) -> Callable[[_Pair], Finder]:

@@ -22,31 +22,7 @@ from multibot_rewrite.system.records import SERVICE, TOPIC, place_of
 PROBE = "multibot_probe"
 RUN_TIME = "the name is made at run time"
 
-UNREACHABLE_NAME = declare(
-    "MR101",
-    "no-rule-reaches-name",
-    WARNING,
-    what="No remap rule reaches a name that all robots would share: the node makes it at run time, or "
-    "it is not a ROS name.",
-    why="The nodes of all robots use the one name: data of two robots is mixed.",
-    fix="Give each robot its own value of the parameter that makes the name, or change the node.",
-    bad="""\
-nodes:
-  camera_driver:
-    package: acme_camera
-    publishes:
-      /<serial_number>/image: sensor_msgs/msg/Image
-""",
-    good="""\
-nodes:
-  camera_driver:
-    package: acme_camera
-    publishes:
-      /camera/image: sensor_msgs/msg/Image
-""",
-    line=2,
-    formats=("remap",),
-)
+UNREACHABLE_NAME = declare("MR101", "no-rule-reaches-name", WARNING, formats=("remap",))
 
 
 def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]:
@@ -70,49 +46,8 @@ def _needed(endpoint: Endpoint, naming: Naming) -> bool:
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
-def _plugin_with(*rules: str) -> str:
-    """An example: a lidar whose plugin has these remap rules, in the words of its ``<ros>``."""
-    inside = "".join(f"          <remapping>{it}</remapping>\n" for it in rules)
-    return f"""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros>
-{inside}        </ros>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-"""
-
-
-RULE_WITHOUT_NAME = declare(
-    "MR103",
-    "rule-matches-no-name",
-    WARNING,
-    what="A remap rule of a plugin in the description matches no name of that plugin. Or a rule of "
-    "a launch file is for a name that its node does not have, but for nearly the same one.",
-    why="The rule does nothing, and the name that it was meant for keeps its old name.",
-    fix="Correct the name on the left of the rule, or remove the rule.",
-    bad=_plugin_with("~/out:=scan", "laser_scan:=scan"),
-    good=_plugin_with("~/out:=scan"),
-    line=5,
-    formats=("remap-urdf",),
-)
-LATER_RULE = declare(
-    "MR104",
-    "rule-after-first-match",
-    ERROR,
-    what="A remap rule has no effect, because an earlier rule of the same node matches the same name.",
-    why="rcl applies the first rule that matches, so the topic gets the other name.",
-    fix="Remove one of the two rules.",
-    bad=_plugin_with("~/out:=scan", "~/out:=front_scan"),
-    good=_plugin_with("~/out:=scan"),
-    line=5,
-    formats=("remap-urdf",),
-)
+RULE_WITHOUT_NAME = declare("MR103", "rule-matches-no-name", WARNING, formats=("remap-urdf",))
+LATER_RULE = declare("MR104", "rule-after-first-match", ERROR, formats=("remap-urdf",))
 
 
 class _Names(NamedTuple):

@@ -131,37 +131,6 @@ NOT_TAKEN = declare(
     "MR105",
     "rule-not-taken",
     WARNING,
-    what="A node does not get a rule that it needs. In this release nothing passes the rule on to "
-    "it from the place where it stands.",
-    why="The node keeps the name in its code, and all robots share it. From ros2_control 6.5 on "
-    "(Lyrical) controllers get no rules of their controller manager, so none of a gz_ros2_control "
-    "plugin. On Humble all controllers in one Gazebo get those of the first robot's plugin.",
-    fix="Name the stack of the controllers (--stack gz_ros2_control), and start each with its "
-    "spawner. Its line is in commands.md, and multibot plan --form ros-args prints it.",
-    bad="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="control" filename="gz_ros2_control-system">
-      <ros>
-        <remapping>~/odom:=odom</remapping>
-      </ros>
-    </plugin>
-  </gazebo>
-</robot>
-""",
-    good="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
-      <left_joint>left</left_joint>
-      <right_joint>right</right_joint>
-    </plugin>
-  </gazebo>
-</robot>
-""",
-    line=6,
     formats=("remap-urdf",),
     options={"robots": ("robot1", "robot2"), "layout": "frames-per-robot"},
 )

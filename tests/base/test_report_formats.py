@@ -14,15 +14,32 @@ from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WA
 from multibot_rewrite.base.findings.formats import Report, rendered
 from multibot_rewrite.base.findings.formats import markdown as in_markdown
 from multibot_rewrite.base.findings.formats.shared import by_file, counts, inside, path_below
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit, UsageError
 from multibot_rewrite.version import __version__
 
 
+class WrittenRule(Rule):
+    """A rule without a page."""
+
+    what, why, fix = "It is. Really.", "It hurts.", "Do it."
+    bad, good, fixed, beside = "<a/>", "<b/>", "", {}  # type: ignore[var-annotated]
+
+
+class FixedRule(WrittenRule):
+    """A rule with a fix."""
+
+    bad, fixed = "<a>\n</a>", "<b/>"
+
+
+class RuleOfFiles(WrittenRule):
+    """A rule about several files."""
+
+    good, beside = "", {"a.yaml": "x: 1\n", "empty": "", "b.stl": "\n"}
+
+
 def rule(code: str, name: str, level: str = ERROR) -> dict[str, object]:
-    return {code: declare(
-        code, name, level, what="It is. Really.", why="It hurts.", fix="Do it.", bad="<a/>", good="<b/>"
-    )}  # fmt: skip
+    return {code: WrittenRule(code, name, level)}
 
 
 RULES = rule("MB101", "bad-name")
@@ -315,11 +332,10 @@ def test_a_code_that_no_rule_has(word: str, hint: str) -> None:
 
 
 def test_a_rule_for_a_terminal() -> None:
-    it = KNOWN["MB101"]._replace(bad="<a>\n</a>", fixed="<b/>")  # type: ignore[attr-defined]
+    it = FixedRule("MB101", "bad-name", ERROR)
     assert codes.explained(it) == (
         "MB101 bad-name (error)\n\nIt is. Really.\n\nWhy: It hurts.\n\nFix: Do it.\n\n"
         "Bad:\n\n    <a>\n    </a>\n\nFixed by --fix:\n\n    <b/>\n"
     )
-    assert codes.examples(it._replace(fixed="")) == [("Bad", "<a>\n</a>"), ("Good", "<b/>")]
-    beside = it._replace(fixed="", good="", beside={"a.yaml": "x: 1\n", "empty": "", "b.stl": "\n"})
-    assert codes.examples(beside)[1:] == [("Beside it, a.yaml", "x: 1\n")]
+    assert codes.examples(WrittenRule(*it)) == [("Bad", "<a/>"), ("Good", "<b/>")]
+    assert codes.examples(RuleOfFiles(*it))[1:] == [("Beside it, a.yaml", "x: 1\n")]

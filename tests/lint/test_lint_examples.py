@@ -24,9 +24,9 @@ def test_an_example_is_found_in_its_line_and_level(example: dict[str, Any], tmp_
     rule = catalogue.rules()[example["code"]]._replace(
         formats=tuple(example.get("formats", ("urdf",))),
         options=example.get("options", {}),
-        beside=example.get("beside", {}),
     )
-    (it,) = found(rule, example["bad"], tmp_path)
+    beside = example.get("beside", {})
+    (it,) = found(rule, example["bad"], tmp_path, beside)
     assert (it.line, it.level) == (example["line"], example["level"])
     (tmp_path / "good").mkdir()
-    assert found(rule, example["good"], tmp_path / "good") == []
+    assert found(rule, example["good"], tmp_path / "good", beside) == []

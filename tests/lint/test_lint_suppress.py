@@ -278,7 +278,7 @@ def test_a_rule_that_asks_for_other_files_is_not_judged(
 ) -> None:
     text = robot(f"{HERE}\n<gazebo/>")
     assert reported(linted(tmp_path, text)) == ["MB002:2"]
-    monkeypatch.setitem(RULES, "MB501", RULES["MB501"]._replace(beside={"m.stl": ""}))
+    monkeypatch.setitem(RULES, "MB501", RULES["MB501"]._replace(examples="MB701"))
     assert linted(tmp_path, text) == []
 
 

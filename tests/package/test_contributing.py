@@ -22,7 +22,7 @@ def test_a_journey_works_as_written(name: str, tmp_path: Path) -> None:
     """Each costs a copy of the repository and its tests."""
     text = JOURNEYS[name]
     steps = guides.steps(text)
-    assert text.count("```") == 2 * len(steps)
+    assert text.count("```") == 2 * len(steps) + sum(it.text.count("```") for it in steps)
     guides.copy_repository(tmp_path / "copy")
     guides.follow(steps, tmp_path / "copy", guides.environment(tmp_path / "bin"))
 

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.finding_list import (
     DOUBTFUL,
@@ -26,17 +26,20 @@ from multibot_rewrite.pages.states import MISSING, OK, Targets
 from multibot_rewrite.system.records import Caveat, Environment
 
 NOTHING = Targets((), (), ())
+
+
+class WrittenRule(Rule):
+    """A rule without a page."""
+
+    why, fix = "Why <it>.", "Fix `it`."
+
+    @property
+    def what(self) -> str:
+        return f"What `{self.code}` is."
+
+
 RULES = {
-    code: declare(
-        code,
-        name,
-        level,
-        what=f"What `{code}` is.",
-        why="Why <it>.",
-        fix="Fix `it`.",
-        bad="",
-        good="",
-    )
+    code: WrittenRule(code, name, level)
     for code, name, level in (("MG1", "two-nodes", "error"), ("MG2", "odd-name", "warning"))
 }
 SOURCES = Sources(RULES, {"a:b.urdf:7": ["6 <a>", "7 <b> c", "8 <c>"]})

@@ -31,7 +31,7 @@ PROGRAMS = {
     "pip": "-m pip",
     "python": "",
 }
-_BLOCK = re.compile(r"^((?:[^\n]+\n)*)\n```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_BLOCK = re.compile(r"^((?:[^\n]+\n)*)\n(`{3,})(\w*)\n(.*?)^\2$", re.DOTALL | re.MULTILINE)
 _KINDS = (
     ("append", re.compile(r"At the end of `([\w./-]+)`:$")),
     ("anchor", re.compile(r"In `([\w./-]+)`, below$")),
@@ -51,7 +51,7 @@ class Step(NamedTuple):
 
 def steps(page: str) -> list[Step]:
     """The blocks of a page in their order."""
-    return [_step(before, language, text) for before, language, text in _BLOCK.findall(page)]
+    return [_step(before, language, text) for before, _, language, text in _BLOCK.findall(page)]
 
 
 def _step(before: str, language: str, text: str) -> Step:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -68,9 +68,12 @@ FLEET: dict[str, Any] = {
 }
 
 
-def found(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """What the rule finds in one of its examples."""
-    _write(folder, rule.beside)
+def found(
+    rule: Rule, example: str, folder: Path, beside: Mapping[str, str] | None = None
+) -> list[Finding]:
+    """Return what the rule finds in an example, with the files that are beside it (its own by
+    default)."""
+    _write(folder, rule.beside if beside is None else beside)
     run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]

@@ -38,20 +38,6 @@ OUTSIDE = declare(
     "MF132",
     "section-outside-of-bringup",
     ERROR,
-    what="With `params_style: bringup`, a parameter file has a section for a node that is not in the "
-    "robot's namespace.",
-    why="nav2_bringup puts the whole file below the robot's namespace: no node has that section.",
-    fix="Put the section into a file of its own that is not in this fleet file.",
-    bad="""\
-rviz2:
-  ros__parameters:
-    use_sim_time: true
-""",
-    good="""\
-amcl:
-  ros__parameters:
-    use_sim_time: true
-""",
     formats=("params",),
     options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
 )

@@ -15,30 +15,7 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, re
 
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 
-MIXED_KEY = declare(
-    "MF101",
-    "mixed-section-key",
-    ERROR,
-    what="The sections below one key need different names. Below it is a node of each robot, and "
-    "also a wildcard, a placeholder or a node that serves all robots.",
-    why="A node of each robot needs the robot's namespace in the key, the others need it as it is. "
-    "With either key, one of the nodes has no section and runs with its defaults.",
-    fix="Write each section under its own key, as in sensors/camera:.",
-    bad="""\
-sensors:
-  camera:
-    ros__parameters: {rate: 30}
-  "**":
-    ros__parameters: {use_sim_time: true}
-""",
-    good="""\
-/**:
-  ros__parameters: {use_sim_time: true}
-sensors/camera:
-  ros__parameters: {rate: 30}
-""",
-    formats=("params",),
-)
+MIXED_KEY = declare("MF101", "mixed-section-key", ERROR, formats=("params",))
 
 
 def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:

@@ -106,29 +106,7 @@ def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) 
     return found
 
 
-NOT_INSERTED = declare(
-    "MF124",
-    "default-not-inserted",
-    WARNING,
-    what="All robots would share the default of a parameter, and the file has no place for a line that "
-    "sets it.",
-    why="The default has no robot's name in it: the node looks for base_link, but the robot's frame is "
-    "robot1/base_link.",
-    fix="Write each parameter on its own line, as in name: value.",
-    bad="""\
-smoother_server:
-  ros__parameters:
-    ? smoother_plugins
-    : [simple_smoother]
-""",
-    good="""\
-smoother_server:
-  ros__parameters:
-    smoother_plugins: [simple_smoother]
-""",
-    line=3,
-    formats=("params",),
-)
+NOT_INSERTED = declare("MF124", "default-not-inserted", WARNING, formats=("params",))
 
 
 def inserted(

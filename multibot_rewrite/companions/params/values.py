@@ -144,24 +144,7 @@ WRONG_TARGET = declare(
     "MF120",
     "parameter-topic-remapped",
     WARNING,
-    what="The remap rules of a node turn a topic that a parameter names into another one than they did "
-    "for a single robot.",
-    why="Remap rules also match names that come from parameters, and in a namespace another rule "
-    "may match. Then the node uses a topic that no other node uses.",
-    fix="Remove the name from the remap rules of the node, or from the file.",
-    bad="""\
-slam_toolbox:
-  ros__parameters:
-    scan_topic: scan
-""",
-    good="""\
-slam_toolbox:
-  ros__parameters:
-    scan_topic: front
-""",
-    line=3,
     formats=("params",),
-    beside={"nodes.yaml": "stacks: {own: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"},
     options={"stack": "own", "nodes": "nodes.yaml"},
 )
 
@@ -169,25 +152,6 @@ MADE_ABSOLUTE = declare(
     "MF121",
     "costmap-topic-made-absolute",
     WARNING,
-    what="A relative topic of a costmap layer is made absolute.",
-    why="Up to Jazzy, the costmap resolves scan as /robot1/local_costmap/scan, where no node "
-    "publishes: it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the "
-    "topic in the robot's namespace.",
-    fix="Nothing has to be done; a topic with a slash before it is not reported. If the file is for "
-    "Kilted or later, name that release in the fleet file (distro:) or with --distro.",
-    bad="""\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      obstacle_layer: {scan: {topic: scan}}
-""",
-    good="""\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      obstacle_layer: {scan: {topic: /scan}}
-""",
-    line=4,
     formats=("params",),
     options={"distro": "jazzy"},
 )
@@ -214,22 +178,6 @@ UNCLEAR_SWITCH = declare(
     "MF116",
     "frame-prefix-switch-unclear",
     WARNING,
-    what="A launch file sets a parameter that must be false, or a prefix that must be /, because it "
-    "adds the namespace to frames.",
-    why="The frames have the robot's name already. With true, odom becomes robot1/robot1/odom, and no "
-    "transform is found (ros2_controllers #482, #1048).",
-    fix="Write false, or make sure that the launch file sets false.",
-    bad="""\
-diff_drive_controller:
-  ros__parameters:
-    tf_frame_prefix_enable: $(var prefix)
-""",
-    good="""\
-diff_drive_controller:
-  ros__parameters:
-    tf_frame_prefix_enable: false
-""",
-    line=3,
     formats=("params",),
     options={"distro": "kilted"},
 )

@@ -21,37 +21,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, found_at
 
 AT_RUN_TIME = "frame-prefix"
 
-BARE_HEADERS = declare(
-    "MF216",
-    "rviz-bridged-messages",
-    WARNING,
-    what="A window shows all robots of a layout with bare frames, whose tf is bridged to /tf, and a "
-    "display shows messages.",
-    why="tf_namespace_bridge puts the robot's name before frames in tf, not before those in "
-    "headers of messages. RViz finds no frame base_scan, and the display stays empty.",
-    fix="Look at messages in the window of the robot, whose config is built, too. Or take layout both: "
-    "its messages have the robot's frames.",
-    bad="""\
-layout: tf-per-robot
-relayed: true
-companions: {rviz: show.rviz}
-""",
-    good="""\
-layout: both
-relayed: true
-companions: {rviz: show.rviz}
-""",
-    line=3,  # of show.rviz: the display
-    formats=("fleet",),
-    beside={
-        "show.rviz": """\
-Visualization Manager:
-  Displays:
-    - {Class: rviz_default_plugins/LaserScan, Name: scan, Topic: {Value: /scan}}
-  Global Options: {Fixed Frame: map}
-"""
-    },
-)
+BARE_HEADERS = declare("MF216", "rviz-bridged-messages", WARNING, formats=("fleet",))
 
 
 def bridged_window(

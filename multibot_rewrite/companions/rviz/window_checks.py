@@ -24,27 +24,7 @@ from multibot_rewrite.companions.rviz.values import frame_of
 from multibot_rewrite.companions.yaml_text import found_at, pairs
 from multibot_rewrite.spelling.plan import tf_topic
 
-ONE_TF_TOPIC = declare(
-    "MF203",
-    "rviz-one-tf-topic",
-    WARNING,
-    what="A config is for robots that each have their own tf topic. One rviz2 reads one tf topic.",
-    why="rviz2 subscribes to /tf and /tf_static once for all displays. Robots on /robot1/tf and "
-    "/robot2/tf never appear in one window: its displays say that there is no transform.",
-    fix="Start one rviz2 for each robot, with its own config and -r /tf:=/robot1/tf, as in "
-    "commands.md. Or take a layout with one tf topic, such as frames-per-robot.",
-    bad="""\
-layout: tf-per-robot
-companions: {rviz: show.rviz}
-""",
-    good="""\
-layout: frames-per-robot
-companions: {rviz: show.rviz}
-""",
-    line=2,  # of show.rviz: the first key of the manager
-    formats=("fleet",),
-    beside={"show.rviz": "Visualization Manager:\n  Global Options: {Fixed Frame: map}\n"},
-)
+ONE_TF_TOPIC = declare("MF203", "rviz-one-tf-topic", WARNING, formats=("fleet",))
 
 
 def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
@@ -63,29 +43,7 @@ def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
     yield found_at(config.document, config.manager, ONE_TF_TOPIC, message, hint)
 
 
-OWN_FIXED_FRAME = declare(
-    "MF201",
-    "rviz-fixed-frame-of-one-robot",
-    WARNING,
-    what="The Fixed Frame differs from robot to robot, and one window shows all robots. It "
-    "becomes the world frame of the fleet.",
-    why="RViz shows only what it can transform to the Fixed Frame. A robot that no transform "
-    "connects to the world frame stays invisible.",
-    fix="Publish a transform from the world frame to each robot: `pose` in the fleet file does it. "
-    "Or set `world` to a frame that all robots share.",
-    bad="""\
-Visualization Manager:
-  Global Options:
-    Fixed Frame: base_link
-""",
-    good="""\
-Visualization Manager:
-  Global Options:
-    Fixed Frame: map
-""",
-    line=3,
-    formats=("rviz",),
-)
+OWN_FIXED_FRAME = declare("MF201", "rviz-fixed-frame-of-one-robot", WARNING, formats=("rviz",))
 
 
 def _fixed_frame(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
@@ -99,33 +57,7 @@ def _fixed_frame(config: RvizConfig, robots: Robots, world: str) -> Iterator[Fin
         yield found_at(config.document, node, OWN_FIXED_FRAME, message, hint)
 
 
-FIRST_ROBOT_VIEW = declare(
-    "MF213",
-    "rviz-view-follows-first-robot",
-    WARNING,
-    what="The view follows a frame of the robot. In a window for all robots it follows the first "
-    "one.",
-    why="A window has one current view with one Target Frame. The other robots drive out of the "
-    "picture.",
-    fix="Choose the saved view of a robot in the Views panel. To see all robots, write Target "
-    "Frame: map.",
-    bad="""\
-Visualization Manager:
-  Views:
-    Current:
-      Class: rviz_default_plugins/Orbit
-      Target Frame: base_link
-""",
-    good="""\
-Visualization Manager:
-  Views:
-    Current:
-      Class: rviz_default_plugins/Orbit
-      Target Frame: map
-""",
-    line=5,
-    formats=("rviz",),
-)
+FIRST_ROBOT_VIEW = declare("MF213", "rviz-view-follows-first-robot", WARNING, formats=("rviz",))
 
 
 def _view(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
@@ -138,35 +70,7 @@ def _view(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
         yield found_at(config.document, node, FIRST_ROBOT_VIEW, message, hint)
 
 
-LEFT_OUT = declare(
-    "MF202",
-    "rviz-panel-left-out",
-    WARNING,
-    what="A display, tool or panel is left out. The panel of slam_toolbox has absolute names. "
-    "Without namespaces the panels of Nav2 and the displays of MoveIt work for one robot "
-    "only.",
-    why="These plugins use the relative names or the parameters of the rviz2 node, or absolute "
-    "names. In a window for all robots, goals would go to no robot or to the wrong one.",
-    fix="In a layout with namespaces each robot gets a config with them, see commands.md. "
-    "Without namespaces name the stack rviz_moveit or rviz_nav2: its rviz2 has the robot's "
-    "remap rules. Remap absolute names there.",
-    bad="""\
-Panels:
-  - Class: slam_toolbox::SlamToolboxPlugin
-    Name: SlamToolboxPlugin
-Visualization Manager:
-  Global Options: {Fixed Frame: map}
-""",
-    good="""\
-Panels:
-  - Class: rviz_common/Displays
-    Name: Displays
-Visualization Manager:
-  Global Options: {Fixed Frame: map}
-""",
-    line=2,
-    formats=("rviz",),
-)
+LEFT_OUT = declare("MF202", "rviz-panel-left-out", WARNING, formats=("rviz",))
 
 
 def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
@@ -188,32 +92,7 @@ def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
             yield found_at(config.document, one.node, LEFT_OUT, message, hint)
 
 
-VISIBILITY_RESET = declare(
-    "MF212",
-    "rviz-camera-visibility-reset",
-    WARNING,
-    what="The Visibility of a camera display is reset, because the displays are in groups for the "
-    "robots now.",
-    why="Visibility refers to displays by name and group. What was hidden in the picture of the "
-    "camera is drawn in it again.",
-    fix="Choose the displays again in rviz2 and save the file.",
-    bad="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/Camera
-      Topic: /camera/image_raw
-      Visibility:
-        Grid: false
-""",
-    good="""\
-Visualization Manager:
-  Displays:
-    - Class: rviz_default_plugins/Camera
-      Topic: /camera/image_raw
-""",
-    line=5,
-    formats=("rviz",),
-)
+VISIBILITY_RESET = declare("MF212", "rviz-camera-visibility-reset", WARNING, formats=("rviz",))
 
 
 def _visibility(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:

@@ -24,31 +24,10 @@ UNREAD = "MB144"
 # More names are not listed where none is like the one that is given.
 _LISTED = 10
 
-_HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-_BODY = """\
-  <xacro:arg name="prefix" default=""/>
-  <link name="$(arg prefix)base_link"/>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <robot_base_frame>{}base_link</robot_base_frame>
-    </plugin>
-  </gazebo>
-</robot>
-"""
 ARGUMENT_MISSES_REFERENCE = declare(
     "MB143",
     "argument-misses-reference",
     WARNING,
-    what="A frame is the name of a link, and an argument of the xacro puts the robot's name into one "
-    "of the two only.",
-    why="One has the robot's name by the argument, the other one by the rewrite: they differ, and "
-    "every look-up of the frame fails.",
-    fix="Write the argument at both, or do not give it: the rewrite names all links and frames. Where "
-    "the argument is on the frame, the options of the rewrite may give the link the same name.",
-    bad=_HEAD + _BODY.format(""),
-    good=_HEAD + _BODY.format("$(arg prefix)"),
-    # In the expansion, below the comment that xacro writes.
-    line=10,
     formats=("rewrite", XACRO),
     options={"xacro_args": {"prefix": "{robot}_"}},
 )

@@ -17,40 +17,11 @@ from multibot_rewrite.description.steps.document import finding
 from multibot_rewrite.description.steps.renames import NameKey, RenameMap
 
 strip_other_robot = declare(
-    "MB107",
-    "strip-other-robot",
-    ERROR,
-    what="`--undo` should remove a robot's name, but a name in the file, or in the URDF of an "
-    "SRDF, does not have it.",
-    why="The file was made for another robot or with other options. Removing the name from some "
-    "names only would leave a description that is neither the source nor the robot's.",
-    fix="Use the robot and the options with which the file was made. If a xacro argument made "
-    "the names, name that file with `--xacro` and give the argument.",
-    bad='<robot name="r_robot1">\n  <link name="base_link/robot2"/>\n</robot>\n',
-    good='<robot name="r_robot1">\n  <link name="base_link/robot1"/>\n</robot>\n',
-    line=2,
-    options={"strip": "robot1"},
-    formats=("rewrite",),
+    "MB107", "strip-other-robot", ERROR, options={"strip": "robot1"}, formats=("rewrite",)
 )
 
 strip_other_options = declare(
-    "MB108",
-    "strip-other-options",
-    ERROR,
-    what="`--undo` removed the robot's name, but rewriting the result does not give the file again.",
-    why="The file was made with other options, or was edited after it: the result would not be its "
-    "source.",
-    fix="Use the options with which the file was made, and undo edits that were made after it.",
-    bad='<robot name="r_robot1">\n'
-    '  <link name="base_link/robot1"/>\n'
-    '  <gazebo reference="base_link"/>\n'
-    "</robot>\n",
-    good='<robot name="r_robot1">\n'
-    '  <link name="base_link/robot1"/>\n'
-    '  <gazebo reference="base_link/robot1"/>\n'
-    "</robot>\n",
-    options={"strip": "robot1"},
-    formats=("rewrite",),
+    "MB108", "strip-other-options", ERROR, options={"strip": "robot1"}, formats=("rewrite",)
 )
 
 

@@ -24,23 +24,7 @@ from multibot_rewrite.description.steps.renames import RenameMap, make_renames, 
 _START = itemgetter(0)
 LAST = "~"
 
-not_editable = declare(
-    "MB104",
-    "not-editable",
-    ERROR,
-    what="A name cannot be edited in place: it is in a CDATA section, or there are escapes or "
-    "comments in it.",
-    why="A rewrite replaces the bytes of a name and leaves everything else as it is; here the bytes "
-    "are not those of the name.",
-    fix="Write the name as plain text.",
-    bad='<link name="base"/>\n'
-    "<gazebo>\n"
-    "  <canonicalBody><![CDATA[base]]></canonicalBody>\n"
-    "</gazebo>\n",
-    good='<link name="base"/>\n<gazebo>\n  <canonicalBody>base</canonicalBody>\n</gazebo>\n',
-    line=3,
-    formats=("rewrite",),
-)
+not_editable = declare("MB104", "not-editable", ERROR, formats=("rewrite",))
 
 
 class Plan(NamedTuple):

@@ -11,33 +11,11 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.domains import Apart
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts
-from multibot_rewrite.fleet.robots.simulators import DRIVE
 from multibot_rewrite.spelling.domain_bridge import crossings, services_apart
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import MAY, System
 
-_FLEET = """\
-simulator: gazebo
-description: robot.urdf
-domains: {robot1: 11, robot2: 12}
-robots: [{name: robot1}, {name: robot2}]
-"""
-NOT_ACROSS = declare(
-    "MF849",
-    "not-across-domains",
-    ERROR,
-    what="Something of a fleet is in another ROS domain than what it works with. That is a plugin "
-    "of the simulator, which has one process, a service or an action, or a node that the launch "
-    "file reaches.",
-    why="Nodes of two domains never see each other, and domain_bridge brings topics alone.",
-    fix="Give both one domain, or leave out `domains:`. Start the robots that the line names with a "
-    "launch of their own: `ros2 launch fleet.launch.py robots:=robot1`.",
-    bad=_FLEET,
-    good=_FLEET.replace("domains: {robot1: 11, robot2: 12}", "# one domain"),
-    line=3,
-    formats=("fleet",),
-    beside={"robot.urdf": DRIVE},
-)
+NOT_ACROSS = declare("MF849", "not-across-domains", ERROR, formats=("fleet",))
 
 
 def not_across(fleet: Fleet) -> Iterator[Finding]:

@@ -18,42 +18,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP
 
 CARTOGRAPHER = "cartographer_node"
-_FLEET = """\
-layout: both
-simulator: none
-stack: [moveit]
-description: arm.urdf
-{}robots:
-  - {{name: robot1}}
-"""
-_ARM = """\
-<robot name="arm">
-  <link name="base_link"/> <link name="hand"/>
-  <joint name="turn" type="fixed"><parent link="base_link"/><child link="hand"/></joint>
-</robot>
-"""
-_SRDF = """\
-<robot name="arm">
-  <group name="all"><link name="hand"/></group>
-  <disable_collisions link1="base_link" link2="hand" reason="Adjacent"/>
-</robot>
-"""
-LACKING = declare(
-    "MF857",
-    "node-without-its-file",
-    ERROR,
-    what="A stack starts a node that reads an SRDF, a `<ros2_control>` of the description or a Lua "
-    "file, and the robot has none.",
-    why="The node ends as soon as it is started: `move_group` has no semantic description, the "
-    "controller manager no hardware, Cartographer no options.",
-    fix="Name the file in the fleet file (`srdf:`, `lua` under `companions`), take a description with "
-    "`<ros2_control>`, or leave the stack out.",
-    bad=_FLEET.format(""),
-    good=_FLEET.format("srdf: arm.srdf\n"),
-    line=6,
-    formats=("fleet",),
-    beside={"arm.urdf": _ARM, "arm.srdf": _SRDF},
-)
+LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
 
 
 class Need(NamedTuple):

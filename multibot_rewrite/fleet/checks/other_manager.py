@@ -11,50 +11,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.spelling.records import Table
 
-_ROVER = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="wheel"/>
-  <joint name="wheel_joint" type="continuous">
-    <parent link="base_link"/>
-    <child link="wheel"/>
-    <axis xyz="0 1 0"/>
-  </joint>
-  <gazebo>
-    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
-      <ros>{}</ros>
-    </plugin>
-  </gazebo>
-</robot>
-"""
-_FLEET = """\
-layout: both
-affix: prefix
-simulator: gazebo
-stack: [gz_ros2_control]
-description: {}.urdf
-robots:
-  - {{name: robot1}}
-"""
-OTHER_MANAGER = declare(
-    "MF850",
-    "other-manager",
-    ERROR,
-    what="The plugin in the description makes a controller manager under another name than the "
-    "stack's.",
-    why="The launch file starts a second manager, which cannot load a simulator's hardware. The "
-    "spawners ask that one, so no controller is loaded.",
-    fix="Remove `<namespace>` and `<controller_manager_name>` of the plugin: it gets the robot's "
-    "namespace. Where an argument of the xacro sets it, give that `'{robot}'`.",
-    bad=_FLEET.format("rover"),
-    good=_FLEET.format("plain"),
-    line=7,
-    formats=("fleet",),
-    beside={
-        "rover.urdf": _ROVER.format("<namespace>rover</namespace>"),
-        "plain.urdf": _ROVER.format(""),
-    },
-)
+OTHER_MANAGER = declare("MF850", "other-manager", ERROR, formats=("fleet",))
 
 
 def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Finding]:

@@ -20,32 +20,7 @@ NOWHERE: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = "correct it, unless a node that is not known has it"
 # What may be between a name and the robot's.
 _BETWEEN = "/_-."
-NOBODYS = declare(
-    "MF838",
-    "shared-by-nothing",
-    WARNING,
-    what="A name of `shared_topics` or `shared_frames` (`--shared`) is that of no topic or frame of the"
-    " robots. It is a note where nothing in them is called nearly so: a node that is not known may have"
-    " it.",
-    why="A name that is mistyped, or a topic among the frames, is not shared: each robot gets its own.",
-    fix="Correct it. In `--shared` topics have a slash in front, frames have none.",
-    bad="""\
-layout: frames-per-robot
-shared_frames: [base_lnk]
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-layout: frames-per-robot
-shared_frames: [base_link]
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=2,
-    formats=("fleet",),
-)
+NOBODYS = declare("MF838", "shared-by-nothing", WARNING, formats=("fleet",))
 
 
 class NamesOfFleet(Protocol):

@@ -32,35 +32,7 @@ from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 
 # Kinds that other files and nodes know by the name that the layout makes.
 _KNOWN = ("link", "joint", "frame")
-_XACRO = """\
-<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="prefix" default=""/>
-  <link name="$(arg prefix)base_link"/>
-</robot>
-"""
-_FLEET = """\
-layout: frames-per-robot
-affix: prefix
-description: rover.urdf.xacro
-{}robots:
-  - {{name: robot1}}
-"""
-OWN_ARGUMENT = declare(
-    "MF840",
-    "own-argument",
-    NOTE,
-    what="A xacro has an argument for a robot's names, such as `namespace` or `tf_prefix`, and "
-    "the fleet file has no value for it. It is filled if the names then are those of the "
-    "layout.",
-    why="The xacro's author put this argument into names, also in places that no other file shows.",
-    fix="Nothing. Give a value under `arguments` if you want another one, '' for none; "
-    "`fill_arguments: false` fills no argument.",
-    bad=_FLEET.format(""),
-    good=_FLEET.format("arguments: {prefix: '{robot}/'}\n"),
-    line=5,
-    formats=("fleet",),
-    beside={"rover.urdf.xacro": _XACRO},
-)
+OWN_ARGUMENT = declare("MF840", "own-argument", NOTE, formats=("fleet",))
 
 
 class WithArguments(NamedTuple):

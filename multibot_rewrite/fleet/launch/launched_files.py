@@ -31,41 +31,10 @@ from multibot_rewrite.system.records import Place
 PARAMS = "params"
 # What launch_ros fills in a file with allow_substs.
 _SUBSTITUTED = "$(var "
-_SPAWNER = (
-    "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n      exec: spawner\n"
-)
-_DRIVE = "drive:\n  ros__parameters: {type: diff_drive_controller/DiffDriveController}\n"
 # Of these kinds a value that is lost leads to another name; the nodes of managers are written anyway.
 _NAMES = frozenset({"frame", "link", "joint", "topic", "service"})
 _MANAGER = "lifecycle_manager"
-_FLEET = """\
-companions: {params: PARAMS}
-launch: system_model.yaml
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-NOT_REWRITTEN = declare(
-    "MF824",
-    "launched-parameters-not-rewritten",
-    NOTE,
-    what="A launch file gives a node a parameter file that is not rewritten. It is a note where "
-    "the robot has another file of that name. It is a warning where the launch writes a robot's "
-    "name in it, or more. Or it gives a node frames or topics itself, without a file (a warning).",
-    why="Robots that are launched with it all read the same frames, joints and topics.",
-    fix="Nothing, if the launch is to get the file that is written in its place; else give one of them "
-    "another name. Write a file with $(var ...) out for one robot, and list that under `params`. "
-    "What the launch sets itself goes into a file as well.",
-    bad=_FLEET.replace("PARAMS", "drive.yaml"),
-    good=_FLEET.replace("PARAMS", "config/drive.yaml"),
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": f"{_SPAWNER}      args: [drive, -p, config/drive.yaml]\n",
-        "drive.yaml": _DRIVE,
-        "config/drive.yaml": _DRIVE,
-    },
-)
+NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, formats=("fleet",))
 
 
 class _Named(NamedTuple):

@@ -18,38 +18,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_source
 from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
-_FLEET = """\
-launch: system_model.yaml
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-_MODEL = f"""\
-structure:
-  nodes:
-    /robot_state_publisher:
-      pkg: {STATE_PUBLISHER}
-      exec: {STATE_PUBLISHER}
-      node_name: {STATE_PUBLISHER}
-      params: {{frame_prefix: robot1/}}
-"""
-OTHER_PREFIX = declare(
-    "MF841",
-    "launch-file-adds-prefix",
-    WARNING,
-    what="A launch file starts robot_state_publisher with a frame_prefix that does not go with the "
-    "layout. The built description has the robot's name in its links already, or the layout leaves "
-    "frames without it.",
-    why="The frames of the description get the prefix besides, and every lookup of the planned frames "
-    "fails: there are two trees.",
-    fix="Leave frame_prefix out of the launch file, or start the robots with the built launch "
-    "file. Or use layout frame-prefix: there the description keeps its links.",
-    bad=f"layout: both\n{_FLEET}",
-    good=f"layout: frame-prefix\n{_FLEET}",
-    line=3,
-    formats=("fleet",),
-    beside={"system_model.yaml": _MODEL},
-)
+OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))
 
 
 def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:

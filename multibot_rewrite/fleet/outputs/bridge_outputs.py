@@ -116,34 +116,7 @@ def _for_all(
     yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
 
 
-NO_TOPIC = declare(
-    "MF509",
-    "sensor-without-gz-topic",
-    WARNING,
-    what="A topic of a sensor or plugin of gz-sim is not bridged. It has none in the description, and "
-    "the default has the name of the world in it. Or ros_gz_bridge of the release does not convert "
-    "its type, or Gazebo of the release never sends anything on it.",
-    why="The bridge cannot name or convert the topic, so the data does not arrive in ROS.",
-    fix="Give it a topic in the description. Otherwise use a sensor or plugin that the bridge knows.",
-    bad="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="gpu_lidar"/>
-  </gazebo>
-</robot>
-""",
-    good="""\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
-  </gazebo>
-</robot>
-""",
-    line=4,
-    formats=("fleet-urdf",),
-)
+NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-urdf",))
 
 
 def _is_carried(
@@ -225,36 +198,7 @@ def _full(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 
-ONE_ROS_TOPIC = declare(
-    "MF506",
-    "bridge-two-on-one-topic",
-    ERROR,
-    what="Two gz topics are bridged to one ROS topic.",
-    why="The data of both is mixed: who subscribes gets scans of two sensors in turn.",
-    fix="Give each entry its own ros_topic_name.",
-    bad="""\
-- ros_topic_name: scan
-  gz_topic_name: front_scan
-  ros_type_name: sensor_msgs/msg/LaserScan
-  gz_type_name: gz.msgs.LaserScan
-- ros_topic_name: scan
-  gz_topic_name: rear_scan
-  ros_type_name: sensor_msgs/msg/LaserScan
-  gz_type_name: gz.msgs.LaserScan
-""",
-    good="""\
-- ros_topic_name: scan
-  gz_topic_name: front_scan
-  ros_type_name: sensor_msgs/msg/LaserScan
-  gz_type_name: gz.msgs.LaserScan
-- ros_topic_name: rear_scan
-  gz_topic_name: rear_scan
-  ros_type_name: sensor_msgs/msg/LaserScan
-  gz_type_name: gz.msgs.LaserScan
-""",
-    line=5,
-    formats=("bridge",),
-)
+ONE_ROS_TOPIC = declare("MF506", "bridge-two-on-one-topic", ERROR, formats=("bridge",))
 
 
 def _same_ros_topic(

@@ -42,42 +42,7 @@ from multibot_rewrite.fleet.robots.start_poses import world_of
 _MANAGER = "moveit_controller_manager"
 _DESCRIPTION = "robot_description"
 _ONE_MANAGER = "Ros2ControlManager"
-_ARM = """\
-<robot name="arm">
-  <link name="base"/><link name="hand"/>
-  <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
-</robot>
-"""
-_SRDF = '<robot name="arm"><group name="arm"><joint name="elbow"/></group></robot>\n'
-_FLEET = """\
-cell: {}
-layout: frames-per-robot
-description: arm.urdf
-srdf: arm.srdf
-stack: moveit
-robots:
-  - {name: left, pose: {y: 1}, companions: {moveit: limits.yaml}}
-  - {name: right, pose: {y: 0}, companions: {moveit: OTHER}}
-"""
-DISAGREE = declare(
-    "MF836",
-    "arms-of-a-cell-disagree",
-    WARNING,
-    what="The MoveIt files of two arms of a cell give one parameter two values; the first is taken.",
-    why="move_group runs once for all arms and has one value. The other arm moves by a limit or a "
-    "setting that was not meant for it.",
-    fix="Give both arms the same value, or set it in your launch file after these parameters.",
-    bad=_FLEET.replace("OTHER", "slow/limits.yaml"),
-    good=_FLEET.replace("OTHER", "limits.yaml"),
-    line=8,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": _ARM,
-        "arm.srdf": _SRDF,
-        "limits.yaml": "default_velocity_scaling_factor: 0.5\n",
-        "slow/limits.yaml": "default_velocity_scaling_factor: 0.1\n",
-    },
-)
+DISAGREE = declare("MF836", "arms-of-a-cell-disagree", WARNING, formats=("fleet",))
 
 
 def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindings:

@@ -34,44 +34,7 @@ IN_PACKAGE = lazy_compile(
 )
 
 OTHER_CONTROLLER_FILE = declare(
-    "MF708",
-    "controller-file-of-all-robots",
-    WARNING,
-    what="A description loads a file of controllers that has the name of one of the fleet's "
-    "parameter files. It is not certain that they are the same.",
-    why="The robot's own file is written, and its controller manager still reads the old one. The "
-    "node in it has another name, and the joints are those of one robot.",
-    fix="Name under `params` the file that the description loads.",
-    bad="""\
-layout: both
-robots:
-  - {name: robot1, description: arm.urdf}
-companions:
-  params: [controllers.yaml]
-""",
-    good="""\
-layout: both
-robots:
-  - {name: robot1, description: arm.urdf}
-companions:
-  params: [config/controllers.yaml]
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": """\
-<robot name="arm">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
-      <parameters>config/controllers.yaml</parameters>
-    </plugin>
-  </gazebo>
-</robot>
-""",
-        "controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n",
-        "config/controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n",
-    },
+    "MF708", "controller-file-of-all-robots", WARNING, formats=("fleet",)
 )
 
 
@@ -161,34 +124,7 @@ def _unsure(robot: RewrittenRobot, path: str) -> Finding:
 
 
 PARAMS = "params"
-_LOADING = """\
-<robot name="arm">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
-      <parameters>controllers.yaml</parameters>
-    </plugin>
-  </gazebo>
-</robot>
-"""
-_OF_ONE = "layout: both\nrobots:\n  - {name: robot1, description: arm.urdf}\n"
-NOT_FOLLOWED = declare(
-    "MF834",
-    "loaded-file-not-found",
-    NOTE,
-    what="A description loads a parameter file that is not there.",
-    why="Nothing is known of its controllers, and no robot gets its own: all "
-    "robots would read the same names of nodes and joints.",
-    fix="Source the workspace that has it, or list the file under `params`.",
-    bad=_OF_ONE,
-    good=f"{_OF_ONE}companions: {{params: config/controllers.yaml}}\n",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": _LOADING,
-        "config/controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n",
-    },
-)
+NOT_FOLLOWED = declare("MF834", "loaded-file-not-found", NOTE, formats=("fleet",))
 
 
 def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:

@@ -32,29 +32,7 @@ from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY
 
 _SCOPE = "::"
 _BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"
-_WORLD = '<sdf version="1.8"><world name="w">\n{}</world></sdf>\n'
-WORLD_ROBOT = declare(
-    "MF846",
-    "robot-of-the-world",
-    NOTE,
-    what="The world of the fleet has the robot in it, or a plugin that names it. The robot is left "
-    "out, a block that names it is written for each robot. A warning where a plugin can name one robot "
-    "alone: it names the first.",
-    why="The launch file spawns each robot at its pose. A robot that the world has as well would stand "
-    "beside them with names that no node uses.",
-    fix="Nothing for a note. Of a plugin for one robot check that the first one is meant.",
-    bad="simulator: gazebo\ndistro: jazzy\ndescription: rover.sdf\n"
-    "simulator_world: lake.sdf\nrobots: [{name: robot1}]\n",
-    good="simulator: gazebo\ndistro: jazzy\ndescription: rover.sdf\n"
-    "simulator_world: sea.sdf\nrobots: [{name: robot1}]\n",
-    line=4,
-    formats=("fleet",),
-    beside={
-        "rover.sdf": '<sdf version="1.8"><model name="rover"><link name="base"/></model></sdf>\n',
-        "lake.sdf": _WORLD.format("<include><uri>model://rover</uri></include>\n"),
-        "sea.sdf": _WORLD.format("<model name='buoy'><link name='link'/></model>\n"),
-    },
-)
+WORLD_ROBOT = declare("MF846", "robot-of-the-world", NOTE, formats=("fleet",))
 
 
 class _Kind(NamedTuple):

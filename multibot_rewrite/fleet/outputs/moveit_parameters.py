@@ -199,42 +199,11 @@ def _plain(value: Any) -> Any:
 
 
 _PACKAGES = ("moveit_ros_move_group", "moveit_servo", "moveit_ros_planning")
-_FLEET = """\
-layout: LAYOUT
-affix: prefix
-description: arm.urdf
-stack: moveit
-robots:
-  - {name: left}
-"""
 # moveit2 2.12.4 planning_scene_monitor.cpp (``getUpdatedFrameTransforms``: every frame of tf is
 # looked up from the root link or the virtual joint's parent, by its name in the URDF and SRDF),
 # current_state_monitor.cpp (a moving virtual joint: the same of its child),
 # planning_scene_display.cpp (``calculateOffsetPosition``). No parameter puts a prefix before them.
-PREFIXED_LATER = declare(
-    "MF837",
-    "moveit-with-frame-prefix",
-    ERROR,
-    what="A robot runs MoveIt in layout frame-prefix: links have a prefix in tf, and none in the URDF.",
-    why="MoveIt looks up in tf what the URDF calls its root link, which no robot has there. So it"
-    " cannot place goals in other frames, sensors or objects. Its displays in RViz stand at "
-    "the origin, and two arms look the same. No parameter of MoveIt puts a prefix before "
-    "links.",
-    fix="Take layout frames-per-robot with affix prefix: links have the same names in URDF, SRDF "
-    "and tf. Leave frame_prefix of robot_state_publisher empty then.",
-    bad=_FLEET.replace("LAYOUT", "frame-prefix"),
-    good=_FLEET.replace("LAYOUT", "frames-per-robot"),
-    line=6,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": """\
-<robot name="arm">
-  <link name="base"/><link name="hand"/>
-  <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
-</robot>
-"""
-    },
-)
+PREFIXED_LATER = declare("MF837", "moveit-with-frame-prefix", ERROR, formats=("fleet",))
 
 
 def moveit_frames(plan: FleetPlan) -> Iterator[Finding]:

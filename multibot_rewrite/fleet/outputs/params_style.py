@@ -40,34 +40,7 @@ ZONES = MappingProxyType(
 _TF = frozenset(f"/{it}" for it in TF_TOPICS)
 _INSTEAD = "take layout tf-per-robot or both, or start Nav2 with nav2.launch.py of multibot_rewrite"
 
-NO_RULE = declare(
-    "MF829",
-    "rule-not-of-bringup",
-    NOTE,
-    what="With `params_style: bringup`, a node may use a topic or service that all robots would share, "
-    "since nav2_bringup gives no remap rule for it.",
-    why="Its launch files give the rules for tf and cmd_vel alone, and no parameter sets the name.",
-    fix="Nothing if the robots do not use what is named; else start Nav2 with nav2.launch.py of this "
-    "package.",
-    bad="""\
-layout: tf-per-robot
-params_style: bringup
-distro: jazzy
-stack: nav2
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-layout: tf-per-robot
-distro: jazzy
-stack: nav2
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    formats=("fleet",),
-)
+NO_RULE = declare("MF829", "rule-not-of-bringup", NOTE, formats=("fleet",))
 
 
 def check_style(file: FleetFile) -> None:

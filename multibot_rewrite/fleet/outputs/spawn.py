@@ -162,48 +162,7 @@ def _namespace(plugin: etree._Element) -> str:
     return text_at(plugin if ros is None else ros, "namespace")
 
 
-_LAMPS = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
-      <ros><namespace>/rover</namespace></ros>
-    </plugin>
-    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so"{}
-  </gazebo>
-</robot>
-"""
-PARTLY_NAMESPACED = declare(
-    "MF706",
-    "plugins-partly-namespaced",
-    WARNING,
-    what="Some Gazebo Classic plugins of a description have a namespace, others have none, in a layout "
-    "that gives each robot one.",
-    why="The spawner can set one namespace for all plugins, which would overwrite those that are "
-    "there. It is not set, so the other plugins run in the root namespace: those of all robots "
-    "use the same topics.",
-    fix="Add <ros><namespace> to each plugin.",
-    bad="""\
-# in half.urdf only one of two plugins has <ros><namespace>
-robots:
-  - {name: robot1, description: half.urdf}
-  - {name: robot2, description: half.urdf}
-""",
-    good="""\
-# in each.urdf both plugins have <ros><namespace>
-robots:
-  - {name: robot1, description: each.urdf}
-  - {name: robot2, description: each.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "half.urdf": _LAMPS.format("/>"),
-        "each.urdf": _LAMPS.format(
-            ">\n      <ros><namespace>/rover</namespace></ros>\n    </plugin>"
-        ),
-    },
-)
+PARTLY_NAMESPACED = declare("MF706", "plugins-partly-namespaced", WARNING, formats=("fleet",))
 
 
 def _half(robot: RewrittenRobot) -> Iterator[Finding]:
@@ -216,43 +175,7 @@ def _half(robot: RewrittenRobot) -> Iterator[Finding]:
     yield at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
 
 
-MODEL_OF_OTHER_NAME = declare(
-    "MF707",
-    "model-of-other-name",
-    WARNING,
-    what="A plugin looks for its robot in the simulator by the name in the description, and the "
-    "robot is spawned by another name.",
-    why="The spawner's name is the model's: the plugin finds no model, or that of another robot.",
-    fix="Give the robot that name with `model:`, in a layout that renames the description's for each "
-    "robot.",
-    bad="""\
-layout: both
-affix: prefix
-robots:
-  - {name: robot1, description: docking.urdf}
-""",
-    good="""\
-layout: both
-affix: prefix
-robots:
-  - {name: robot1, description: docking.urdf, model: robot1_create3}
-""",
-    line=4,
-    formats=("fleet",),
-    beside={
-        "docking.urdf": """\
-<robot name="create3">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="dock" filename="libgazebo_ros_create_docking_status.so">
-      <robot_model_name>create3</robot_model_name>
-      <receiver_link_name>base_link</receiver_link_name>
-    </plugin>
-  </gazebo>
-</robot>
-""",
-    },
-)
+MODEL_OF_OTHER_NAME = declare("MF707", "model-of-other-name", WARNING, formats=("fleet",))
 
 
 _NOT_LOADED = (
@@ -263,31 +186,7 @@ _READ_BY_ROS_1 = (
     "has parameters of ROS 1, which ROS 2 does not read: its topics are the same for all robots",
     "write those of ROS 2, with <ros><namespace>",
 )
-_CONTROLLED = """\
-<robot name="arm">
-  <link name="base_link"/>
-  <gazebo><plugin name="control" filename="lib{}.so"/></gazebo>
-</robot>
-"""
-PLUGIN_OF_ROS_1 = declare(
-    "MF713",
-    "plugin-of-ros-1",
-    WARNING,
-    what="A plugin of a simulated robot is known of ROS 1 alone, or has the parameters of ROS 1.",
-    why="No package of ROS 2 has its library. The simulator says that it cannot load it and goes "
-    "on without it. So nothing moves the joints, or a sensor sends nothing. Where ROS 2 has the "
-    "library, it does not read these parameters: all robots have its usual topics.",
-    fix="Put the plugin of ROS 2 in its place, as gazebo_ros2_control for gazebo_ros_control, or "
-    "delete it. Write the parameters of ROS 2, as <ros><remapping>cmd_vel:=drive</remapping></ros>.",
-    bad="robots:\n  - {name: robot1, description: old.urdf}\n",
-    good="robots:\n  - {name: robot1, description: new.urdf}\n",
-    line=2,
-    formats=("fleet",),
-    beside={
-        "old.urdf": _CONTROLLED.format("gazebo_ros_control"),
-        "new.urdf": _CONTROLLED.format("gazebo_ros2_control"),
-    },
-)
+PLUGIN_OF_ROS_1 = declare("MF713", "plugin-of-ros-1", WARNING, formats=("fleet",))
 
 
 def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:

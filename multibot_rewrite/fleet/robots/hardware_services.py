@@ -11,31 +11,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import at_robot
 from multibot_rewrite.system.records import SERVES
 
-_ROBOTS = "robots:\n  - {name: robot1, description: arm.urdf}\n"
-_FLEET = "layout: both\nsimulator: none\nstack: "
-MOVED = declare(
-    "MF851",
-    "service-of-hardware-moved",
-    NOTE,
-    what="The hardware of a robot serves an absolute name. A rule at its controller manager puts the "
-    "robot's name before it.",
-    why="Who calls the old name reaches no robot any more. It may be an emergency stop.",
-    fix="Call the name of each robot.",
-    bad=f"{_FLEET}ros2_control\n{_ROBOTS}",
-    good=f"{_FLEET}robot_state\n{_ROBOTS}",
-    line=5,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": """\
-<robot name="arm">
-  <link name="base_link"/>
-  <ros2_control name="arm" type="system">
-    <hardware><plugin>sts_hardware_interface/STSHardwareInterface</plugin></hardware>
-  </ros2_control>
-</robot>
-""",
-    },
-)
+MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))
 
 
 def moved_services(plan: FleetPlan) -> Iterator[Finding]:

@@ -20,38 +20,7 @@ from multibot_rewrite.description.sources.read import JOIN, is_xacro
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 
-_ARM = """\
-<robot name="arm">
-  <link name="base"/>
-  <link name="tool">
-    <visual><geometry><mesh filename="MESH"/></geometry></visual>
-  </link>
-  <joint name="wrist" type="fixed"><parent link="base"/><child link="tool"/></joint>
-</robot>
-"""
-_FLEET = """\
-join:
-  - {description: arm.urdf}
-  - {description: arm.urdf, prefix: left_, at: {parent: tool}}
-robots: [{name: robot1}, {name: robot2}]
-"""
-ABOUT_PARTS = declare(
-    "MF848",
-    "joined-parts",
-    NOTE,
-    what="Something is left out, or is no part's own any more, since a robot is joined of parts.",
-    why="A prefix of a part changes its links, joints and sensors. Topics, nodes and ports are the "
-    "robot's, a mesh is found from where it was, and one controller manager has one value.",
-    fix="See what the line names; `multibot join` shows the joined files.",
-    bad=_FLEET,
-    good=_FLEET.replace("arm.urdf", "clean.urdf"),
-    line=4,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": _ARM.replace("MESH", "meshes/tool.stl"),
-        "clean.urdf": _ARM.replace("MESH", "package://arm_description/meshes/tool.stl"),
-    },
-)
+ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
 
 def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:

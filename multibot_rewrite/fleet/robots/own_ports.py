@@ -13,34 +13,7 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.robots.member import with_text
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 
-_FLEET = "layout: both\ndistro: jazzy\ndescription: drone.sdf\nrobots:\n  - {name: robot1}\n"
-OWN_PORTS = declare(
-    NUMBERED,
-    "own-ports",
-    NOTE,
-    what="A description or a parameter file names a port that only one robot can have, and each "
-    "further robot got a number of its own.",
-    why="Two plugins or nodes of one computer cannot open one port: the second robot would have "
-    "no autopilot, or that of the first one.",
-    fix="Start the program at the other end with the same number: of ArduPilot sim_vehicle.py -I 1 for "
-    "the second robot, of PX4 px4 -i 1. A robot whose description has another number keeps it.",
-    bad=f"{_FLEET}  - {{name: robot2}}\n",
-    good=_FLEET,
-    line=6,
-    formats=("fleet",),
-    beside={
-        "drone.sdf": """\
-<sdf version="1.9">
-  <model name="drone">
-    <link name="base_link"/>
-    <plugin name="ArduPilotPlugin" filename="ArduPilotPlugin">
-      <fdm_port_in>9002</fdm_port_in>
-    </plugin>
-  </model>
-</sdf>
-""",
-    },
-)
+OWN_PORTS = declare(NUMBERED, "own-ports", NOTE, formats=("fleet",))
 
 
 def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:

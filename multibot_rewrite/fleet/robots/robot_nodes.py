@@ -266,35 +266,7 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
 
 
 MANAGERS = "nav2_lifecycle_manager"
-NOT_MANAGED = declare(
-    "MF803",
-    "shared-node-not-managed",
-    NOTE,
-    what="A node that all robots share is managed by a lifecycle manager that each robot has; it is "
-    "left out of the plan there.",
-    why="Each manager configures it: the second one fails, since it is active already, and the whole "
-    "bringup of that robot stops.",
-    fix="Remove it from node_names of the robots' managers, and start it with a lifecycle manager of "
-    "its own.",
-    bad="""\
-shared_nodes: [map_server]
-shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
-layout: both
-stack: nav2
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-layout: both
-stack: nav2
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=1,
-    formats=("fleet",),
-)
+NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet",))
 
 
 def apart(

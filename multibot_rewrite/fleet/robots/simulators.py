@@ -37,7 +37,6 @@ from multibot_rewrite.producers.evidence.semantics import FIXED
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.words import moves
 
-_AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
 DRIVE = """\
 <robot name="rover">
   <link name="base_link"/>
@@ -46,55 +45,10 @@ DRIVE = """\
   </gazebo>
 </robot>
 """
-_FLEET = """\
-launch: system_model.yaml
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-SIMULATED_OR_REAL = declare(
-    "MF828",
-    "simulated-or-real",
-    NOTE,
-    what="A description has plugins or sensors for a simulator, and the robot's launch files start "
-    "neither a simulator nor a bridge to one. Or it has none and no mass, and is not spawned.",
-    why="They may be real robots, or the simulator is started elsewhere. So nodes of these plugins may "
-    "be missing, and no topic has to be bridged: `check` does not find that a bridge is missing. "
-    "Gazebo spawns nothing of a robot without mass.",
-    fix="Write `simulator: none` for real robots, `simulator: gazebo` for simulated ones.",
-    bad=_FLEET,
-    good=f"simulator: gazebo\n{_FLEET}",
-    line=3,
-    formats=("fleet",),
-    beside={"system_model.yaml": _AMCL, "robot.urdf": DRIVE},
-)
+SIMULATED_OR_REAL = declare("MF828", "simulated-or-real", NOTE, formats=("fleet",))
 # The stack whose ros2_control_node loads the hardware of a real robot.
 _LOADING = "ros2_control"
-_CONTROLLED = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <ros2_control name="drive" type="system">
-    <hardware><plugin>{}</plugin></hardware>
-  </ros2_control>
-  <gazebo><plugin name="control" filename="gz_ros2_control-system"/></gazebo>
-</robot>
-"""
-OTHER_HARDWARE = declare(
-    "MF843",
-    "hardware-of-real-robot-simulated",
-    ERROR,
-    what="The robots are simulated, and the hardware class of their `<ros2_control>` is a real "
-    "robot's driver. Or they are real, and the class is a simulator's.",
-    why="The simulator's plugin looks for its own classes, ros2_control_node for drivers: neither "
-    "finds the other's, and no controller comes up.",
-    fix="Give the xacro the argument that switches it, often `use_sim` or `sim_gazebo`; the hint has "
-    "it where there is one. Or write another `simulator`.",
-    bad="simulator: gazebo\ndescription: robot.urdf\nrobots:\n  - {name: robot1}\n",
-    good="simulator: none\ndescription: robot.urdf\nrobots:\n  - {name: robot1}\n",
-    line=4,
-    formats=("fleet",),
-    beside={"robot.urdf": _CONTROLLED.format("acme_hardware/AcmeSystem")},
-)
+OTHER_HARDWARE = declare("MF843", "hardware-of-real-robot-simulated", ERROR, formats=("fleet",))
 
 
 def other_hardware(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
@@ -171,25 +125,7 @@ def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
     yield at_robot(SIMULATED_OR_REAL, robot, message, hint)
 
 
-UNREAD_DRIVE = declare(
-    "MF844",
-    "drive-of-unknown-code",
-    NOTE,
-    what="No section of the vocabulary knows a plugin or hardware class of the robot. It names a joint "
-    "or link, or nothing else moves the robot.",
-    why="Which topics it reads, and whether they have the robot's name, is not known. So the plan may "
-    "hold, and the robot not drive, or all robots at once.",
-    fix="Write a section for it in a vocabulary file, with a line for each topic and service; where it "
-    "opens none, `opens: nothing`.",
-    bad="robots:\n  - {name: robot1, description: own.urdf}\n",
-    good="robots:\n  - {name: robot1, description: known.urdf}\n",
-    line=2,
-    formats=("fleet",),
-    beside={
-        "own.urdf": DRIVE.replace("gazebo_ros_diff", "acme"),
-        "known.urdf": DRIVE,
-    },
-)
+UNREAD_DRIVE = declare("MF844", "drive-of-unknown-code", NOTE, formats=("fleet",))
 
 
 def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:

@@ -16,65 +16,9 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
-_URDF = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="wheel"/>
-  <joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/></joint>
-</robot>
-"""
-_SDF = """\
-<sdf version="1.9"><model name="rover">
-  <link name="base_link"/>
-  <link name="wheel"/>
-  <joint name="{}" type="revolute"><parent>base_link</parent><child>wheel</child></joint>
-</model></sdf>
-"""
+DIFFERENT = declare("MF711", "model-differs-from-description", WARNING, formats=("fleet",))
 
-DIFFERENT = declare(
-    "MF711",
-    "model-differs-from-description",
-    WARNING,
-    what="The model for the simulator (`simulated`) lacks a moving joint of the description. Or "
-    "its sensor or plugin sends data in a frame that the description lacks.",
-    why="The joint's state never arrives, so its links are missing in tf. Data in an unknown "
-    "frame is dropped.",
-    fix="Give both the same names, or name another file under `simulated`.",
-    bad="""\
-description: rover.urdf
-simulated: other.sdf
-robots: [{name: robot1}]
-""",
-    good="""\
-description: rover.urdf
-simulated: rover.sdf
-robots: [{name: robot1}]
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "rover.urdf": _URDF,
-        "rover.sdf": _SDF.format("wheel_joint"),
-        "other.sdf": _SDF.format("axle"),
-    },
-)
-
-SDF_ALONE = declare(
-    "MF712",
-    "sdf-for-state-publisher",
-    WARNING,
-    what="robot_state_publisher gets an SDF.",
-    why="It reads one only with the package sdformat_urdf, which it does not depend on. Without "
-    "that package the node ends at its start, and no node sends the transforms of the robot's "
-    "links.",
-    fix="Name the robot's URDF as `description` and the SDF as `simulated`, or install "
-    "ros-$ROS_DISTRO-sdformat-urdf on the robots.",
-    bad="description: rover.sdf\nrobots: [{name: robot1}]\n",
-    good="description: rover.urdf\nsimulated: rover.sdf\nrobots: [{name: robot1}]\n",
-    line=2,
-    formats=("fleet",),
-    beside={"rover.urdf": _URDF, "rover.sdf": _SDF.format("wheel_joint")},
-)
+SDF_ALONE = declare("MF712", "sdf-for-state-publisher", WARNING, formats=("fleet",))
 
 
 def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:

@@ -27,36 +27,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 # The rule about a description alone; a fleet takes its advice.
 _IN_ROBOT = "MB416"
 _GZ = "gz-sim-"
-_ROVER = """\
-<robot name="rover">
-  <link name="base_link">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-  </link>
-{}</robot>
-"""
-_SENSORS = """\
-  <gazebo>
-    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>
-  </gazebo>
-"""
-_FLEET = "simulator: gazebo\ndistro: jazzy\ndescription: {}.urdf\nrobots:\n  - {{name: robot1}}\n"
-MOVED = declare(
-    LEFT,
-    "system-of-the-world",
-    NOTE,
-    what="A description loads systems that act on the whole world. They are left out of each robot. "
-    "The world of the fleet loads them, with `urdf-postfix` yours. A warning where robots have other "
-    "settings for one: those of the first robot are taken.",
-    why="gz-sim loads them again with every robot: two Sensors systems crash it (gz-sensors issue "
-    "497), two Imu systems each publish every IMU of the world.",
-    fix="Nothing, with the world of the fleet (`simulator_world`, or the one that is made). Another "
-    "world that you start has to load them: the finding of `urdf-postfix` has the text.",
-    bad=_FLEET.format("rover"),
-    good=_FLEET.format("base"),
-    line=5,
-    formats=("fleet",),
-    beside={"rover.urdf": _ROVER.format(_SENSORS), "base.urdf": _ROVER.format("")},
-)
+MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:

@@ -22,90 +22,12 @@ MANAGER = "controller_manager"
 # So many names in one line.
 _SHOWN = 3
 NOT_DECLARED = declare(
-    "MF801",
-    "controller-not-declared",
-    NOTE,
-    what="A stack has a controller that none of the robot's parameter files declares, though they "
-    "declare others; it is left out of the plan.",
-    why="The controller manager loads what its parameters name. A plan with another controller would "
-    "report it as missing.",
-    fix="Nothing, if the files are right. Else declare the controller below controller_manager.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    update_rate: 100
-    base: {type: diff_drive_controller/DiffDriveController}
-base:
-  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    update_rate: 100
-    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
-""",
-    line=4,
-    formats=("params",),
-    options={"stack": "ros2_control"},
+    "MF801", "controller-not-declared", NOTE, formats=("params",), options={"stack": "ros2_control"}
 )
-UNKNOWN_TYPE = declare(
-    "MF802",
-    "controller-type-not-known",
-    WARNING,
-    what="The type of a controller is not known, or the release lacks it. Its topics, frames "
-    "and interfaces are not in the plan.",
-    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or have it written while the node runs:"
-    " multibot snapshot --form nodes.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: acme_controllers/ArmController}
-arm:
-  ros__parameters: {rate: 50}
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-arm:
-  ros__parameters: {rate: 50}
-""",
-    line=3,
-    formats=("params",),
-)
+UNKNOWN_TYPE = declare("MF802", "controller-type-not-known", WARNING, formats=("params",))
 
 
-NO_TYPE = declare(
-    "MF825",
-    "spawned-controller-without-type",
-    NOTE,
-    what="A launch file spawns a controller, and no file says its type: the plan has its name, and "
-    "nothing of its topics, frames and interfaces.",
-    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Name the parameter file with its type under `params`, or give it to the spawner.",
-    bad="""\
-launch: system_model.yaml
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-companions: {params: controllers.yaml}
-launch: system_model.yaml
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n"
-        "      exec: spawner\n      args: [drive]\n",
-        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    drive: "
-        "{type: diff_drive_controller/DiffDriveController}\n",
-    },
-)
+NO_TYPE = declare("MF825", "spawned-controller-without-type", NOTE, formats=("fleet",))
 ALWAYS: Mapping[str, str] = {}
 
 

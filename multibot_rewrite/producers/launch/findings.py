@@ -11,59 +11,9 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.system.records import Place
 
-_ROBOTS = """\
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-_AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
-NOT_LAUNCHED = declare(
-    "MF821",
-    "node-not-launched",
-    NOTE,
-    what="A stack has a node that none of the robot's launch files starts; it is left out of the plan.",
-    why="The launch files say what runs. A plan with another node would report it as missing.",
-    fix="Nothing, if the launch files are right. Else start the node, or name its launch file, too.",
-    bad=f"launch: system_model.yaml\nstack: [robot_localization]\n{_ROBOTS}",
-    good=f"launch: system_model.yaml\n{_ROBOTS}",
-    formats=("fleet",),
-    beside={"system_model.yaml": _AMCL},
-)
-NOT_KNOWN = declare(
-    "MF822",
-    "launched-node-not-known",
-    NOTE,
-    what="A launch file starts a node that is not known: the plan has its name, and nothing of its "
-    "topics, services and frames.",
-    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or have it written while the node runs:"
-    " multibot snapshot --form nodes.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"{_ROBOTS}launch: known.yaml\n",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {pkg: my_driver, exec: d, node_name: d}\n",
-        "known.yaml": _AMCL,
-    },
-)
-NOT_WHOLE = declare(
-    "MF823",
-    "launch-not-whole",
-    WARNING,
-    what="A part of a launch file cannot be read here, or is decided only at run time.",
-    why="The nodes that it starts are not in the plan, unless a stack has them.",
-    fix="Source the workspace that has the package, or give the folder of its sources as root; name a "
-    "stack for what only a run decides.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"launch: known.yaml\n{_ROBOTS}",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {exec: ./start.sh}\n",
-        "known.yaml": _AMCL,
-    },
-)
+NOT_LAUNCHED = declare("MF821", "node-not-launched", NOTE, formats=("fleet",))
+NOT_KNOWN = declare("MF822", "launched-node-not-known", NOTE, formats=("fleet",))
+NOT_WHOLE = declare("MF823", "launch-not-whole", WARNING, formats=("fleet",))
 STOOD_IN = "launch is not installed here: a stand-in read the launch file"
 _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 

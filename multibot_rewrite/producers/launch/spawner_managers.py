@@ -14,42 +14,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.spawners import Spawned
 
-_ROBOTS = """\
-companions: {params: controllers.yaml}
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-_MODEL = """\
-structure:
-  nodes:
-    /arm/controller_manager:
-      {pkg: controller_manager, exec: ros2_control_node, node_name: controller_manager}
-    /spawner:
-      {pkg: controller_manager, exec: spawner, args: [drive, -n, arm, -c, MANAGER]}
-"""
-NO_MANAGER = declare(
-    "MG723",
-    "no-controller-manager",
-    ERROR,
-    what="A spawner waits for a controller manager that no node of the launch files and no plugin of a "
-    "published description makes. In `build` it is a warning where they start another one.",
-    why="The spawner waits for the manager and gives up: its controllers are never loaded. A relative "
-    "name is below the spawner's namespace, so a namespace in both is there twice.",
-    fix="Name the manager that runs (`-c`), without the namespace that the spawner has already, or "
-    "with a slash before the whole name. Or start it in that namespace. Where another launch file "
-    "starts it, check both together.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"launch: right.yaml\n{_ROBOTS}",
-    line=5,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": _MODEL.replace("MANAGER", "arm/controller_manager"),
-        "right.yaml": _MODEL.replace("MANAGER", "controller_manager"),
-        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    drive: "
-        "{type: diff_drive_controller/DiffDriveController}\n",
-    },
-)
+NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
 
 
 class UnderManagers(NamedTuple):

@@ -30,7 +30,6 @@ from multibot_rewrite.companions.bridge_entry import (
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.rules.files.examples import a_row
 from multibot_rewrite.rules.files.given import did_you_mean_at
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
 from multibot_rewrite.spelling.bridge_rows import bridge_data
@@ -39,20 +38,7 @@ from multibot_rewrite.system.records import NOWHERE, Place
 _BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 
-@rule(
-    "MB855",
-    "bridge-row",
-    WARNING,
-    what="ros_gz_bridge does not load a row: a type or a topic is missing, topic_name is beside "
-    "ros_topic_name or gz_topic_name, or the direction is not known. Or the file is no list of rows.",
-    why="ros_gz_bridge reports the row and goes on without it, so one topic is not bridged.",
-    fix="Write ros_topic_name and gz_topic_name or topic_name, both types, and one of BIDIRECTIONAL, "
-    "GZ_TO_ROS and ROS_TO_GZ.",
-    bad=a_row("direction: GZ_TO_ROSS"),
-    good=a_row("direction: GZ_TO_ROS"),
-    line=5,
-    formats=(BRIDGE,),
-)
+@rule("MB855", "bridge-row", WARNING, formats=(BRIDGE,))
 def bridge_row(file: NamedFile) -> Iterator[Remark]:
     """Each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top level must
     be a YAML sequence')."""
@@ -69,18 +55,7 @@ def _rows(file: NamedFile) -> list[yaml.Node]:
     return items(file.document.root) if file.document else []
 
 
-@rule(
-    "MB858",
-    "bridge-key",
-    WARNING,
-    what="A row of a ros_gz_bridge file has a key that the bridge does not know.",
-    why="ros_gz_bridge ignores it without a message, so the default is used.",
-    fix="Correct the key.",
-    bad=a_row("subscriber_queu: 5"),
-    good=a_row("subscriber_queue: 5"),
-    line=5,
-    formats=(BRIDGE,),
-)
+@rule("MB858", "bridge-key", WARNING, formats=(BRIDGE,))
 def bridge_key(file: NamedFile) -> Iterator[Remark]:
     """Each key of each row."""
     for row in map(row_of, _rows(file)):
@@ -90,18 +65,7 @@ def bridge_key(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(key, message, did_you_mean(name, KEYS) or "delete it")
 
 
-@rule(
-    "MB874",
-    "bridge-types-not-converted",
-    WARNING,
-    what="ros_gz_bridge knows the ROS type and the gz type of a row, and does not convert the one "
-    "into the other. Or a type is nearly one that it knows.",
-    why="ros_gz_bridge fails to make this bridge, so the topic is not bridged.",
-    fix="Write the type that goes with the other one.",
-    bad=a_row().replace("gz.msgs.LaserScan", "gz.msgs.IMU"),
-    good=a_row(),
-    formats=(BRIDGE,),
-)
+@rule("MB874", "bridge-types-not-converted", WARNING, formats=(BRIDGE,))
 def not_converted(file: NamedFile) -> Iterator[Remark]:
     """Rows whose types do not belong together."""
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
@@ -132,28 +96,10 @@ def _misspelt(
         yield remark_at(node, f"there is no gz type {gz!r}", f"did you mean gz.msgs.{near}?")
 
 
-def _of_models(one: str, other: str) -> str:
-    """Two rows that are for a model each."""
-    return a_row().replace(
-        "gz_topic_name: scan", f"gz_topic_name: /model/{one}/odometry"
-    ) + a_row().replace("topic_name: scan", "topic_name: battery").replace(
-        "gz_topic_name: battery", f"gz_topic_name: /model/{other}/battery"
-    )
-
-
 @rule(
     "MB889",
     "bridge-of-second-model",
     WARNING,
-    what="A bridge file has topics of two models. The first model is the robot; topics of the other "
-    "are bridged once for all robots.",
-    why="If the other model is a robot too, its topics stay as they are. Its copies for the "
-    "fleet are not bridged.",
-    fix="Nothing, if it is a part of the world such as a door. Otherwise write the robot's model, or "
-    "give the other robot its own bridge file.",
-    bad=_of_models("rover", "rover_v2"),
-    good=_of_models("rover", "rover"),
-    line=6,
     formats=(BRIDGE,),
     options={"robots": ("robot1", "robot2")},
 )
@@ -174,11 +120,6 @@ def second_model(file: NamedFile) -> Iterator[Remark]:
     "MB890",
     "bridge-not-per-robot",
     WARNING,
-    what="A service has one entry for all robots.",
-    why="The robots share the service: each call goes to the one robot whose name it has in gz.",
-    fix="Write the service once for each robot.",
-    bad="- service_name: /model/rover/reset\n  ros_type_name: std_srvs/srv/Empty\n",
-    good="- service_name: /world/hall/control\n  ros_type_name: ros_gz_interfaces/srv/ControlWorld\n",
     formats=(BRIDGE,),
     options={"robots": ("robot1", "robot2")},
 )
@@ -212,32 +153,7 @@ class GzTopic(NamedTuple):
     place: Place = NOWHERE
 
 
-@rule(
-    "MB879",
-    "bridge-row-without-gz-topic",
-    WARNING,
-    what="A bridge row reads a gz topic that neither the description nor the world sends, "
-    "while one of them sends another topic of that type. Or the description has the topic with "
-    "another type or direction. Asked by `build` and `plan`, which know the robot and how "
-    "it is spawned.",
-    why="The bridge waits for data that never comes.",
-    fix="Give the row the topic, the type and the direction of the sensor.",
-    bad=a_row("direction: GZ_TO_ROS").replace("gz_topic_name: scan", "gz_topic_name: lidar/scan"),
-    good=a_row("direction: GZ_TO_ROS"),
-    line=2,
-    formats=(BRIDGE,),
-    beside={
-        "robot.urdf": """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
-  </gazebo>
-</robot>
-""",
-    },
-    options={"build": True},
-)
+@rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Remark]:
     """Rows for a gz topic of the description with another type or direction, and rows that read one
     which is not there, although another one of their type is: what sends topics of other types is not

@@ -23,29 +23,7 @@ _NEEDED = ("name", "type")
 _Filters = Mapping[str, Mapping[str, Given]]
 
 
-def _chain(second: str) -> str:
-    return (
-        "scan_to_scan_filter_chain:\n"
-        "  ros__parameters:\n"
-        "    filter1: {name: a, type: laser_filters/InterpolationFilter}\n"
-        f"    {second}: {{name: b, type: laser_filters/InterpolationFilter}}\n"
-    )
-
-
-@rule(
-    "MB896",
-    "filter-chain",
-    WARNING,
-    what="A filter of a chain of laser_filters is not loaded. A number before it is missing, it "
-    "has no number, no name or no type, or another filter has its name. The last three are errors.",
-    why="The chain takes filter1, filter2 and so on up to the first number that is not there; the rest "
-    "does nothing. Of a filter without name or type nothing is loaded: the node sends no scan.",
-    fix="Number the filters from 1 without a gap; give each a name of its own and a type.",
-    bad=_chain("filter3"),
-    good=_chain("filter2"),
-    line=4,
-    formats=(PARAMS,),
-)
+@rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
 def broken_chains(file: NamedFile) -> Iterator[Remark]:
     """Of every chain of a node of laser_filters."""
     for section in sections(file):

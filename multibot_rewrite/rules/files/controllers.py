@@ -30,39 +30,12 @@ from multibot_rewrite.producers.evidence.moveit import (
     names_of,
 )
 from multibot_rewrite.producers.evidence.records import GivenNode
-from multibot_rewrite.rules.files.examples import a_controller
 from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
-def _moved_by(name: str) -> str:
-    return (
-        "moveit_simple_controller_manager:\n"
-        f"  controller_names: [{name}]\n"
-        f"  {name}:\n"
-        "    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, "
-        "joints: [left_wheel_joint]}\n"
-    )
-
-
-@rule(
-    "MB857",
-    "undeclared-controller-beside",
-    WARNING,
-    what="MoveIt sends trajectories to a controller that no parameter file of the robot "
-    "declares. Or the controller does not move that joint, or does not serve that action. "
-    "Of a file alone the parameter files in its folder count. An error where the rewrite "
-    "has made it so.",
-    why="MoveIt waits for the action, and rejects every plan to execute: 'Action client not "
-    "connected to action server'.",
-    fix="Use the controller's name, its joints and its action.",
-    bad=_moved_by("arm_controler"),
-    good=_moved_by("arm_controller"),
-    line=3,
-    formats=(MOVEIT, PARAMS),
-    beside={"ros2_controllers.yaml": a_controller("arm_controller", "arm_controller")},
-)
+@rule("MB857", "undeclared-controller-beside", WARNING, formats=(MOVEIT, PARAMS))
 def undeclared_controller(file: NamedFile) -> Iterator[Remark]:
     """Controllers of ``moveit_simple_controller_manager``; nothing where no file declares any."""
     found = [*managers(file.document.root)] if file.document else []
@@ -141,21 +114,7 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
     return found
 
 
-@rule(
-    "MB878",
-    "section-of-no-controller",
-    WARNING,
-    what="A section has the parameters of a controller, and no controller manager declares it. In "
-    "a build it is a note, with two exceptions. Its name is nearly that of a declared controller "
-    "without a section, or it is the only one for such a controller. Of a file alone only that is "
-    "reported.",
-    why="Nothing reads the section: the controller that is meant runs with its defaults, or fails.",
-    fix="Give the section the controller's name, or declare the controller below controller_manager.",
-    bad=a_controller("arm_controller", "arm_controler"),
-    good=a_controller("arm_controller", "arm_controller"),
-    line=4,
-    formats=(PARAMS,),
-)
+@rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))
 def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
     """Nothing is said where no parameter file of the robot declares a controller."""
     given, known = beside(file)

@@ -39,34 +39,7 @@ class Size(NamedTuple):
     reach: float
 
 
-def _costmap(lines: str) -> str:
-    return (
-        "local_costmap:\n"
-        "  local_costmap:\n"
-        "    ros__parameters:\n"
-        f"      {lines}\n"
-        "      plugins: [inflation_layer]\n"
-        "      inflation_layer: {plugin: nav2_costmap_2d::InflationLayer, inflation_radius: 0.5}\n"
-    )
-
-
-@rule(
-    "MB895",
-    "costmap-robot-size",
-    WARNING,
-    what="The robot_radius or footprint of a costmap does not fit the rest. The inflation is "
-    "smaller than the robot, or a radius stands beside a footprint of another size. Or the "
-    "radius is more than three times or less than an eighth of what the description reaches.",
-    why="With an inflation below the robot's radius the planner drives the robot into "
-    "obstacles. Beside a footprint the radius has no effect. A robot that is too large "
-    "finds no path, one that is too small hits what it does not clear.",
-    fix="Write metres. The inflation has to be larger than the distance from the robot's middle to its "
-    "edge; leave the radius out where there is a footprint.",
-    bad=_costmap("robot_radius: 0.6"),
-    good=_costmap("robot_radius: 0.3"),
-    line=6,
-    formats=(PARAMS,),
-)
+@rule("MB895", "costmap-robot-size", WARNING, formats=(PARAMS,))
 def robot_size(file: NamedFile) -> Iterator[Remark]:
     """Each costmap of a file."""
     for section in sections(file):

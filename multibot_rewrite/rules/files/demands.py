@@ -21,7 +21,6 @@ from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
@@ -83,23 +82,7 @@ def value_of(section: Section, name: str) -> Value | None:
     return found.value if found else None
 
 
-@rule(
-    "MB894",
-    "parameters-contradict",
-    WARNING,
-    what="A parameter has no effect, or fails, with the value of another parameter of its node. "
-    "Examples are an initial pose without set_initial_pose and the config of an input that is not "
-    "there. Others are two equal frames of an EKF that must differ, and a world_frame that is "
-    "neither map_frame nor odom_frame. A transform from a frame to itself is another.",
-    why="The node says little or nothing: amcl waits for a pose, an EKF fuses nothing or sends no "
-    "transform.",
-    fix="Set the other parameter as the message says, or leave this one out. The hint has the place in "
-    "the node's source.",
-    bad=a_section("ekf_filter_node", "world_frame: world\n    odom0: odom"),
-    good=a_section("ekf_filter_node", "world_frame: odom\n    odom0: odom"),
-    line=3,
-    formats=(PARAMS, MOVEIT),
-)
+@rule("MB894", "parameters-contradict", WARNING, formats=(PARAMS, MOVEIT))
 def contradictions(file: NamedFile) -> Iterator[Remark]:
     """Every demand of one parameter on another that is no order."""
     for it in demands(file, *_PAIRS):

@@ -24,31 +24,3 @@ ROVER: Mapping[str, str] = {
     "package.xml": "<package><name>rover</name></package>",
     "urdf/rover.urdf": _ROVER,
 }
-
-
-def a_section(node: str, line: str) -> str:
-    """A parameter file with one line, the third."""
-    return f"{node}:\n  ros__parameters:\n    {line}\n"
-
-
-def a_row(line: str = "") -> str:
-    """A row of a bridge file with one more line, the fifth."""
-    return (
-        "- ros_topic_name: scan\n"
-        "  gz_topic_name: scan\n"
-        "  ros_type_name: sensor_msgs/msg/LaserScan\n"
-        "  gz_type_name: gz.msgs.LaserScan\n"
-        f"{f'  {line}' if line else ''}\n"
-    )
-
-
-def a_controller(declared: str, section: str) -> str:
-    """A controller that a manager declares, and from the fourth line a section for one."""
-    return (
-        "controller_manager:\n"
-        "  ros__parameters:\n"
-        f"    {declared}: {{type: joint_trajectory_controller/JointTrajectoryController}}\n"
-        f"{section}:\n"
-        "  ros__parameters: {joints: [left_wheel_joint], command_interfaces: [position],\n"
-        "    state_interfaces: [position]}\n"
-    )

@@ -13,22 +13,8 @@ from multibot_rewrite.companions.names.by_kind import frames_differ
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark
 
 
-def _options(line: str) -> str:
-    return f"options = {{\n  {line},\n}}\n"
-
-
 @rule(
-    "MB887",
-    "included-file",
-    WARNING,
-    what="A behavior tree includes another one, or a Lua file one that is not of Cartographer itself.",
-    why="The included file is not rewritten with this one. The names in it are then the same for all "
-    "robots.",
-    fix="List that file in the fleet file as well, if it has names.",
-    bad='include "my_frames.lua"\n' + _options('tracking_frame = "base_link"'),
-    good='include "map_builder.lua"\n' + _options('tracking_frame = "base_link"'),
-    formats=(LUA, TREE),
-    options={"robots": ("robot1", "robot2")},
+    "MB887", "included-file", WARNING, formats=(LUA, TREE), options={"robots": ("robot1", "robot2")}
 )
 @of_robots
 def included_file(file: NamedFile) -> Iterator[Remark]:
@@ -43,13 +29,6 @@ def included_file(file: NamedFile) -> Iterator[Remark]:
     "MB888",
     "lua-frame-not-plain",
     WARNING,
-    what="A frame of Cartographer is not a plain string, so it stays unchanged.",
-    why="Its value is known only when Lua runs the file. If it is the same for each robot, all "
-    "robots publish the same frame.",
-    fix="Write the name in quotes, as for a single robot.",
-    bad=_options('tracking_frame = "base" .. "_link"'),
-    good=_options('tracking_frame = "base_link"'),
-    line=2,
     formats=(LUA,),
     options={"robots": ("robot1", "robot2")},
 )

@@ -35,33 +35,7 @@ _WORDS = frozenset(("type", "interface_type", *_NAMES))
 _Values = Mapping[str, Given]
 
 
-def _command(buttons: str) -> str:
-    return (
-        "joy_teleop:\n"
-        "  ros__parameters:\n"
-        "    halt:\n"
-        f"      type: topic\n{buttons}"
-        "      interface_type: std_msgs/msg/Bool\n"
-        "      topic_name: halt\n"
-        "      message_value: {data: {value: true}}\n"
-    )
-
-
-@rule(
-    "MB897",
-    "joystick-command",
-    ERROR,
-    what="A command of joy_teleop is not whole. It has no known type, no type of its interface, no"
-    " name, or nothing that starts it. Or it has neither or both of message_value and "
-    "axis_mappings, an axis without scale or offset, or a field that its message does not "
-    "have.",
-    why="joy_teleop raises an exception for it and ends; none of its commands works.",
-    fix="Add what is missing, or correct it.",
-    bad=_command(""),
-    good=_command("      deadman_buttons: [4]\n"),
-    line=4,
-    formats=(PARAMS,),
-)
+@rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
 def broken_commands(file: NamedFile) -> Iterator[Remark]:
     """Of each command, at its first parameter."""
     for section in sections(file):

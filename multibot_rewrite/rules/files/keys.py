@@ -17,26 +17,12 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ParamSection, flattened, is_for
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.producers.evidence.records import Given
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.given import did_you_mean_at, given_in, is_in
 from multibot_rewrite.rules.files.records import Remark, remark, remark_at
 from multibot_rewrite.system.records import Place
 
-_ONE = "amcl:\n  ros__parameters:\n    alpha1: 0.1\n"
 
-
-@rule(
-    "MB859",
-    "repeated-key",
-    WARNING,
-    what="A parameter, or a key of a file of MoveIt, is set twice in one map.",
-    why="The later value counts, and no message says so: a change of the first one has no effect.",
-    fix="Remove one of them.",
-    bad=a_section("amcl", "alpha1: 0.1\n    alpha1: 0.2"),
-    good=a_section("amcl", "alpha1: 0.2"),
-    line=4,
-    formats=(PARAMS, MOVEIT),
-)
+@rule("MB859", "repeated-key", WARNING, formats=(PARAMS, MOVEIT))
 def repeated_key(file: NamedFile) -> Iterator[Remark]:
     """Every key that is there before in the same map."""
     for site in file.twice:
@@ -44,20 +30,7 @@ def repeated_key(file: NamedFile) -> Iterator[Remark]:
         yield remark(site, message, "remove one of them")
 
 
-@rule(
-    "MB866",
-    "repeated-section",
-    WARNING,
-    what="A file has two sections for one node.",
-    why="rcl merges the two. PyYAML keeps only the last one. So does every launch file that reads "
-    "parameters in Python (RewrittenYaml of Nav2, composable nodes). Parameters vanish without a "
-    "message.",
-    fix="Merge the two into one section.",
-    bad=f"{_ONE}amcl:\n  ros__parameters:\n    alpha2: 0.1\n",
-    good=f"{_ONE}    alpha2: 0.1\n",
-    line=4,
-    formats=(PARAMS,),
-)
+@rule("MB866", "repeated-section", WARNING, formats=(PARAMS,))
 def repeated_section(file: NamedFile) -> Iterator[Remark]:
     """Every section of a node but its first."""
     first: dict[str, ParamSection] = {}
@@ -70,19 +43,7 @@ def repeated_section(file: NamedFile) -> Iterator[Remark]:
             yield remark_at(section.keys[-1], message, hint)
 
 
-@rule(
-    "MB867",
-    "wildcard-overrides-section",
-    WARNING,
-    what="A wildcard section sets a parameter that an earlier section of one node sets too.",
-    why="rcl applies all sections that match a node in the order of the file, and the last one wins. "
-    "The value that was meant for the node has no effect.",
-    fix="Put wildcard sections first.",
-    bad=f"{_ONE}/**:\n  ros__parameters:\n    alpha1: 0.2\n",
-    good=f"/**:\n  ros__parameters:\n    alpha1: 0.2\n{_ONE}",
-    line=6,
-    formats=(PARAMS,),
-)
+@rule("MB867", "wildcard-overrides-section", WARNING, formats=(PARAMS,))
 def overridden(file: NamedFile) -> Iterator[Remark]:
     """What a wildcard section sets after the section of a node that it matches."""
     sections = [section for section, _ in file.pages]
@@ -100,18 +61,7 @@ def overridden(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(here[name], message, "put wildcard sections first")
 
 
-@rule(
-    "MB868",
-    "parameter-without-value",
-    WARNING,
-    what="A parameter has no value.",
-    why="rcl rejects the whole file (No value), so every node that is started with it fails.",
-    fix='Write a value; "" is an empty text.',
-    bad=a_section("amcl", "map_topic:"),
-    good=a_section("amcl", "map_topic: map"),
-    line=3,
-    formats=(PARAMS,),
-)
+@rule("MB868", "parameter-without-value", WARNING, formats=(PARAMS,))
 def no_value(file: NamedFile) -> Iterator[Remark]:
     """Keys of parameters without a value."""
     for _, names in file.pages:
@@ -123,24 +73,7 @@ def no_value(file: NamedFile) -> Iterator[Remark]:
 _DIGITS = str.maketrans("", "", "0123456789")
 
 
-def _sources(name: str) -> str:
-    lines = f"observation_sources: [{name}]\n    front: {{type: scan, topic: scan}}"
-    return a_section("collision_monitor", lines)
-
-
-@rule(
-    "MB877",
-    "listed-name-without-parameters",
-    WARNING,
-    what="A list of a node (sources, plugins, layers, filters) has a name without parameters, and "
-    "parameters of nearly that name are in no list.",
-    why="The node reads the parameters of the names in its list: it uses defaults, or does not start.",
-    fix="Write the name alike in both places.",
-    bad=_sources("frnt"),
-    good=_sources("front"),
-    line=3,
-    formats=(PARAMS,),
-)
+@rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
 def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
     """Each list of each node."""
     for node in given_in(file):

@@ -40,41 +40,9 @@ _JOINT = lazy_compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]
 _SRDF = ".srdf"
 _ROBOT = lazy_compile(rb"<robot\s[^<>]*?name\s*=\s*[\"']([^\"'$<]*)[\"']")
 _GROUP = lazy_compile(rb"<group\s[^<>]*?name\s*=\s*[\"']([^\"'<]*)[\"']")
-_ARM = """\
-<robot name="arm">
-  <link name="base"/><link name="upper"/>
-  <joint name="lift" type="revolute">
-    <parent link="base"/><child link="upper"/><limit lower="-1" upper="1" effort="9" velocity="2"/>
-  </joint>
-</robot>
-"""
-_BESIDE = {
-    "package.xml": "<package><name>arm</name></package>",
-    "urdf/rover.urdf": _ARM,
-    "arm.srdf": '<robot name="arm"><group name="arm"><joint name="lift"/></group></robot>',
-}
 
 
-def _limits(velocity: str) -> str:
-    return f"joint_limits:\n  lift: {{has_velocity_limits: true, max_velocity: {velocity}}}\n"
-
-
-@rule(
-    "MB898",
-    "limits-beyond-the-joint",
-    WARNING,
-    what="A file of MoveIt gives a joint a greater velocity or a wider range than its <limit> in "
-    "the package's description. Or it limits a joint that the robot does not have.",
-    why="MoveIt takes the limits of the file in place of the URDF's. It plans what the hardware or "
-    "ros2_control does not take: the controller is behind, and aborts the trajectory. Limits of "
-    "another joint have no effect.",
-    fix="Write the limits of the description, or narrower ones, and the joint's name as it is now.",
-    bad=_limits("3.0"),
-    good=_limits("1.5"),
-    line=2,
-    formats=(MOVEIT,),
-    beside=_BESIDE,
-)
+@rule("MB898", "limits-beyond-the-joint", WARNING, formats=(MOVEIT,))
 def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
     """What no description of the package with this joint allows."""
     robots: Robots | None = file.memo.get(Robots)
@@ -141,24 +109,7 @@ def _beyond(joint: Joint, what: str, value: object) -> float | None:
     return own if not free and side * (value - own) > _ROUNDED * max(1.0, abs(own)) else None
 
 
-def _solver(group: str) -> str:
-    return f"{group}:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n"
-
-
-@rule(
-    "MB899",
-    "group-not-in-srdf",
-    WARNING,
-    what="A file names a planning group that no SRDF of its folder has.",
-    why="MoveIt asks for the solver, planners and limits of a group by its name in the SRDF. The "
-    "group there has none ('No kinematics solver instantiated'), and servo_node does not start.",
-    fix="Name a group of the SRDF.",
-    bad=_solver("manipulator"),
-    good=_solver("arm"),
-    line=1,
-    formats=(MOVEIT, PARAMS),
-    beside=_BESIDE,
-)
+@rule("MB899", "group-not-in-srdf", WARNING, formats=(MOVEIT, PARAMS))
 def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
     """Nothing where an SRDF makes names of its groups when it is expanded."""
     sites = [it for it in file.names if it.kind == "group" and it.is_sure]

@@ -14,21 +14,11 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.sites import slot_of
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark
 
-_MANAGER = "moveit_controller_manager: "
-
 
 @rule(
     "MB892",
     "moveit-groups-without-srdf",
     WARNING,
-    what="The fleet renames planning groups (groups: rename), but no SRDF is given. Asked by `build` "
-    "and `plan`.",
-    why="Only the SRDF says which names are groups, so the groups in this file stay unchanged. "
-    "move_group gets an SRDF with other groups from elsewhere and finds no solver or planner for "
-    "them.",
-    fix="Name the SRDF under srdf: in the fleet file.",
-    bad="arm: {kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin}\n",
-    good="joint_limits: {}\n",
     formats=(MOVEIT,),
     options={"build": True, "groups": "rename"},
 )
@@ -46,15 +36,6 @@ def groups_without_srdf(file: NamedFile) -> Iterator[Remark]:
     "MB893",
     "moveit-one-controller-manager",
     WARNING,
-    what="A file selects Ros2ControlManager, but in this layout the controller manager of each "
-    "robot has another name.",
-    why="Ros2ControlManager looks for a node called controller_manager, at the root or in the "
-    "namespace ros_control_namespace. In a layout without namespaces there is "
-    "controller_manager_robot1 only: move_group finds no controllers and executes no trajectory.",
-    fix="Use moveit_simple_controller_manager, which calls the actions of the controllers, or a "
-    "layout with namespaces.",
-    bad=f"{_MANAGER}moveit_ros_control_interface/Ros2ControlManager\n",
-    good=f"{_MANAGER}moveit_simple_controller_manager/MoveItSimpleControllerManager\n",
     formats=(MOVEIT,),
     options={"build": True, "layout": "postfix"},
 )

@@ -22,7 +22,6 @@ from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.rules.files.declared import unknown_parameters
-from multibot_rewrite.rules.files.examples import ROVER, a_section
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark
 
 _FRAMES = ("frame", "link")
@@ -40,47 +39,13 @@ _FEWEST = 3
 WORLD = "world"
 
 
-def _drive(left: str) -> str:
-    wheels = f"left_wheel_names: [{left}]\n    right_wheel_names: [right_wheel_joint]"
-    return a_section("drive_controller", wheels)
-
-
-@rule(
-    "MB853",
-    "undeclared-frame-beside",
-    WARNING,
-    what="A file names a frame or link that the description has not and no known node sends. "
-    "Where it is not sure which robot the file is for, and in RViz, only what is nearly a link counts.",
-    why="tf does not have the frame: the node waits for its transform for ever, RViz shows "
-    "nothing ('frame does not exist').",
-    fix="Correct the name, or let the node that sends the frame use the robot's name.",
-    bad=a_section("amcl", "base_frame_id: base_lnik"),
-    good=a_section("amcl", "base_frame_id: base_link"),
-    line=3,
-    formats=EVERY,
-    beside=ROVER,
-)
+@rule("MB853", "undeclared-frame-beside", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Remark]:
     """Frames and links."""
     return _undeclared(file, _FRAMES)
 
 
-@rule(
-    "MB854",
-    "undeclared-joint-beside",
-    NOTE,
-    what="A file names a joint, sensor, interface or planning group that the description has not. "
-    "Of a file alone a joint is reported beside others that its package describes. In a build it is a "
-    "warning.",
-    why="The controller is not activated: no hardware exports an interface of that joint. MoveIt "
-    "does not use its limits, and refuses to execute on a controller with it.",
-    fix="Name a joint of the description.",
-    bad=_drive("left_whel_joint"),
-    good=_drive("left_wheel_joint"),
-    line=3,
-    formats=EVERY,
-    beside=ROVER,
-)
+@rule("MB854", "undeclared-joint-beside", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Remark]:
     """Joints, sensors and groups."""
     return _undeclared(file, _PARTS)
@@ -164,30 +129,7 @@ def _missing_owner(file: NamedFile, site: Site) -> str:
     return "" if free or is_component(file.context, owner) else owner
 
 
-@rule(
-    "MB875",
-    "file-of-another-robot",
-    ERROR,
-    what="Most joints, links, frames and groups that a file of MoveIt, or an SRDF, names are not in "
-    "the description that it is built for.",
-    why="move_group takes no limits, solvers or controllers from such a file. It leaves out of "
-    "such an SRDF what it does not find: groups are empty, and nothing can be planned.",
-    fix="Name the file of this robot, or give its xacro the arguments that the file was written "
-    "for. Often only one of the two has a prefix.",
-    bad="""\
-joint_limits:
-  left_wheel_joint: {max_velocity: 1.0}
-  left_lidar_joint: {max_velocity: 1.0}
-  left_arm_joint: {max_velocity: 1.0}
-""",
-    good="""\
-joint_limits:
-  wheel_joint: {max_velocity: 1.0}
-""",
-    line=2,
-    formats=(MOVEIT,),
-    options={"build": True},
-)
+@rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
 def of_another_robot(file: NamedFile) -> Iterator[Remark]:
     """One remark for all names, at the first."""
     missing, count, first = _foreign(file)

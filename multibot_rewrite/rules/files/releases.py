@@ -27,30 +27,7 @@ _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
 _GONE_SINCE = "lyrical+"
 
 
-@rule(
-    "MB869",
-    "deprecated-in-release",
-    NOTE,
-    what="A parameter or controller type is deprecated in the release, or gone.",
-    why="The node warns at each start, and a later release removes it. A controller of that type "
-    "is then not loaded, and the parameter has no effect.",
-    fix="Do what the hint says. A JointGroup controller becomes a "
-    "forward_command_controller/ForwardCommandController with interface_name: position, velocity or "
-    "effort.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: position_controllers/JointGroupPositionController}
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: forward_command_controller/ForwardCommandController}
-""",
-    line=3,
-    formats=(PARAMS,),
-    options={"distro": "lyrical"},
-)
+@rule("MB869", "deprecated-in-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"})
 def deprecated(file: NamedFile) -> Iterator[Remark]:
     """Parameters of known nodes, and types of controllers."""
     release = file.context.distro
@@ -60,30 +37,7 @@ def deprecated(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule(
-    "MB871",
-    "interfaces-not-published",
-    WARNING,
-    what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no "
-    "longer publishes.",
-    why="joint_states has positions, velocities and efforts alone. dynamic_joint_states was off by "
-    "default from ros2_controllers 6.5 on and is gone since 6.8, which is in Lyrical: the others "
-    "are lost.",
-    fix="Use a state_interfaces_broadcaster or gpio_controllers for them.",
-    bad="""\
-joint_state_broadcaster:
-  ros__parameters:
-    joints: [wheel_joint]
-    interfaces: [position, temperature]
-""",
-    good="""\
-joint_state_broadcaster:
-  ros__parameters:
-    joints: [wheel_joint]
-    interfaces: [position, velocity]
-""",
-    line=4,
-    formats=(PARAMS,),
-    options={"distro": "lyrical"},
+    "MB871", "interfaces-not-published", WARNING, formats=(PARAMS,), options={"distro": "lyrical"}
 )
 def not_sent(file: NamedFile) -> Iterator[Remark]:
     """Interfaces of joint_state_broadcaster that no topic holds."""
@@ -94,27 +48,7 @@ def not_sent(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule(
-    "MB870",
-    "parameter-of-another-release",
-    NOTE,
-    what="A parameter, or its node, is not in the release that is meant.",
-    why="The node does not declare it, so the value has no effect. The names in it are rewritten all "
-    "the same, since the file may be for another release.",
-    fix="Delete it, or set the parameter that the release has in its place. If the file is for another "
-    "release, name that one: distro: in the fleet file, or --distro.",
-    bad="""\
-behavior_server:
-  ros__parameters:
-    costmap_topic: local_costmap/costmap_raw
-""",
-    good="""\
-behavior_server:
-  ros__parameters:
-    local_costmap_topic: local_costmap/costmap_raw
-""",
-    line=3,
-    formats=(PARAMS,),
-    options={"distro": "lyrical"},
+    "MB870", "parameter-of-another-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"}
 )
 def of_another_release(file: NamedFile) -> Iterator[Remark]:
     """Nodes and parameters that only other releases have."""

@@ -18,7 +18,6 @@ from multibot_rewrite.companions.sites import GZ_TOPIC, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
 # Only where such letters begin, or a line of dashes would be looked at from each of them.
@@ -31,20 +30,7 @@ _NOT_A_NAME = lazy_compile(
 
 
 @rule(
-    "MB863",
-    "robot-in-name-beside",
-    ERROR,
-    what="A name holds the name of a robot of the fleet, so the file is for that robot only. In values "
-    "of unknown use, also of a description, a name counts that begins or ends with it: "
-    "/robot2/scan, robot1_odom. It is a warning in a config of RViz.",
-    why="Every robot gets the file, so all others would use the names of this robot. In its own "
-    "file the name would be there twice, as in /robot1/robot1/scan.",
-    fix="Remove the robot's name from every name; the build adds it for each robot.",
-    bad=a_section("amcl", "scan_topic: /robot2/scan"),
-    good=a_section("amcl", "scan_topic: /scan"),
-    line=3,
-    formats=EVERY,
-    options={"robots": ("robot1", "robot2")},
+    "MB863", "robot-in-name-beside", ERROR, formats=EVERY, options={"robots": ("robot1", "robot2")}
 )
 def robot_in_name(file: NamedFile) -> Iterator[Remark]:
     """The first name that holds one of the robots."""

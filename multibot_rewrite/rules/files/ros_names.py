@@ -16,7 +16,6 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.sites import SECTION, Site
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, remark
 
 _IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
@@ -55,20 +54,7 @@ def _section_fault(site: Site) -> str:
     return next((f"{it!r}: {fault.reason}" for it, fault in faults if fault), "")
 
 
-@rule(
-    "MB876",
-    "name-in-text-block",
-    WARNING,
-    what="A name is written as a block of text (| or >), so it is not rewritten. It is a note where "
-    "the name is right for one robot.",
-    why="The name stays that of one robot, and without a dash the block adds a line break to it, which "
-    "no frame or topic has.",
-    fix="Write the name on one line.",
-    bad=a_section("amcl", "base_frame_id: |\n      base_link"),
-    good=a_section("amcl", "base_frame_id: base_link"),
-    line=3,
-    formats=(PARAMS, MOVEIT),
-)
+@rule("MB876", "name-in-text-block", WARNING, formats=(PARAMS, MOVEIT))
 def text_block(file: NamedFile) -> Iterator[Remark]:
     """Each name in a block."""
     for site in file.names:
@@ -108,19 +94,7 @@ def slashes(file: NamedFile) -> Iterator[Remark]:
             yield remark(site, message, f"write {site.text.lstrip('/')}", level)
 
 
-@rule(
-    "MB865",
-    "frame-with-white-space",
-    WARNING,
-    what="A file names a frame with white space in it.",
-    why="tf takes any text for a frame, so 'odom ' is another one than 'odom', and nothing sends it. "
-    "It is not rewritten: nodes of all robots that send it send one frame.",
-    fix="Remove the white space.",
-    bad=a_section("amcl", 'odom_frame_id: "odom "'),
-    good=a_section("amcl", "odom_frame_id: odom"),
-    line=3,
-    formats=EVERY,
-)
+@rule("MB865", "frame-with-white-space", WARNING, formats=EVERY)
 def frame_with_white_space(file: NamedFile) -> Iterator[Remark]:
     """Values that are known to be frames."""
     for site in _frames(file):

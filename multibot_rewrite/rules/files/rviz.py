@@ -14,24 +14,7 @@ from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
 
 
-def _display(lines: str) -> str:
-    return f"Visualization Manager:\n  Displays:\n    - Class: rviz_default_plugins/{lines}"
-
-
-@rule(
-    "MB872",
-    "rviz-ros1-property",
-    WARNING,
-    what="A display has a property of RViz for ROS 1: Image Topic, Marker Topic, Unreliable or "
-    "Queue Size.",
-    why="rviz2 ignores properties that it does not know. The display subscribes to nothing and "
-    "shows nothing, without a message.",
-    fix="Set the Topic of the display in rviz2 and save the file.",
-    bad=_display("Image\n      Image Topic: /camera/image_raw\n"),
-    good=_display("Image\n      Topic: /camera/image_raw\n"),
-    line=4,
-    formats=(RVIZ,),
-)
+@rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))
 def ros1_property(file: NamedFile) -> Iterator[Remark]:
     """Each such property of each display."""
     for one in file.shown:
@@ -41,25 +24,7 @@ def ros1_property(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(key, message, "set its Topic in rviz2")
 
 
-@rule(
-    "MB873",
-    "rviz-description-volatile",
-    WARNING,
-    what="A display subscribes to the description with Durability Policy: Volatile.",
-    why="robot_state_publisher publishes the description once. A volatile subscription misses it "
-    "if rviz2 starts later, so the RobotModel stays empty. The RViz file of Nav2 has this.",
-    fix="Write Durability Policy: Transient Local below Description Topic.",
-    bad=_display(
-        "RobotModel\n      Description Topic:\n        Durability Policy: Volatile\n"
-        "        Value: /robot_description\n"
-    ),
-    good=_display(
-        "RobotModel\n      Description Topic:\n        Durability Policy: Transient Local\n"
-        "        Value: /robot_description\n"
-    ),
-    line=3,
-    formats=(RVIZ,),
-)
+@rule("MB873", "rviz-description-volatile", WARNING, formats=(RVIZ,))
 def volatile_description(file: NamedFile) -> Iterator[Remark]:
     """Reported once: nearly every saved config has it."""
     found = [
@@ -78,13 +43,6 @@ def volatile_description(file: NamedFile) -> Iterator[Remark]:
     "MB891",
     "rviz-unknown-display",
     WARNING,
-    what="The class of a display is not known, so only its Topic is renamed.",
-    why="Each plugin has its own keys for topics and frames. What is not renamed is a name that "
-    "no robot has any more, so that part of the display stays empty.",
-    fix="Check the other topics and frames of the display for each robot.",
-    bad="Visualization Manager:\n  Displays:\n    - Class: my_plugins/Colours\n      Topic: /scan\n",
-    good=_display("LaserScan\n      Topic: /scan\n"),
-    line=3,
     formats=(RVIZ,),
     options={"robots": ("robot1", "robot2")},
 )

@@ -20,7 +20,6 @@ from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.producers.addresses import held_by
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.given import given_in
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark, remark_at
 from multibot_rewrite.system.records import COMPUTER
@@ -60,23 +59,7 @@ def _same(key: str, text: str) -> str:
     return f"{key} {text} is the same for all robots"
 
 
-@rule(
-    "MB881",
-    "value-not-renamed",
-    WARNING,
-    what="A value that may hold names is not rewritten. It is a pattern or expression, or a "
-    "description file in a display. Or it is a namespace of topics in a layout that renames each "
-    "topic.",
-    why="Topics and frames get the robot's name, but the value still has the old ones. A pattern "
-    "matches nothing, or the names of all robots, and a display is empty.",
-    fix="Check that it works for each robot: a pattern that matches in any namespace, Description "
-    "Source Topic, or a layout with namespaces.",
-    bad=a_section("foxglove_bridge", 'topic_whitelist: ["/scan.*"]'),
-    good=a_section("foxglove_bridge", 'topic_whitelist: [".*"]'),
-    line=3,
-    formats=(PARAMS, RVIZ),
-    options={"robots": _TWO},
-)
+@rule("MB881", "value-not-renamed", WARNING, formats=(PARAMS, RVIZ), options={"robots": _TWO})
 @of_robots
 def not_renamed(file: NamedFile) -> Iterator[Remark]:
     """Patterns and expressions of nodes; values of displays."""
@@ -117,24 +100,7 @@ def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | 
     return None
 
 
-@rule(
-    "MB882",
-    "robot-twice-in-value",
-    ERROR,
-    what="A name holds its robot twice, as in robot1/robot1/scan. Or a parameter or a display of "
-    "RViz adds a prefix to frames that have the robot's name already. A warning where all robots "
-    "use the same frames, where a launch file sets the prefix, and in RViz, where the rewrite "
-    "takes it out.",
-    why="No other node uses that name: topics have no publisher. robot_state_publisher sends "
-    "robot1/robot1/base_link, and all others look for robot1/base_link: no transform is found.",
-    fix="Remove the robot name from the source. Write an empty frame_prefix, tf_prefix or TF Prefix, "
-    "and false at tf_frame_prefix_enable.",
-    bad=a_section("robot_state_publisher", "frame_prefix: rover/"),
-    good=a_section("robot_state_publisher", 'frame_prefix: ""'),
-    line=3,
-    formats=(PARAMS, RVIZ),
-    options={"robots": _TWO},
-)
+@rule("MB882", "robot-twice-in-value", ERROR, formats=(PARAMS, RVIZ), options={"robots": _TWO})
 @of_robots
 def robot_twice(file: NamedFile) -> Iterator[Remark]:
     """Prefixes that a node or a display puts before frames."""

@@ -13,26 +13,12 @@ from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
 from multibot_rewrite.knowledge.parameters import is_absolute
-from multibot_rewrite.rules.files.examples import a_section
 from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
 
 _TWO = ("robot1", "robot2")
 
 
-@rule(
-    "MB883",
-    "section-of-one-robot",
-    ERROR,
-    what="The name of a section has a namespace before a node or a wildcard. A warning where it may be "
-    "one inside of the robot, as in front/driver: the node is none of the stack.",
-    why="The build puts each robot's namespace before it, so /rover/amcl becomes /robot1/rover/amcl. "
-    "No node has that name, and a node without a section runs with its defaults and does not say so.",
-    fix="Write the node's name without a namespace, if that is the name of a robot.",
-    bad=a_section("/rover/**", "use_sim_time: true"),
-    good=a_section("/**", "use_sim_time: true"),
-    formats=(PARAMS,),
-    options={"robots": _TWO},
-)
+@rule("MB883", "section-of-one-robot", ERROR, formats=(PARAMS,), options={"robots": _TWO})
 @of_robots
 def section_of_one_robot(file: NamedFile) -> Iterator[Remark]:
     """A namespace in a section's name: that of one robot, or one below each robot's."""
@@ -66,15 +52,7 @@ def _namespace(section: ParamSection, context: Context) -> Iterator[Remark]:
     "MB886",
     "section-of-shared-node",
     WARNING,
-    what="A section is for a node that serves all robots, so it stays as it is. Asked by `build` and "
-    "`plan`, which know the nodes.",
-    why="The file of every robot has this section. If the node is started with each of them, several "
-    "nodes of one name publish the same topics.",
-    fix="Start the node once, with one of the files, or move its section to a file of its own.",
-    bad=a_section("map_server", "yaml_filename: hall.yaml"),
-    good=a_section("amcl", "alpha1: 0.1"),
     formats=(PARAMS,),
-    beside={"nodes.yaml": "stacks: {own: {nodes: [amcl, {node: map_server, shared: true}]}}"},
     options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
 )
 def shared_section(file: NamedFile) -> Iterator[Remark]:
@@ -86,29 +64,10 @@ def shared_section(file: NamedFile) -> Iterator[Remark]:
         yield remark_at(section.keys[-1], message, "start it once, with this file")
 
 
-def _layer(scan: str) -> str:
-    """A costmap with one source of obstacles; the list is in the fifth line."""
-    return (
-        "local_costmap:\n"
-        "  local_costmap:\n"
-        "    ros__parameters:\n"
-        "      obstacle_layer:\n"
-        "        observation_sources: scan\n"
-        f"        scan: {{{scan}}}\n"
-    )
-
-
 @rule(
     "MB885",
     "costmap-source-without-topic",
     WARNING,
-    what="A source of a costmap layer has no topic, so its id is the topic.",
-    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where no "
-    "node publishes, and without namespaces all robots use one topic.",
-    fix="Add its topic.",
-    bad=_layer("clearing: true"),
-    good=_layer("topic: /scan, clearing: true"),
-    line=5,
     formats=(PARAMS,),
     options={"robots": _TWO, "distro": "jazzy"},
 )

@@ -19,7 +19,6 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.rules.description.physics.shared import a_rover
 from multibot_rewrite.rules.facts.drives import (
     Wheel,
     are_opposite,
@@ -52,37 +51,7 @@ def with_description(file: NamedFile, description: Document) -> NamedFile:
     return file._replace(memo={**file.memo, Robots: robots})
 
 
-def _sizes_of(separation: str) -> str:
-    return (
-        "controller_manager:\n"
-        "  ros__parameters: {drive: {type: diff_drive_controller/DiffDriveController}}\n"
-        "drive:\n"
-        "  ros__parameters:\n"
-        "    left_wheel_names: [left_joint]\n"
-        "    right_wheel_names: [right_joint]\n"
-        f"    wheel_separation: {separation}\n"
-        "    wheel_radius: 0.1\n"
-    )
-
-
-@rule(
-    "MB856",
-    "controller-wheels",
-    WARNING,
-    what="The wheels of a diff_drive_controller are not as its parameters say. Their separation or "
-    "radius differs from the package's description, left and right are swapped, their axes are "
-    "opposed, or they do not roll.",
-    why="The robot turns or drives too far or the wrong way, and its odometry says otherwise.",
-    fix="Write the sizes of the description, or correct its joints.",
-    bad=_sizes_of("0.8"),
-    good=_sizes_of("0.4"),
-    line=7,
-    formats=(PARAMS,),
-    beside={
-        "package.xml": "<package><name>rover</name></package>",
-        "urdf/rover.urdf": f'<robot name="rover">{a_rover()}</robot>',
-    },
-)
+@rule("MB856", "controller-wheels", WARNING, formats=(PARAMS,))
 def controller_sizes_of(file: NamedFile) -> Iterator[Remark]:
     """What no description of the package with these wheels fits."""
     for section in sections(file):

@@ -17,26 +17,13 @@ from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.rules.launch.declaration import at, launch_rule
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
-_STATE = (STATE_PUBLISHER,) * 2
-_TEXT = '[{"robot_description": "<robot name=\\"r\\"><link name=\\"a\\"/></robot>"}]'
 _NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
 
 
-@launch_rule(
-    "MG729",
-    "program-ends-at-once",
-    what="A program that a launch file starts ends at once. That is a robot_state_publisher "
-    "without a description or with its path, or a node name that ROS refuses. A spawner does with an "
-    "unreadable pose, a bridge with an unreadable row.",
-    why="The launch goes on without it: there is no tf of the robot, or no robot in the simulator.",
-    fix="Give robot_description the text, such as `Command(['xacro ', path])`; write names with "
-    "letters, digits and underscores, and a pose with numbers.",
-    bad=launch_of(node_of(*_STATE, parameters='[{"robot_description": "/opt/robot.urdf"}]')),
-    good=launch_of(node_of(*_STATE, parameters=_TEXT)),
-)
+@launch_rule("MG729", "program-ends-at-once")
 def ends(launched: Launched) -> Iterator[Finding]:
     """Where all that a node gets is known."""
     unsure = {(it.place.file, it.place.line) for it in launched.graph.notes}

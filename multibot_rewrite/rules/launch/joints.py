@@ -12,16 +12,10 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
-from multibot_rewrite.rules.launch.declaration import at, launch_of, launch_rule, node_of
+from multibot_rewrite.rules.launch.declaration import at, launch_rule
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 _KINDS = ("joint_state_publisher", "joint_state_publisher_gui")
-_GIVEN = """[{{"source_list": ["{}"], "robot_description": "<robot name='r'/>"}}]"""
-
-
-def _joints(source: str) -> str:
-    kind = "joint_state_publisher"
-    return launch_of(node_of(kind, kind, parameters=_GIVEN.format(source)))
 
 
 def read_by_joints(launched: Launched) -> Iterator[tuple[RunningNode, str]]:
@@ -32,17 +26,7 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[RunningNode, str]]:
             yield known[end.node], end.name
 
 
-@launch_rule(
-    "MG716",
-    "joints-of-itself",
-    level=WARNING,
-    what="A joint_state_publisher has a topic in its `source_list` that it sends itself, and that "
-    "nothing else sends.",
-    why="It takes its own values for those of the robot: the joints stay where they are.",
-    fix="Name the topic of the driver, or leave `source_list` out.",
-    bad=_joints("joint_states"),
-    good=_joints("driver/joint_states"),
-)
+@launch_rule("MG716", "joints-of-itself", level=WARNING)
 def of_itself(launched: Launched) -> Iterator[Finding]:
     """Where all nodes are known."""
     senders: dict[str, set[str]] = defaultdict(set)

@@ -17,11 +17,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched
 from multibot_rewrite.rules.launch.declaration import (
-    ROVERS,
     at,
-    bridge_of,
-    create_of,
-    launch_of,
     launch_rule,
 )
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
@@ -31,21 +27,9 @@ _POSE = ("-x", "-y", "-z")
 _NEAR = 0.01
 _RENAMES = "-allow_renaming"
 _INTO_GAZEBO = DIRECTIONS["out"]
-_ODOM = "/model/{}/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
 
 
-@launch_rule(
-    "MG701",
-    "model-name-twice",
-    what="A launch file spawns two models of one name in Gazebo.",
-    why="Gazebo refuses the second one, or spawns it under another name than its bridge and its topics "
-    "have.",
-    fix="Give each `-name` of its own.",
-    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3", model="robot1")),
-    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
-    line=1,
-    beside=ROVERS,
-)
+@launch_rule("MG701", "model-name-twice")
 def name_twice(launched: Launched) -> Iterator[Finding]:
     """Where nothing renames the second one."""
     first: dict[str, InSimulator] = {}
@@ -58,22 +42,7 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
             )
 
 
-@launch_rule(
-    "MG702",
-    "robots-in-each-other",
-    what="Two robots start in each other. A launch file spawns one where another stands, or the "
-    "start poses of a fleet file have less room between them than the shapes need. It is a warning "
-    "where all of them stand at the origin, since something else may place them.",
-    why="The simulator pushes them apart when they are spawned: they fly away, tip over or stay "
-    "entangled.",
-    fix="Give each a place of its own: `-x` and `-y` of its spawner. In a fleet file it is `pose` "
-    "of a robot, or `step` of all robots. Robots that are not simulated have `simulator: none` "
-    "there.",
-    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "1")),
-    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
-    line=1,
-    beside=ROVERS,
-)
+@launch_rule("MG702", "robots-in-each-other")
 def in_each_other(launched: Launched) -> Iterator[Finding]:
     """Of descriptions in URDF: a model in SDF may have a pose of its own."""
     models = [it for it in launched.simulated if it.root.tag == "robot"]
@@ -93,17 +62,7 @@ def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
         yield tuple(float(it.words.get(key, 0)) for key in _POSE)
 
 
-@launch_rule(
-    "MG703",
-    "gz-topic-of-two-models",
-    what="Two models that a launch file spawns have the same topic in Gazebo.",
-    why="One command moves both robots, or the data of both come on one topic.",
-    fix="Give each description topics of its own, with the name of its robot.",
-    bad=launch_of(create_of("robot1", "-x", "1"), create_of("robot1", "-x", "3", model="robot2")),
-    good=launch_of(create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")),
-    line=1,
-    beside=ROVERS,
-)
+@launch_rule("MG703", "gz-topic-of-two-models")
 def shared_topic(launched: Launched) -> Iterator[Finding]:
     """Once for two models; transforms of all robots may have one topic."""
     models = launched.simulated
@@ -123,29 +82,7 @@ def _names(model: InSimulator) -> Iterator[str]:
             yield f"/{it.gz.lstrip('/')}"
 
 
-@launch_rule(
-    "MG704",
-    "command-not-bridged",
-    what="A model in Gazebo gets no commands. No bridge of the launch file passes anything on to a "
-    "topic that its plugin reads, but one does for another model.",
-    why="Nothing that is sent in ROS moves the robot.",
-    fix="Add the row, with the direction to Gazebo.",
-    bad=launch_of(
-        create_of("robot1", "-x", "1"),
-        create_of("robot2", "-x", "3"),
-        bridge_of("/robot1/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist"),
-    ),
-    good=launch_of(
-        create_of("robot1", "-x", "1"),
-        create_of("robot2", "-x", "3"),
-        bridge_of(
-            "/robot1/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist",
-            "/robot2/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist",
-        ),
-    ),
-    line=1,
-    beside=ROVERS,
-)
+@launch_rule("MG704", "command-not-bridged")
 def not_bridged(launched: Launched) -> Iterator[Finding]:
     """What only one of the models gets may be meant; that its like gets nothing is not."""
     from multibot_rewrite.rules.launch.rows import into_gazebo
@@ -161,26 +98,7 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
                 yield at(not_bridged, it.place, message, hint, names=(gz,))
 
 
-@launch_rule(
-    "MG707",
-    "data-not-bridged",
-    what="What a model in Gazebo sends comes to no bridge of the launch file, and what another model "
-    "with the same topics sends does.",
-    why="The nodes of this robot wait for its scan or odometry, and nothing tells them.",
-    fix="Add the row, with the direction to ROS.",
-    bad=launch_of(
-        create_of("robot1", "-x", "1"),
-        create_of("robot2", "-x", "3"),
-        bridge_of(_ODOM.format("robot1")),
-    ),
-    good=launch_of(
-        create_of("robot1", "-x", "1"),
-        create_of("robot2", "-x", "3"),
-        bridge_of(_ODOM.format("robot1"), _ODOM.format("robot2")),
-    ),
-    line=1,
-    beside=ROVERS,
-)
+@launch_rule("MG707", "data-not-bridged")
 def not_brought(launched: Launched) -> Iterator[Finding]:
     """By the topics without the names of the models: those of two descriptions mean other things."""
     from multibot_rewrite.rules.launch.rows import out_of_gazebo

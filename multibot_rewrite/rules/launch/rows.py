@@ -15,17 +15,10 @@ from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.launch.declaration import (
-    ROVERS,
     at,
-    bridge_of,
-    create_of,
-    launch_of,
     launch_rule,
 )
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
-
-_TWIST = "@geometry_msgs/msg/Twist]gz.msgs.Twist"
-_BOTH = create_of("robot1", "-x", "1"), create_of("robot2", "-x", "3")
 
 
 class _Row(NamedTuple):
@@ -58,24 +51,7 @@ def out_of_gazebo(launched: Launched) -> set[str]:
     return {it.gz for it in _rows(launched) if not it.inwards}
 
 
-@launch_rule(
-    "MG705",
-    "bridge-to-another-robot",
-    what="A bridge connects the topic of one robot in ROS with that of another one in Gazebo. Or "
-    "it uses a topic without a robot's name, although the rows of the other robots have theirs.",
-    why="A robot obeys the commands of another one, or it is unknown whose data they are.",
-    fix="Name the same robot on both sides of the row.",
-    bad=launch_of(
-        *_BOTH,
-        'Node(package="ros_gz_bridge", executable="parameter_bridge", name="bridge", remappings='
-        '[("/robot1/cmd_vel", "/robot2/cmd_vel"), ("/robot2/cmd_vel", "/robot1/cmd_vel")], '
-        f'arguments=["/robot2/cmd_vel{_TWIST}"])',
-        bridge_of(f"/robot1/cmd_vel{_TWIST}"),
-    ),
-    good=launch_of(*_BOTH, bridge_of(f"/robot1/cmd_vel{_TWIST}", f"/robot2/cmd_vel{_TWIST}")),
-    line=2,
-    beside=ROVERS,
-)
+@launch_rule("MG705", "bridge-to-another-robot")
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
     """By the names of the models, where they are in the names of their topics."""
     models = launched.simulated

@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import NOTHING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand, resolve_bound
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
@@ -24,68 +23,20 @@ from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.launch.declaration import (
-    FIRST,
     LAUNCH,
     at,
-    launch_of,
     launch_rule,
-    node_of,
 )
 from multibot_rewrite.rules.launch.joints import read_by_joints
 from multibot_rewrite.system.records import SERVICE
 
-_SPAWNER = node_of("controller_manager", "spawner", ("arm",))
-_MANAGER = node_of("controller_manager", "ros2_control_node")
-_TYPED = '[{"arm.type": "joint_trajectory_controller/JointTrajectoryController"}]'
-_WITH_TYPE = node_of("controller_manager", "ros2_control_node", parameters=_TYPED)
-_WITH_JOINTS = node_of(
-    "controller_manager", "ros2_control_node", parameters='[str(HERE / "arm.yaml")]'
-)
-_CONTROLLER = """\
-/controller_manager:
-  ros__parameters:
-    arm: {{type: joint_trajectory_controller/JointTrajectoryController}}
-/{}:
-  ros__parameters: {{joints: [elbow], command_interfaces: [position]}}
-"""
-_JOINTS = {"arm.yaml": _CONTROLLER.format("arm"), "lost.yaml": _CONTROLLER.format("lost")}
-_CREATE = (
-    'Node(package="ros_gz_sim", executable="create", arguments=["-name", "r", "-topic", "{}"])'
-)
-_STATE = node_of(
-    "robot_state_publisher",
-    "robot_state_publisher",
-    parameters='[{"robot_description": (HERE / "robot1.urdf").read_text()}]',
-)
-_ROBOT = {"robot1.urdf": '<robot name="r"><link name="a"/></robot>\n'}
 _START = "start ros2_control_node there, or load gz_ros2_control in the description"
-_OPENED = 'OpaqueFunction(function=lambda context: [LogInfo(msg=(HERE / "{}").read_text())])'
-_LIST = '[{{"autostart": {}, "node_names": [{}]}}]'
-_AMCL = node_of("nav2_amcl", "amcl", name='"amcl"')
 _CHANGE, _BOND = "/change_state", "bond"
 _UNSURE = "a node that is not known may; see what is incomplete"
 _ELSEWHERE = "name the launch file that does beside this one, if there is one"
 
 
-def _managed(names: str, autostart: bool = True) -> str:
-    return node_of(
-        "nav2_lifecycle_manager",
-        "lifecycle_manager",
-        name='"lifecycle_manager"',
-        parameters=_LIST.format(autostart, names),
-    )
-
-
-@launch_rule(
-    "MG721",
-    "launch-fails",
-    what="A launch file ends with an error when it is run.",
-    why="Nothing that stands behind it is started, and what runs is stopped.",
-    fix="Correct what the message says, at its line.",
-    bad=launch_of(_OPENED.format("lost.txt")),
-    good=launch_of(_OPENED.format("robot1.urdf")),
-    beside=_ROBOT,
-)
+@launch_rule("MG721", "launch-fails")
 def fails(launched: Launched) -> Iterator[Finding]:
     """What the file itself raises, and files of it that are not there."""
     for it in launched.graph.notes:
@@ -93,18 +44,7 @@ def fails(launched: Launched) -> Iterator[Finding]:
             yield at(fails, it.place, f"the launch ends here: {it.message}", "correct it")
 
 
-@launch_rule(
-    "MG722",
-    "controller-spawned-twice",
-    what="Two spawners load one controller into one controller manager.",
-    why="The second one finds it loaded: it was to be another robot's, which has none then.",
-    fix="Give the second one the manager of its robot (`-c`, or its namespace).",
-    bad=launch_of(
-        _WITH_TYPE, _SPAWNER, node_of("controller_manager", "spawner", ("arm",), name='"b"')
-    ),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
-    line=2,
-)
+@launch_rule("MG722", "controller-spawned-twice")
 def spawned_twice(launched: Launched) -> Iterator[Finding]:
     """At the last of them."""
     spawned = launched.spawned
@@ -136,15 +76,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
 
 
 no_manager = spawner_managers.NO_MANAGER._replace(
-    check=_no_manager,
-    bad=launch_of(
-        _WITH_TYPE,
-        node_of("controller_manager", "spawner", ("arm", "-c", "/robot1/controller_manager")),
-    ),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
-    line=FIRST + 1,
-    formats=(LAUNCH,),
-    beside=NOTHING,
+    check=_no_manager, formats=(LAUNCH,), examples="MG723-launch"
 )
 
 
@@ -158,19 +90,7 @@ def _is_known(launched: Launched) -> bool:
     return nodes and all(it.parameters or it.fails for it in launched.graph.notes)
 
 
-@launch_rule(
-    "MG724",
-    "model-without-description",
-    what="A launch file spawns a model from a topic on which no node of it sends a description, or "
-    "starts a joint_state_publisher that waits there.",
-    why="It waits for ever: the robot is not in the simulator, or its joints are not sent.",
-    fix="Name the topic of its robot_state_publisher, with the namespace. Where another launch file "
-    "sends the description, check both together.",
-    bad=launch_of(_STATE, _CREATE.format("/robot1/robot_description")),
-    good=launch_of(_STATE, _CREATE.format("/robot_description")),
-    line=1,
-    beside=_ROBOT,
-)
+@launch_rule("MG724", "model-without-description")
 def no_description(launched: Launched) -> Iterator[Finding]:
     """An error where a description has another topic; without any, another launch file may send it."""
     sent = [
@@ -198,17 +118,7 @@ def no_description(launched: Launched) -> Iterator[Finding]:
             yield at(no_description, node.place, message, hint, names=(topic,), **level)
 
 
-@launch_rule(
-    "MG728",
-    "controller-without-type",
-    what="A spawner loads a controller whose type no parameter of its controller manager says.",
-    why="The manager refuses it: the 'type' param was not defined. The controller does not come up.",
-    fix="Write `NAME: {type: ...}` into the parameters of the controller manager, or `type` into the "
-    "controller's own section of a file that the spawner gets by `--param-file`.",
-    bad=launch_of(_MANAGER, _SPAWNER),
-    good=launch_of(_WITH_TYPE, _SPAWNER),
-    line=1,
-)
+@launch_rule("MG728", "controller-without-type")
 def no_type(launched: Launched) -> Iterator[Finding]:
     """Where all parameter files are known; the file of a manager in a plugin is not read here."""
     if any(it.parameters for it in launched.graph.notes):
@@ -224,18 +134,7 @@ def no_type(launched: Launched) -> Iterator[Finding]:
             yield at(no_type, it.place, message, f"add {it.name}: {{type: ...}} to its parameters")
 
 
-@launch_rule(
-    "MG725",
-    "controller-without-joints",
-    what="A spawner loads a controller that gets no parameter which names a joint.",
-    why="The controller is not configured: it has nothing to move.",
-    fix="Write its joints into a section with its name and namespace, in a file of the controller "
-    "manager or of the spawner (`--param-file`).",
-    bad=launch_of(_WITH_JOINTS.replace("arm", "lost"), _SPAWNER),
-    good=launch_of(_WITH_JOINTS, _SPAWNER),
-    line=1,
-    beside=_JOINTS,
-)
+@launch_rule("MG725", "controller-without-joints")
 def no_joints(launched: Launched) -> Iterator[Finding]:
     """Where all parameter files are known, and what it claims follows from its parameters alone."""
     if any(it.parameters for it in launched.graph.notes):
@@ -262,21 +161,7 @@ def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
     return by_joint and not any(True for _ in claims_of(owners, given))
 
 
-@launch_rule(
-    "MG726",
-    "not-activated",
-    what="A node of Nav2 with a life cycle is in no list of a lifecycle manager, while the launch "
-    "file starts one. Or a manager lists a node that the launch file does not start, or that keeps no "
-    "bond with it.",
-    why="The node stays unconfigured and does nothing. A manager that waits for a node activates none.",
-    fix="Write the same names in `node_names` and at the nodes; let slam_toolbox have "
-    "`use_lifecycle_manager: true`.",
-    bad=launch_of(
-        _AMCL, node_of("nav2_map_server", "map_server", name='"map_server"'), _managed('"amcl"')
-    ),
-    good=launch_of(_AMCL, _managed('"amcl"')),
-    line=1,
-)
+@launch_rule("MG726", "not-activated")
 def not_listed(launched: Launched) -> Iterator[Finding]:
     """By full names: a manager is for the nodes of its namespace."""
     managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
@@ -337,17 +222,7 @@ def _listed(it: RunningNode) -> Iterator[str]:
         yield resolve_bound(f"{one}{_CHANGE}", SERVICE, bound).removesuffix(_CHANGE)
 
 
-@launch_rule(
-    "MG727",
-    "manager-waits",
-    level=WARNING,
-    what="A lifecycle manager of Nav2 has no `autostart: true`.",
-    why="Its nodes stay unconfigured until its service is called, or one presses the button in RViz.",
-    fix="Set `autostart` to true, unless it is started by hand.",
-    bad=launch_of(_AMCL, _managed('"amcl"', False)),
-    good=launch_of(_AMCL, _managed('"amcl"')),
-    line=1,
-)
+@launch_rule("MG727", "manager-waits", level=WARNING)
 def waits(launched: Launched) -> Iterator[Finding]:
     """Its default is false."""
     for it in launched.nodes:

@@ -22,39 +22,19 @@ from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.launch.declaration import (
-    FIRST,
     LAUNCH,
     at,
-    launch_of,
     launch_rule,
-    node_of,
 )
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 
-_PUBLISHER = (
-    'Node(package="robot_state_publisher", executable="robot_state_publisher", '
-    'remappings=[("{}", "joints")], parameters=[{{"robot_description": "x"}}])'
-)
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
-_TF = "tf2_ros", "static_transform_publisher"
-_FRAMES = ("--frame-id", "map", "--child-frame-id", "odom")
 # More than a turn: nobody writes so many radians.
 _TURN = 2 * pi
 
 
-@launch_rule(
-    "MG711",
-    "static-transform-implausible",
-    what="The words of a static_transform_publisher make no transform, or a wrong one. A frame is "
-    "its own parent, an angle is in degrees, a quaternion is no rotation, or a word stands in "
-    "place of a number.",
-    why="tf2 refuses the transform, or the robot and its sensors stand turned.",
-    fix="Write angles in radians, a quaternion of length one, and two different frames; use the flags "
-    "(`--x`, `--yaw`, `--frame-id`) so that no order matters.",
-    bad=launch_of(node_of(*_TF, ("--yaw", "90", *_FRAMES))),
-    good=launch_of(node_of(*_TF, ("--yaw", "1.5708", *_FRAMES))),
-)
+@launch_rule("MG711", "static-transform-implausible")
 def implausible(launched: Launched) -> Iterator[Finding]:
     """Each fault of each publisher."""
     for it in launched.nodes:
@@ -122,34 +102,11 @@ def _matches_nothing(launched: Launched) -> Iterator[Finding]:
 
 
 matches_nothing = RULE_WITHOUT_NAME._replace(
-    check=_matches_nothing,
-    bad=launch_of(_PUBLISHER.format("joint_stats")),
-    good=launch_of(_PUBLISHER.format("joint_states")),
-    line=FIRST,
-    formats=(LAUNCH,),
+    check=_matches_nothing, formats=(LAUNCH,), examples="MR103-launch"
 )
 
 
-@launch_rule(
-    "MG713",
-    "file-not-there",
-    what="A launch file gives a node the path of a file that is not there.",
-    why="The node ends when it starts, or runs without what the file says.",
-    fix="Correct the path, or install the file (`data_files`, `install(DIRECTORY ...)`).",
-    bad=launch_of(
-        node_of(
-            "ros_gz_bridge", "parameter_bridge",
-            parameters='[{"config_file": str(HERE / "bridge.yaml")}]',
-        )
-    ),
-    good=launch_of(
-        node_of(
-            "ros_gz_bridge", "parameter_bridge",
-            parameters='[{"config_file": str(HERE / "robot1.urdf")}]',
-        )
-    ),
-    beside={"robot1.urdf": "<robot name='r'/>\n"},
-)  # fmt: skip
+@launch_rule("MG713", "file-not-there")  # fmt: skip
 def not_there(launched: Launched) -> Iterator[Finding]:
     """Parameter files, files that a parameter names, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
@@ -169,28 +126,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
 
 
-_INCLUDE = 'IncludeLaunchDescription(str(HERE / "child.launch.py"), launch_arguments=[("{}", "2")])'
-_CHILD = """\
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-
-
-def generate_launch_description():
-    return LaunchDescription([DeclareLaunchArgument("start_x", default_value="0")])
-"""
-
-
-@launch_rule(
-    "MG715",
-    "include-argument-not-read",
-    what="A launch file includes another one with an argument that this one neither declares nor "
-    "reads. Where it declares one that is called nearly so it is an error, else a warning.",
-    why="launch hands it on and says nothing: the other file goes on with its default.",
-    fix="Write the name that the other file declares, or leave the argument out.",
-    bad=launch_of(_INCLUDE.format("strat_x")),
-    good=launch_of(_INCLUDE.format("start_x")),
-    beside={"child.launch.py": _CHILD},
-)
+@launch_rule("MG715", "include-argument-not-read")
 def argument_not_read(launched: Launched) -> Iterator[Finding]:
     """By what the other file has as a text."""
     for place, file, name, near in launched.graph.unread:
@@ -225,28 +161,7 @@ def _named_files(it: LaunchedNode) -> Iterator[str]:
             yield path
 
 
-@launch_rule(
-    "MG714",
-    "program-misspelt",
-    what="A launch file starts a program that its package does not have, but it has a similar one. "
-    "Or the package is not known, and one with a similar name has the program: a note.",
-    why="launch ends there: the executable, or the package, is not found.",
-    fix="Write the name of the program, or of its package.",
-    bad=launch_of(
-        node_of(
-            "robot_state_publisher",
-            "robot_state_publish",
-            parameters='[{"robot_description": "x"}]',
-        )
-    ),
-    good=launch_of(
-        node_of(
-            "robot_state_publisher",
-            "robot_state_publisher",
-            parameters='[{"robot_description": "x"}]',
-        )
-    ),
-)
+@launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
     known = _programs(launched.release)

@@ -19,34 +19,10 @@ from multibot_rewrite.producers.launch.launched import (
     worlds,
 )
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.rules.launch.declaration import ROVERS, at, create_of, launch_of, launch_rule
-
-_PLUGIN = '<plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}"/>'
-_WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>\n'
-_SIM = 'Node(package="ros_gz_sim", executable="gzserver", arguments=["-r", str(HERE / "{}.sdf")])'
+from multibot_rewrite.rules.launch.declaration import at, launch_rule
 
 
-@launch_rule(
-    "MG706",
-    "world-without-system",
-    what="A launch file starts Gazebo with a world that names its systems, and one that the robots "
-    "need is missing. That is UserCommands for spawning, Physics for what drives, Sensors or Imu "
-    "for a sensor.",
-    why="Gazebo loads what the world names and nothing else: nothing is spawned, nothing moves, or a "
-    "sensor sends nothing.",
-    fix="Add the `<plugin>` to the world, or name no plugin there: then Gazebo loads physics, user "
-    "commands and the scene by itself.",
-    bad=launch_of(_SIM.format("bad"), create_of("robot1")),
-    good=launch_of(_SIM.format("good"), create_of("robot1")),
-    line=0,
-    beside={
-        **ROVERS,
-        "bad.sdf": _WORLD.format(_PLUGIN.format("physics", "Physics")),
-        "good.sdf": _WORLD.format(
-            _PLUGIN.format("physics", "Physics") + _PLUGIN.format("user-commands", "UserCommands")
-        ),
-    },
-)
+@launch_rule("MG706", "world-without-system")
 def without_system(launched: Launched) -> Iterator[Finding]:
     """A robot may bring a system itself."""
     models = launched.simulated

@@ -27,29 +27,7 @@ from multibot_rewrite.system.records import (
 _BRIDGES = ("bridge", "parameter_bridge")
 
 
-@pair_rule(
-    "MG121",
-    "sender-not-planned",
-    ERROR,
-    drawn="cross-talk",
-    what="A node publishes a topic that only others may publish, by `senders` of the plan. Or "
-    "several publish a topic that has `one_sender`, or more than planned were recorded.",
-    why="All are obeyed in turn: a robot that gets velocities from two nodes shakes, or drives where it"
-    " should not. A tool may not do it either.",
-    fix="Stop the node, or remap what it publishes; put a twist_mux before the topic. If it is right,"
-    " add it to `senders` of the topic in the plan.",
-    bad="""\
-planned: topic /robot1/cmd_vel from /robot1/twist_mux
-as planned: /robot1/twist_mux publishes /robot1/cmd_vel
-running: /teleop_twist_keyboard publishes /robot1/cmd_vel
-""",
-    good="""\
-planned: topic /robot1/cmd_vel from /robot1/twist_mux
-as planned: /robot1/twist_mux publishes /robot1/cmd_vel
-running: /teleop_twist_keyboard publishes /robot1/cmd_vel_teleop
-""",
-    line=3,
-)
+@pair_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk")
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of topics with senders; one finding for each other node."""
     for topic in (it for it in plan.system.topics if it.senders):
@@ -130,28 +108,7 @@ def _different(topic: Topic, end: End) -> Iterator[str]:
             yield f"{policy} {offered}, the plan has {word}"
 
 
-@pair_rule(
-    "MG124",
-    "no-alternative-runs",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="Of a group of nodes in `one_of` of the plan, none runs.",
-    why="No node does what each of them would do for the robot.",
-    fix="Start one of them.",
-    bad="""\
-planned: one of /robot1/amcl, /robot1/slam_toolbox
-as planned: /robot1/driver
-planned: /robot1/amcl
-planned: /robot1/slam_toolbox
-""",
-    good="""\
-planned: one of /robot1/amcl, /robot1/slam_toolbox
-as planned: /robot1/driver
-planned: /robot1/amcl
-as planned: /robot1/slam_toolbox
-""",
-)
+@pair_rule("MG124", "no-alternative-runs", ERROR, absence=True, drawn="missing")
 def no_alternative_runs(plan: Index, seen: Index) -> Iterator[Finding]:
     """A robot of which nothing runs has a finding of its own."""
     for group in alternatives(plan.system):
@@ -163,25 +120,7 @@ def no_alternative_runs(plan: Index, seen: Index) -> Iterator[Finding]:
             )
 
 
-@pair_rule(
-    "MG125",
-    "several-alternatives-run",
-    ERROR,
-    what="Of a group of nodes in `one_of` of the plan, more than one runs.",
-    why="They do the same thing: two localizations send the same transform, two controllers command"
-    " the same joints.",
-    fix="Stop all but one.",
-    bad="""\
-planned: one of /robot1/amcl, /robot1/slam_toolbox
-as planned: /robot1/amcl
-as planned: /robot1/slam_toolbox
-""",
-    good="""\
-planned: one of /robot1/amcl, /robot1/slam_toolbox
-as planned: /robot1/amcl
-planned: /robot1/slam_toolbox
-""",
-)
+@pair_rule("MG125", "several-alternatives-run", ERROR)
 def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a group."""
     for group in alternatives(plan.system):
@@ -197,33 +136,7 @@ def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
             yield several_alternatives_run.finding(message, hint, **about)
 
 
-@pair_rule(
-    "MG126",
-    "bridged-topic-missing",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="A topic that a ros_gz_bridge has to bridge has no publisher (GZ_TO_ROS) or no subscription"
-    " (ROS_TO_GZ) of its type. It is a warning where nothing at all is bridged: robots may be real.",
-    why="The simulated robot does not move, or its sensor is never seen: `/robot2/cmd_vel` is"
-    " published, and no bridge passes it on to the simulator.",
-    fix="Start a bridge with the file that `multibot build` wrote for the robot, or add the row to"
-    " yours. For real robots write `simulator: none` in the fleet file.",
-    bad="""\
-planned: topic /robot1/scan over a bridge that publishes sensor_msgs/msg/LaserScan
-planned: topic /robot1/cmd_vel over a bridge that subscribes geometry_msgs/msg/Twist
-as planned: /robot1/robot_state_publisher
-running: /robot1/ros_gz_bridge publishes /robot1/scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-planned: topic /robot1/scan over a bridge that publishes sensor_msgs/msg/LaserScan
-planned: topic /robot1/cmd_vel over a bridge that subscribes geometry_msgs/msg/Twist
-as planned: /robot1/robot_state_publisher
-running: /robot1/ros_gz_bridge publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot1/ros_gz_bridge subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    line=2,
-)
+@pair_rule("MG126", "bridged-topic-missing", ERROR, absence=True, drawn="missing")
 def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot; one for all where nothing is bridged."""
     rows = [(topic, role) for topic in plan.system.topics for role in topic.bridge]

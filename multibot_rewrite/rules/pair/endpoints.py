@@ -40,22 +40,7 @@ TO_DO = {
 }
 
 
-@pair_rule(
-    "MG102",
-    "missing-endpoint",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="A running node does not have a topic, service or action that the plan has for it.",
-    why="The other side waits for ever, without an error message.",
-    fix="See the hint: it has the name that the node uses instead, and the remap rule that is "
-    "missing. Pass that rule to the node, or add it at the line of the description.",
-    bad="""\
-planned: /robot1/driver subscribes /robot1/cmd_vel
-running: /robot1/driver subscribes /cmd_vel
-""",
-    good="as planned: /robot1/driver subscribes /robot1/cmd_vel\n",
-)
+@pair_rule("MG102", "missing-endpoint", ERROR, absence=True, drawn="missing")
 def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
     """Only where its node is in the graph."""
     for planned in missing(plan, seen).values():

@@ -20,26 +20,7 @@ from multibot_rewrite.system.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.system.records import Edge, Robot
 
 
-@pair_rule(
-    "MG207",
-    "frame-without-robot-name",
-    ERROR,
-    nodes=False,
-    absence=True,
-    what="A frame does not have the robot's name, although the layout adds it.",
-    why="It is not connected to the rest of the tree, and the next robot's frame has the same"
-    " name.",
-    fix="Load the rewritten description, or set the frame parameters of the node.",
-    bad="""\
-planned: frames of robot1 on /tf: base_link/robot1, laser/robot1
-running: transform base_link/robot1 -> laser on /tf_static by /robot1/driver
-""",
-    good="""\
-planned: frames of robot1 on /tf: base_link/robot1, laser/robot1
-running: transform base_link/robot1 -> laser/robot1 on /tf_static by /robot1/driver
-""",
-    line=2,
-)
+@pair_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
 def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of one robot only; else it is a frame of several robots."""
     for tree in tf_trees(plan, seen):
@@ -98,25 +79,7 @@ def _by_plain_name(plan: Index, robot: Robot) -> dict[str, str]:
     return {plan.of_frames.without_robot(frame, robot.name): frame for frame in robot.frames}
 
 
-@pair_rule(
-    "MG204",
-    "undeclared-frame",
-    WARNING,
-    nodes=False,
-    what="A frame with a robot's name, or a static one on the robot's tf topic, is not in its"
-    " description.",
-    why="If a frame of the description was meant, its data cannot be placed.",
-    fix="Correct the `frame_id`. Add a sensor's own frame to `other_frames` of the plan.",
-    bad="""\
-planned: frames of robot1 on /tf: base_link/robot1, laser/robot1
-running: transform base_link/robot1 -> lidar/robot1 on /tf_static
-""",
-    good="""\
-planned: frames of robot1 on /tf: base_link/robot1, laser/robot1
-running: transform base_link/robot1 -> laser/robot1 on /tf_static
-""",
-    line=2,
-)
+@pair_rule("MG204", "undeclared-frame", WARNING, nodes=False)
 def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
     """A frame that a driver adds below its sensor's link is none."""
     for tree in tf_trees(plan, seen):

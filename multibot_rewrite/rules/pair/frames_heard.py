@@ -23,31 +23,7 @@ from multibot_rewrite.system.records import PUBLISHES, TOPIC, Robot
 _DESCRIPTION = "robot_description"
 
 
-@pair_rule(
-    "MG208",
-    "frame-not-received",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="A frame of a robot is in its description or sent by its nodes, by the plan, and no transform"
-    " with it is received.",
-    why="RViz shows a robot without wheels, and every look-up of the frame fails. Where no frame comes"
-    " at all, robot_state_publisher may have the description of another robot.",
-    fix="Start what sends it: joint_state_publisher or joint_state_broadcaster for moving joints, the"
-    " odometry for `odom`, robot_state_publisher with the robot's own description for the others. It is"
-    " inconclusive where the plan leaves robot_state_publisher out.",
-    bad="""\
-planned: frames of robot1 on /tf: base_link/robot1, wheel/robot1
-as planned: /robot1/robot_state_publisher publishes /tf
-running: transform odom/robot1 -> base_link/robot1 on /tf
-""",
-    good="""\
-planned: frames of robot1 on /tf: base_link/robot1, wheel/robot1
-as planned: /robot1/robot_state_publisher publishes /tf
-running: transform odom/robot1 -> base_link/robot1 on /tf
-running: transform base_link/robot1 -> wheel/robot1 on /tf
-""",
-)
+@pair_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
 def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""

@@ -13,28 +13,7 @@ from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import Node
 
 
-@pair_rule(
-    "MG112",
-    "enclave-of-another-robot",
-    ERROR,
-    drawn="cross-talk",
-    what="A robot's node runs in the SROS2 enclave of another robot.",
-    why="It may do what the other robot may, such as drive it, and not what its own robot has to.",
-    fix="Start it with `--ros-args --enclave /ROBOT`, the enclave of its own robot.",
-    bad="""\
-as planned: /robot1/driver
-running: enclave /robot2 of /robot1/driver
-as planned: /robot2/driver
-running: enclave /robot2 of /robot2/driver
-""",
-    good="""\
-as planned: /robot1/driver
-running: enclave /robot1 of /robot1/driver
-as planned: /robot2/driver
-running: enclave /robot2 of /robot2/driver
-""",
-    line=1,
-)
+@pair_rule("MG112", "enclave-of-another-robot", ERROR, drawn="cross-talk")
 def enclave_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
@@ -52,22 +31,7 @@ def _is_of(enclave: str, robot: str) -> bool:
     return bool(robot) and f"/{robot}/" in f"{enclave}/"
 
 
-@pair_rule(
-    "MG113",
-    "without-enclave",
-    WARNING,
-    what="A robot's node is in no SROS2 enclave, and others of the fleet are in one.",
-    why="Nodes with and without security do not see each other: it is alone, or the others are "
-    "not protected.",
-    fix="Start it with `ROS_SECURITY_ENABLE=true` and `--ros-args --enclave /ROBOT`.",
-    bad="""\
-as planned: /robot1/driver
-as planned: /robot2/driver
-running: enclave /robot2 of /robot2/driver
-""",
-    good="as planned: /robot1/driver\nas planned: /robot2/driver\n",
-    line=1,
-)
+@pair_rule("MG113", "without-enclave", WARNING)
 def without_enclave(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a robot."""
     of = plan.robot_of

@@ -16,29 +16,7 @@ from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.system.records import SERVES, Robot
 
 
-@pair_rule(
-    "MG101",
-    "missing-node",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="A node of the plan is not in the graph. For a node that serves all robots it is a"
-    " warning.",
-    why="All its topics, services and actions are missing. Where it runs under another name, it"
-    " works for the wrong robot, or for all of them.",
-    fix="Start it, with its namespace. The hint has the node that runs in its place, or the line"
-    " of the description that starts it. Where something else than robot_state_publisher sends the"
-    " tf of the description, plan with the stack `no_robot_state_publisher`.",
-    bad="""\
-planned: /robot1/driver
-as planned: /robot1/planner
-running: /driver
-""",
-    good="""\
-as planned: /robot1/driver
-as planned: /robot1/planner
-""",
-)
+@pair_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
 def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
     for robot in plan.system.robots:
@@ -86,25 +64,7 @@ def _not_started(plan: Index, node: str) -> Cause:
     return Cause("is it started, or did it end with an error?")
 
 
-@pair_rule(
-    "MG108",
-    "unplanned-node",
-    WARNING,
-    drawn="unexpected",
-    what="A running node is not in the plan.",
-    why="It may be a second copy, a node without its namespace, or just missing in the plan.",
-    fix="Add it to the plan, or to `shared_nodes` if it serves all robots. For tools that come and"
-    " go add a pattern to `ignored_nodes`.",
-    bad="""\
-as planned: /robot1/driver
-running: /robot1/gripper
-""",
-    good="""\
-as planned: /robot1/driver
-as planned: /robot1/gripper
-""",
-    line=2,
-)
+@pair_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
 def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Only where the plan has nodes of its robot."""
     if not unplanned_nodes(plan, seen):
@@ -137,27 +97,7 @@ def _foreign_names(plan: Index, seen: Index, node: str, robot: str) -> str:
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
 
 
-@pair_rule(
-    "MG109",
-    "missing-robot",
-    ERROR,
-    absence=True,
-    drawn="missing",
-    what="No node of a robot is in the graph.",
-    why="The robot is off, in another domain, or its nodes run under other names. Where all that is"
-    " seen runs on one machine, the network may hide it: then it is inconclusive, not an error.",
-    fix="Start it, in its namespace, and check `ROS_DOMAIN_ID` on both sides. Look from its machine as"
-    " well, and join both snapshots: `multibot snapshot --from`.",
-    bad="""\
-as planned: /robot1/driver
-planned: /robot2/driver
-""",
-    good="""\
-as planned: /robot1/driver
-as planned: /robot2/driver
-""",
-    line=2,
-)
+@pair_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in plan.system.robots:

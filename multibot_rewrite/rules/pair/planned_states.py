@@ -44,29 +44,7 @@ def state_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
             )
 
 
-@pair_rule(
-    "MG132",
-    "parameter-not-planned",
-    ERROR,
-    what="A parameter of a running node has another value than the plan, or than the file that"
-    " `multibot build` wrote for it. A value of a file that is no frame of a robot is a warning: it may"
-    " have been tuned. Asked for by `--state`.",
-    why="The node was started without its file, with that of another robot, or changed by hand. "
-    "Its frames and topics are not those of its robot.",
-    fix="Start the node with its file (`--params-file`, `parameters=[...]`); what a launch file gives"
-    " behind it wins. If the value is right, change it in the file or in `states` of the plan.",
-    bad="""\
-planned: parameter base_frame_id of /robot1/amcl: robot1/base_link
-as planned: /robot1/amcl
-running: /robot1/amcl has base_frame_id base_link
-""",
-    good="""\
-planned: parameter base_frame_id of /robot1/amcl: robot1/base_link
-as planned: /robot1/amcl
-running: /robot1/amcl has base_frame_id robot1/base_link
-""",
-    line=3,
-)
+@pair_rule("MG132", "parameter-not-planned", ERROR)
 def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
@@ -174,32 +152,7 @@ def planned_clocks(plan: System) -> Iterator[tuple[str, str]]:
     return ((it.node, it.value) for it in plan.parameters if it.name == SIM_TIME)
 
 
-@pair_rule(
-    "MG133",
-    "host-not-planned",
-    ERROR,
-    what="Nodes of one `host` of the plan run on several machines, or those of two hosts on one.",
-    why="A driver without its hardware, a planner that eats the other robot's processor, and images"
-    " over the radio.",
-    fix="Start the node on its machine, or change `host` in `states` of the plan.",
-    bad="""\
-planned: host of /robot1/lidar: robot1_pc
-planned: host of /robot1/camera: robot1_pc
-planned: host of /robot1/amcl: robot1_pc
-running: /robot1/lidar on machine 1
-running: /robot1/amcl on machine 1
-running: /robot1/camera on machine 2
-""",
-    good="""\
-planned: host of /robot1/lidar: robot1_pc
-planned: host of /robot1/camera: robot1_pc
-planned: host of /robot2/lidar: robot2_pc
-running: /robot1/lidar on machine 1
-running: /robot1/camera on machine 1
-running: /robot2/lidar on machine 2
-""",
-    line=6,
-)
+@pair_rule("MG133", "host-not-planned", ERROR)
 def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
     machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}

@@ -29,21 +29,7 @@ _IS_TIMED = lazy_compile("|".join(map(translate, _TIMED)))
 _TYPE = "rosgraph_msgs/msg/Clock"
 
 
-@system_rule(
-    "MG501",
-    "no-clock",
-    ERROR,
-    absence=True,
-    what="Nodes subscribe to `/clock` (use_sim_time), but no node publishes it.",
-    why="Their time stands at 0: no timer fires, tf has no transform, nothing moves.",
-    fix="Set `use_sim_time: false` on a real robot; in simulation bridge `/clock`, or play the bag with"
-    " `--clock`.",
-    bad="running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock\n",
-    good="""\
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
-""",
-)
+@system_rule("MG501", "no-clock", ERROR, absence=True)
 def no_clock(seen: Index) -> Iterator[Finding]:
     """A finding for each robot; tools subscribe to whatever there is."""
     by_robot = _on_simulated_time(seen)
@@ -75,23 +61,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     return found
 
 
-@system_rule(
-    "MG502",
-    "two-clocks",
-    ERROR,
-    what="Several nodes publish `/clock`.",
-    why="Time jumps between the two: tf throws its buffer away at every jump back.",
-    fix="Bridge `/clock` from one simulator only; play bags without `--clock`, or in another"
-    " ROS_DOMAIN_ID.",
-    bad="""\
-running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
-running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
-""",
-    good="""\
-running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
-running: /rosbag2_player publishes /recorded/clock rosgraph_msgs/msg/Clock
-""",
-)
+@system_rule("MG502", "two-clocks", ERROR)
 def two_clocks(seen: Index) -> Iterator[Finding]:
     """Two nodes of one name count as well: a bridge that was started for each robot."""
     nodes = _clocks(seen)
@@ -112,28 +82,7 @@ def _times(seen: Index, node: str) -> int:
     return len({it.process for it in ends if it.node == node} & processes)
 
 
-@system_rule(
-    "MG504",
-    "clock-stands-or-goes-back",
-    ERROR,
-    absence=True,
-    what="The one who publishes `/clock` sends nothing, or always the same time; or its time goes back,"
-    " which is a warning.",
-    why="Nodes on simulated time stand still: no timer fires. Where time goes back, tf and filters"
-    " throw away all that they have.",
-    fix="Start or unpause the simulator (`-r` of gz sim); play a bag with `--clock`, and not in a loop"
-    " (`--loop`) beside nodes that localize.",
-    bad="""\
-running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /clock goes back 12.5 s
-""",
-    good="""\
-running: /rosbag2_player publishes /clock rosgraph_msgs/msg/Clock
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /clock runs
-""",
-)
+@system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
 def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
     """As it was heard; of two clocks that is another finding."""
     clocks, nodes = _clocks(seen), [it for own in _on_simulated_time(seen).values() for it in own]
@@ -150,27 +99,7 @@ def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
             yield clock_stands_or_goes_back.finding(message, "is the simulation paused?", **about)
 
 
-@system_rule(
-    "MG503",
-    "clocks-mixed",
-    ERROR,
-    absence=True,
-    what="Of the nodes of one robot that compare times, some are on simulated time and some are not.",
-    why="Their messages are decades apart: tf refuses every lookup between them (`extrapolation into"
-    " the future`).",
-    fix="Set `use_sim_time` alike in all nodes of the robot (`SetParameter` in the launch file).",
-    bad="""\
-running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /robot1/ekf_node publishes /robot1/odom nav_msgs/msg/Odometry
-""",
-    good="""\
-running: /ros_gz_bridge publishes /clock rosgraph_msgs/msg/Clock
-running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock
-running: /robot1/ekf_node subscribes /clock rosgraph_msgs/msg/Clock
-""",
-    line=3,
-)
+@system_rule("MG503", "clocks-mixed", ERROR, absence=True)
 def clocks_mixed(seen: Index) -> Iterator[Finding]:
     """Also a robot that is not on simulated time as the others are."""
     return mixed_clocks(seen)

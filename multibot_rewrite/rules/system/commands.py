@@ -33,25 +33,7 @@ _VELOCITY = "geometry_msgs/msg/Twist"
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
 
-@system_rule(
-    "MG310",
-    "command-for-several-robots",
-    ERROR,
-    drawn="leak",
-    meant=(SUBSCRIBES,),
-    what="Nodes of several robots subscribe to one topic with velocities, trajectories, a goal or a"
-    " start pose. For a joystick it is a warning: its buttons may choose the robot.",
-    why="One command moves all of them.",
-    fix="Use relative topics, or a remap rule, so that each robot has its own.",
-    bad="""\
-running: /robot1/driver subscribes /cmd_vel geometry_msgs/msg/Twist
-running: /robot2/driver subscribes /cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
-""",
-)
+@system_rule("MG310", "command-for-several-robots", ERROR, drawn="leak", meant=(SUBSCRIBES,))
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     orders = seen.orders
@@ -73,28 +55,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
             )
 
 
-@system_rule(
-    "MG308",
-    "command-without-reader",
-    ERROR,
-    absence=True,
-    drawn="leak",
-    what="A node sends velocities, a goal or a start pose that no node reads, while robots obey nearly"
-    " the same name.",
-    why="The joystick does nothing, RViz's goal is ignored, and there is no error message.",
-    fix="Start the sender in the robot's namespace, or pass the remap rule of the hint.",
-    bad="""\
-running: /joystick publishes /cmd_vel geometry_msgs/msg/Twist
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /joystick publishes /joy_vel geometry_msgs/msg/Twist
-running: /robot1/twist_mux subscribes /joy_vel geometry_msgs/msg/Twist
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-)
+@system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
@@ -196,24 +157,7 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
 
 
 @system_rule(
-    "MG311",
-    "command-from-another-robot",
-    ERROR,
-    drawn="cross-talk",
-    meant=(PUBLISHES, CALLS),
-    what="A robot's node sends commands to another robot: velocities, trajectories, goals, requests to"
-    " its services, or a topic for which its own robot waits.",
-    why="Whoever drives or stops one robot moves the other one as well.",
-    fix="Correct the remap rule, namespace or parameter that has the other robot's name.",
-    bad="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot2/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
-""",
-    line=2,
+    "MG311", "command-from-another-robot", ERROR, drawn="cross-talk", meant=(PUBLISHES, CALLS)
 )
 def command_from_another_robot(seen: Index) -> Iterator[Finding]:
     """Tools as well: a joystick of one robot is not for another."""
@@ -261,29 +205,7 @@ def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
     return node not in nodes_of((*own.publishers, *own.clients))
 
 
-@system_rule(
-    "MG312",
-    "several-command-senders",
-    WARNING,
-    meant=(PUBLISHES,),
-    what="Several nodes send velocities or trajectories to one robot, and nothing chooses between"
-    " them.",
-    why="While two of them send, the robot follows both by turns: it jerks, or drives against the"
-    " safety of the other.",
-    fix="Put twist_mux (or another node that chooses) between the senders and the robot, each sender"
-    " on a topic of its own.",
-    bad="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    line=3,
-)
+@system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
 def several_command_senders(seen: Index) -> Iterator[Finding]:
     """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
     for ends in seen.orders.values():
@@ -310,24 +232,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         )
 
 
-@system_rule(
-    "MG313",
-    "bag-beside-a-robot",
-    ERROR,
-    what="`ros2 bag play` publishes topics that nodes of the running system publish as well, or obey.",
-    why="Recorded scans, transforms and commands are mixed with those of now: the robot drives by the"
-    " past.",
-    fix="Play the bag in another ROS_DOMAIN_ID, or remap its topics (`ros2 bag play --remap`).",
-    bad="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /rosbag2_player publishes /robot1/scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
-""",
-    line=2,
-)
+@system_rule("MG313", "bag-beside-a-robot", ERROR)
 def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
     mixed: dict[str, list[str]] = {}

@@ -45,34 +45,7 @@ class _Told(NamedTuple):
 _Values = Mapping[tuple[str, ...], Mapping[str, _Told]]
 
 
-@system_rule(
-    "MG328",
-    "differs-from-its-likes",
-    WARNING,
-    what="Robots with the same nodes differ: a parameter, the type or QoS of a topic, the place or the"
-    " parent of a part. Of three and more it is the one that is unlike all others. Names, numbers and"
-    " addresses that are each robot's own, files and start poses are left out.",
-    why="One was changed and the others were not: it drives more slowly, keeps less distance, sees its"
-    " scan in another place.",
-    fix="Make them equal, or do nothing if the robots are meant to differ.",
-    bad="""\
-running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan reliable volatile
-running: /robot1/imu publishes /robot1/imu/data sensor_msgs/msg/Imu
-running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan best_effort volatile
-running: /robot2/imu publishes /robot2/imu/data sensor_msgs/msg/Imu
-""",
-    good="""\
-running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
-running: /robot1/imu publishes /robot1/imu/data sensor_msgs/msg/Imu
-running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan best_effort volatile
-running: /robot2/imu publishes /robot2/imu/data sensor_msgs/msg/Imu
-""",
-    line=5,
-)
+@system_rule("MG328", "differs-from-its-likes", WARNING)
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
     """All of a node, and all transforms of a robot, are one finding."""
     for likes in alike(nodes_of_each(seen)):

@@ -40,29 +40,7 @@ class _Message(NamedTuple):
     place: Place = NOWHERE
 
 
-@system_rule(
-    "MG411",
-    "frame-id-of-another-robot",
-    ERROR,
-    what="`header.frame_id` of what a robot measures, or `child_frame_id` of its odometry, is a frame"
-    " of another robot.",
-    why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
-    fix="Set the frame of the sender to its own robot's: `frame_id`, `base_frame`, or "
-    "`gz_frame_id` in the description. A launch file may have the other robot's name.",
-    bad="""\
-running: transform robot1/base_link -> robot1/lidar_link on /tf
-running: transform robot2/base_link -> robot2/lidar_link on /tf
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-running: frame_id robot1/lidar_link on /robot2/scan
-""",
-    good="""\
-running: transform robot1/base_link -> robot1/lidar_link on /tf
-running: transform robot2/base_link -> robot2/lidar_link on /tf
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-running: frame_id robot2/lidar_link on /robot2/scan
-""",
-    line=4,
-)
+@system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the names of frames: robots with a tf topic each may have the same ones."""
     for (frame, robot, senders), messages in _by_sender(seen).items():
@@ -85,29 +63,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
     return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
 
 
-@system_rule(
-    "MG412",
-    "frame-id-unknown",
-    ERROR,
-    absence=True,
-    what="`header.frame_id` of messages is in no transform that the robot gets. For a name that is like"
-    " none of its frames it is a warning, and for odometry without `child_frame_id`.",
-    why="tf cannot say where the sensor is: RViz shows nothing, costmaps and filters drop every message"
-    " (`frame does not exist`).",
-    fix="Set the frame of the sender to the one in tf, with the robot's name where the layout has "
-    "it. Or send a transform for it.",
-    bad="""\
-running: transform robot1/base_link -> robot1/lidar_link on /tf
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: frame_id lidar_link on /robot1/scan
-""",
-    good="""\
-running: transform robot1/base_link -> robot1/lidar_link on /tf
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: frame_id robot1/lidar_link on /robot1/scan
-""",
-    line=3,
-)
+@system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
     frames = {tree.topic: frames_in(tree.edges) for tree in seen.trees}
@@ -136,30 +92,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-@system_rule(
-    "MG419",
-    "joints-of-another-robot",
-    ERROR,
-    what="A message of one robot's joint states, or a trajectory that is sent to it, names joints of"
-    " another robot.",
-    why="robot_state_publisher and MoveIt leave out joints that they do not know. The robot's own "
-    "parts do not move in tf, or the arm does not move.",
-    fix="Give the sender the joints of its own robot: a parameter file (`joints`) or a description of"
-    " the other robot is in use.",
-    bad="""\
-running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
-running: /robot2/joint_state_broadcaster publishes /robot2/joint_states sensor_msgs/msg/JointState
-running: joints robot1_wheel on /robot1/joint_states
-running: joints robot1_wheel on /robot2/joint_states
-""",
-    good="""\
-running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
-running: /robot2/joint_state_broadcaster publishes /robot2/joint_states sensor_msgs/msg/JointState
-running: joints robot1_wheel on /robot1/joint_states
-running: joints robot2_wheel on /robot2/joint_states
-""",
-    line=2,
-)
+@system_rule("MG419", "joints-of-another-robot", ERROR)
 def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the robots' names in those of joints; what is of all robots may have those of any."""
     whose = cache(partial(_robot_of_joint, seen))

@@ -36,34 +36,7 @@ class Made(NamedTuple):
     ends: Mapping[_Key, End]
 
 
-@system_rule(
-    "MG327",
-    "lacks-what-its-likes-have",
-    WARNING,
-    absence=True,
-    what="A robot lacks a node, topic or service that the other robots with the same nodes "
-    "have. For two robots it is reported if a node waits for it in vain.",
-    why="A process that died, a launch argument that is set for one robot and not for the other.",
-    fix="Start the missing node. Do nothing if the robots are meant to differ.",
-    bad="""\
-running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot1/odometer subscribes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/odometer subscribes /robot2/scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-running: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/planner subscribes /robot1/odom nav_msgs/msg/Odometry
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/driver publishes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/planner subscribes /robot2/odom nav_msgs/msg/Odometry
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-""",
-    line=7,
-)
+@system_rule("MG327", "lacks-what-its-likes-have", WARNING, absence=True)
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """What another finding is about as well is left to that one (``unexplained``)."""
     made = made_of(seen)

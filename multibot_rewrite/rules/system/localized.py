@@ -30,32 +30,7 @@ class _Body(NamedTuple):
     loose: tuple[str, ...]
 
 
-@system_rule(
-    "MG415",
-    "map-not-joined",
-    ERROR,
-    absence=True,
-    robot_wide=True,
-    what="A node localizes the robot (amcl: it reads a start pose and sends tf), and nothing joins the"
-    " map with the robot's odometry.",
-    why="Nothing knows where the robot is: RViz shows nothing in the frame `map`, costmaps and planners"
-    " wait.",
-    fix="Send a start pose (RViz: 2D Pose Estimate, or `set_initial_pose: true`). See that the "
-    "node is active and has a map and a scan. Its `odom_frame_id` must be the frame of the "
-    "odometry.",
-    bad="""\
-running: /robot1/amcl subscribes /robot1/initialpose geometry_msgs/msg/PoseWithCovarianceStamped
-running: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage
-running: transform odom -> base_link on /robot1/tf by /robot1/driver
-""",
-    good="""\
-running: /robot1/amcl subscribes /robot1/initialpose geometry_msgs/msg/PoseWithCovarianceStamped
-running: /robot1/amcl publishes /robot1/tf tf2_msgs/msg/TFMessage
-running: transform odom -> base_link on /robot1/tf by /robot1/driver
-running: transform map -> odom on /robot1/tf by /robot1/amcl
-""",
-    line=2,
-)
+@system_rule("MG415", "map-not-joined", ERROR, absence=True, robot_wide=True)
 def map_not_joined(seen: Index) -> Iterator[Finding]:
     """Where the tree is in pieces below the odometry as well, that is the finding."""
     for tree in seen.trees:
@@ -151,24 +126,7 @@ def _unsent(seen: Index, node: str) -> Sequence[str]:
     return [it for it in names if it not in seen.published]
 
 
-@system_rule(
-    "MG414",
-    "odometry-of-another-robot",
-    ERROR,
-    what="A robot's frame is sent below the odom frame of another robot.",
-    why="Both robots begin in one frame: each moves with the odometry of the other, and its own odom "
-    "frame is in no tree.",
-    fix="Set the odometry frame of the sender to that of its own robot.",
-    bad="""\
-running: transform robot1/odom -> robot1/base_link on /tf
-running: transform robot1/odom -> robot2/base_link on /tf
-""",
-    good="""\
-running: transform robot1/odom -> robot1/base_link on /tf
-running: transform robot2/odom -> robot2/base_link on /tf
-""",
-    line=2,
-)
+@system_rule("MG414", "odometry-of-another-robot", ERROR)
 def odometry_of_another(seen: Index) -> Iterator[Finding]:
     """A robot that stands on another one is below its links, not below its odometry."""
     for tree in seen.trees:

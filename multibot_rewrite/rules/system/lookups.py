@@ -23,27 +23,7 @@ _MAP = "map"
 _ODOM = "odom"
 
 
-@system_rule(
-    "MG413",
-    "frame-not-sent",
-    WARNING,
-    absence=True,
-    what="A node reads odom, base_footprint, base_link or map by its parameters, and neither the "
-    "description nor a known node sends it, though others send transforms. A note for the map, and for "
-    "a virtual joint of an SRDF that moves (planar, floating) and whose transform nothing sends.",
-    why="The node waits for a transform that never comes. MoveIt waits for a complete state.",
-    fix="Use the frame that is sent, or name the node or stack that sends it; make the virtual joint "
-    "fixed where the robot stands.",
-    bad="""\
-running: transform odom -> base_link on /robot1/tf by /robot1/ekf
-running: /robot1/planner looks up base_footprint
-""",
-    good="""\
-running: transform odom -> base_link on /robot1/tf by /robot1/ekf
-running: /robot1/planner looks up base_link
-""",
-    line=2,
-)
+@system_rule("MG413", "frame-not-sent", WARNING, absence=True)
 def frame_not_sent(seen: Index) -> Iterator[Finding]:
     """Each frame once a robot, with all that read it; other names than the usual ones may be those of a
     driver."""

@@ -29,27 +29,7 @@ HASH = "RIHS"
 STAMPED = "Stamped"
 
 
-@system_rule(
-    "MG306",
-    "types-differ",
-    ERROR,
-    all_ends=True,
-    what="The ends of a topic, service or action have different types, two versions of one type, or"
-    " another type than in the plan.",
-    why="No message arrives, and there is no error message.",
-    fix="Use the same type on both sides, and build both against one version; for velocities set"
-    " `enable_stamped_cmd_vel`, `use_stamped_vel` or `stamped` alike on both. If the running type is"
-    " right, correct the plan.",
-    bad="""\
-running: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/TwistStamped
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    line=2,
-)
+@system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
     """Where one of a node's ends has the type of the other side, it connects."""
     for ends in seen.by_name.values():
@@ -125,26 +105,7 @@ def _difference(
     return f"uses {name} as {wanted}, but {giver} has it as {there}", cause
 
 
-@system_rule(
-    "MG307",
-    "qos-incompatible",
-    ERROR,
-    what="A subscriber asks for a QoS that a publisher of the topic does not offer: reliability,"
-    " durability, deadline, liveliness or lease. Where it hears other publishers it is a warning, but"
-    " for tf.",
-    why="DDS does not connect them: both are in the graph, and no message arrives; there is at most a"
-    " line in the log.",
-    fix="Let the subscriber ask for less (best effort, volatile), or the publishers offer more.",
-    bad="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
-running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan reliable volatile
-""",
-    good="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
-running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan best_effort volatile
-""",
-    line=2,
-)
+@system_rule("MG307", "qos-incompatible", ERROR)
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
     """One for each subscription and what it lacks; where several lack the same of one publisher, it is
     the publisher's. Zenoh connects any two (rmw_zenoh design.md)."""
@@ -201,23 +162,7 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
     )
 
 
-@system_rule(
-    "MG309",
-    "not-latched",
-    ERROR,
-    what="A map, a description or `tf_static` is offered without `transient_local`, or read "
-    "without it (a warning). Or a publisher offers another QoS than `qos` of its topic in the"
-    " plan.",
-    why="Who starts later, or asks for more, never gets it.",
-    fix="Publish and read it with durability transient local: by the node's parameter, or a"
-    " qos_overrides parameter; or correct the plan.",
-    bad="""\
-running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable volatile
-""",
-    good="""\
-running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
-""",
-)
+@system_rule("MG309", "not-latched", ERROR)
 def not_latched(seen: Index) -> Iterator[Finding]:
     """Where a subscriber asks for it, that is the finding."""
     for ends in seen.by_name.values() if seen.system.environment.rmw != ZENOH else ():

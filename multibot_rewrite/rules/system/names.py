@@ -34,26 +34,7 @@ from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, 
 ABSENT = "is that robot started, and is its name right?"
 
 
-@system_rule(
-    "MG303",
-    "topic-names-miss",
-    ERROR,
-    absence=True,
-    what="A node subscribes to a topic that no node publishes, while nearly the same name is "
-    "published. The namespace of the robot is missing or too much, it is another namespace or"
-    " the node's own name, or the name is misspelled. It is a warning where the robot sends "
-    "data of that kind under another name.",
-    why="The two sides never connect, and there is no error message.",
-    fix="Pass the remap rule of the hint, or write the other side's name in the parameters.",
-    bad="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /joystick publishes /cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /joystick publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-)
+@system_rule("MG303", "topic-names-miss", ERROR, absence=True)
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
     common, a warning: something else may send it."""
@@ -196,26 +177,7 @@ def _missed_topic(
     )  # fmt: skip
 
 
-@system_rule(
-    "MG304",
-    "server-names-miss",
-    ERROR,
-    absence=True,
-    what="A node calls a service or action that no node serves, while nearly the same name is "
-    "served. It lacks the robot's namespace, has it without need, or is misspelled. Or a lifecycle "
-    "manager lists a node that does not run. In a namespace without any node, and where the type "
-    "alone is the same, it is a warning.",
-    why="The client waits for ever: no goal arrives, no node is activated.",
-    fix="Write the name as the server has it, or start the client in the robot's namespace.",
-    bad="""\
-running: /fleet_manager calls /robot_2/navigate_to_pose nav2_msgs/action/NavigateToPose
-running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
-""",
-    good="""\
-running: /fleet_manager calls /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
-running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
-""",
-)
+@system_rule("MG304", "server-names-miss", ERROR, absence=True)
 def server_names_miss(seen: Index) -> Iterator[Finding]:
     """A service that is nowhere to be found may be optional: it is no finding."""
     served: dict[tuple[str, str], list[str]] = defaultdict(list)
@@ -310,23 +272,7 @@ def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
     return ""
 
 
-@system_rule(
-    "MG305",
-    "service-of-two-nodes",
-    ERROR,
-    meant=(SERVES,),
-    what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
-    why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
-    fix="Use a relative name, or a remap rule, so that each robot has its own.",
-    bad="""\
-running: /robot1/bt_navigator serves /navigate_to_pose nav2_msgs/action/NavigateToPose
-running: /robot2/bt_navigator serves /navigate_to_pose nav2_msgs/action/NavigateToPose
-""",
-    good="""\
-running: /robot1/bt_navigator serves /robot1/navigate_to_pose nav2_msgs/action/NavigateToPose
-running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/NavigateToPose
-""",
-)
+@system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))
 def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
     """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
     robot both serve `set_pose`, which is how they are made."""

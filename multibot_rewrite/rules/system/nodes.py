@@ -18,25 +18,7 @@ MANY = 3
 _CHANGE_STATE = "/change_state"
 
 
-@system_rule(
-    "MG301",
-    "nodes-of-one-name",
-    ERROR,
-    what="Several nodes that run have the same full name.",
-    why="They have the same topics, parameters and services: a command or parameter that is meant for"
-    " one reaches both, or either. Where all nodes of a robot are there twice, two robots were started"
-    " without a namespace.",
-    fix="Give each robot a namespace (`namespace:=robot1`, `PushRosNamespace`), or each node a name"
-    " (`--ros-args -r __node:=NAME`). A node that was killed stays visible for 20 s: look again.",
-    bad="""\
-running: /driver
-running: /driver
-""",
-    good="""\
-running: /robot1/driver
-running: /robot2/driver
-""",
-)
+@system_rule("MG301", "nodes-of-one-name", ERROR)
 def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
     times = seen.nodes
@@ -75,24 +57,7 @@ def _two_robots(robot: str, names: Sequence[str]) -> Finding:
     return nodes_of_one_name.finding(message, cause, robot=robot, node=names[0], names=tuple(names))
 
 
-@system_rule(
-    "MG302",
-    "managed-twice",
-    ERROR,
-    what="Several nodes change the life cycle state of the same node: two lifecycle managers.",
-    why="One manager shuts down what the other has just activated; with `bond` both reset all nodes.",
-    fix="Start one lifecycle manager for a node, and write in its `node_names` only nodes of its own"
-    " robot.",
-    bad="""\
-running: /robot1/lifecycle_manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/lifecycle_manager_2 calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-""",
-    good="""\
-running: /robot1/lifecycle_manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-""",
-)
+@system_rule("MG302", "managed-twice", ERROR)
 def managed_twice(seen: Index) -> Iterator[Finding]:
     """One finding for all nodes that the same managers have; an operator's tool is none."""
     managed: dict[tuple[str, ...], list[str]] = defaultdict(list)

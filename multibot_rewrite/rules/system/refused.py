@@ -18,19 +18,7 @@ from multibot_rewrite.system.records import Edge
 _TOLERANCE = 10e-3
 
 
-@system_rule(
-    "MG416",
-    "transform-refused",
-    ERROR,
-    what="A transform is sent that tf2 drops. Its quaternion is zero or not of length 1, a number "
-    "is NaN, a frame has no name, or a frame is its own parent. Or a pose has such numbers.",
-    why="No listener has it: everything below that frame is lost (`Ignoring transform` in each log). "
-    "Filters and Nav2 refuse such a pose.",
-    fix="Send `w: 1` where there is no rotation; see the sensor or the covariance that brings NaN; set"
-    " both frames of the sender.",
-    bad="running: transform base_link -> base_link on /robot1/tf by /robot1/driver\n",
-    good="running: transform odom -> base_link on /robot1/tf by /robot1/driver\n",
-)
+@system_rule("MG416", "transform-refused", ERROR)
 def transform_refused(seen: Index) -> Iterator[Finding]:
     """By the checks of BufferCore::setTransformImpl; the transforms of one topic and reason are one."""
     found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
@@ -85,17 +73,7 @@ def _odd(numbers: tuple[float, ...]) -> str:
 _FAR = 20.0
 
 
-@system_rule(
-    "MG418",
-    "part-far-away",
-    WARNING,
-    what="A fixed transform of a part of the robot, below its base, is over 20 m long.",
-    why="The numbers are millimetres or centimetres, or in another order: the sensor sees all in"
-    " another place.",
-    fix="Write metres; static_transform_publisher wants `--x --y --z` in metres, angles in radians.",
-    bad="running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /camera_tf\n",
-    good="running: transform base_link -> lidar_link on /tf_static at 0.15 0 0.2 by /camera_tf\n",
-)
+@system_rule("MG418", "part-far-away", WARNING)
 def part_far_away(seen: Index) -> Iterator[Finding]:
     """By the length alone: what is below the map is as far away as the building is long."""
     for tree in seen.trees:

@@ -21,29 +21,7 @@ _CONTROLLER = "controller_server"
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 
-@system_rule(
-    "MG314",
-    "relayed-to-another-robot",
-    ERROR,
-    meant=(PUBLISHES,),
-    what="A node of no robot, such as a relay or bridge, reads data of one robot and publishes it "
-    "as data of another. The data are commands, or what the robot measures.",
-    why="Who drives the one robot moves the other, or one is localized with the scan of the other.",
-    fix="Correct the robot's name in the topics of the relay. Where one robot is meant to do what the"
-    " other does, write the relay into the plan.",
-    bad="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
-running: /relay subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /relay publishes /robot2/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /relay subscribes /robot1/joy_vel geometry_msgs/msg/Twist
-running: /relay publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    line=4,
-)
+@system_rule("MG314", "relayed-to-another-robot", ERROR, meant=(PUBLISHES,))
 def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
     """Who also publishes what it reads is a bridge of all robots to another network."""
     read = {
@@ -79,28 +57,7 @@ def _of_bodies(seen: Index) -> Sequence[Ends]:
     ]
 
 
-@system_rule(
-    "MG315",
-    "limits-left-out",
-    ERROR,
-    meant=(PUBLISHES, SUBSCRIBES),
-    what="Nav2's controller_server sends velocities on the topic on which velocity_smoother or "
-    "collision_monitor sends them, after it has limited them. Or a driver reads an input of "
-    "twist_mux, and no node reads its output.",
-    why="The robot obeys what was not limited or chosen: nothing stops it before an obstacle.",
-    fix="Pass the remap rule cmd_vel:=cmd_vel_nav to controller_server, as Nav2's launch files do; give"
-    " the driver the output of twist_mux.",
-    bad="""\
-running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-running: /robot1/collision_monitor subscribes /robot1/cmd_vel_smoothed geometry_msgs/msg/Twist
-running: /robot1/collision_monitor publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-    good="""\
-running: /robot1/controller_server publishes /robot1/cmd_vel_nav geometry_msgs/msg/Twist
-running: /robot1/collision_monitor subscribes /robot1/cmd_vel_nav geometry_msgs/msg/Twist
-running: /robot1/collision_monitor publishes /robot1/cmd_vel geometry_msgs/msg/Twist
-""",
-)
+@system_rule("MG315", "limits-left-out", ERROR, meant=(PUBLISHES, SUBSCRIBES))
 def limits_left_out(seen: Index) -> Iterator[Finding]:
     """docking_server sends beside collision_monitor, as it is made."""
     yield from _mux_left_out(seen)
@@ -144,25 +101,7 @@ def _velocities(seen: Index) -> Iterator[Ends]:
     return (it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type))
 
 
-@system_rule(
-    "MG329",
-    "data-in-a-circle",
-    ERROR,
-    meant=(PUBLISHES, SUBSCRIBES),
-    what="A node reads velocities, odometry, a scan or IMU data on the topic on which it sends "
-    "them. Or one relay gives them to a second one, which sends them back.",
-    why="Each message comes round again: a filter believes itself, a command never ends.",
-    fix="Let it read, or send, on another topic: the remap rule of one of the two names.",
-    bad="""\
-running: /ekf subscribes /odometry/filtered nav_msgs/msg/Odometry
-running: /ekf publishes /odometry/filtered nav_msgs/msg/Odometry
-""",
-    good="""\
-running: /ekf subscribes /odom nav_msgs/msg/Odometry
-running: /ekf publishes /odometry/filtered nav_msgs/msg/Odometry
-""",
-    line=2,
-)
+@system_rule("MG329", "data-in-a-circle", ERROR, meant=(PUBLISHES, SUBSCRIBES))
 def data_in_a_circle(seen: Index) -> Iterator[Finding]:
     """A bridge reads and sends each of its topics, as it is made. Joints come from several."""
     passed: dict[tuple[str, str], tuple[str, Ends]] = {}

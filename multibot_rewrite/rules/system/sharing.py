@@ -23,28 +23,7 @@ def own_namespace(seen: Index, name: str, robot: str) -> str:
     )
 
 
-@system_rule(
-    "MG320",
-    "topic-of-several-robots",
-    ERROR,
-    drawn="leak",
-    meant=(PUBLISHES, SUBSCRIBES),
-    what="Nodes of several robots publish sensor data, odometry, a map, a command or a description "
-    "on the same topic. Or they read what one robot measures from it. Or a robot's node uses a "
-    "topic that is of no robot and not shared by the plan.",
-    why="Whoever reads it gets the data of all robots by turns: localization jumps, a controller"
-    " follows two plans.",
-    fix="Use relative topics in the nodes' parameters, or a remap rule: each robot needs its own. If"
-    " all robots are to share the topic, add it to `shared_topics` of the plan (`--shared /TOPIC`).",
-    bad="""\
-running: /robot1/lidar publishes /scan sensor_msgs/msg/LaserScan
-running: /robot2/lidar publishes /scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-""",
-)
+@system_rule("MG320", "topic-of-several-robots", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES))
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
     yield from _sent_by_several(seen)
@@ -66,28 +45,7 @@ def _sent_by_several(seen: Index) -> Iterator[Finding]:
             yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
 
 
-@system_rule(
-    "MG321",
-    "data-of-another-robot",
-    ERROR,
-    drawn="cross-talk",
-    meant=(SUBSCRIBES,),
-    what="A robot's node subscribes to data of another robot, although its own robot has the same"
-    " topic.",
-    why="The robot is localized, or avoids obstacles, with the data of the other.",
-    fix="Correct the parameter or remap rule that has the other robot's name.",
-    bad="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-running: /robot2/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan
-""",
-    good="""\
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: /robot2/lidar publishes /robot2/scan sensor_msgs/msg/LaserScan
-running: /robot2/amcl subscribes /robot2/scan sensor_msgs/msg/LaserScan
-""",
-    line=3,
-)
+@system_rule("MG321", "data-of-another-robot", ERROR, drawn="cross-talk", meant=(SUBSCRIBES,))
 def data_of_another_robot(seen: Index) -> Iterator[Finding]:
     """A node that reads both robots' topics is meant to: it compares or follows."""
     read_across = any(_is_read_across(seen, it) for it in seen.topics)
@@ -138,23 +96,7 @@ def _read_by_several(seen: Index) -> Iterator[Finding]:
             yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
 
 
-@system_rule(
-    "MG323",
-    "two-maps",
-    ERROR,
-    meant=(PUBLISHES,),
-    what="Several nodes publish a map on the same topic.",
-    why="A map is latched: a node that starts gets both, and uses the one that comes last.",
-    fix="Start one of map_server and SLAM for a topic, or give each robot's map its own topic.",
-    bad="""\
-running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
-running: /robot1/slam_toolbox publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
-""",
-    good="""\
-running: /robot1/map_server publishes /robot1/map nav_msgs/msg/OccupancyGrid reliable transient_local
-running: /robot2/slam_toolbox publishes /robot2/map nav_msgs/msg/OccupancyGrid reliable transient_local
-""",
-)
+@system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))
 def two_maps(seen: Index) -> Iterator[Finding]:
     """Of nodes of several robots on one topic it is a topic of several robots."""
     for ends in seen.topics:
@@ -168,26 +110,7 @@ def two_maps(seen: Index) -> Iterator[Finding]:
         )
 
 
-@system_rule(
-    "MG324",
-    "joint-states-twice",
-    WARNING,
-    meant=(PUBLISHES,),
-    what="joint_state_publisher publishes on the same topic as a driver or controller.",
-    why="It publishes every movable joint of the description, by default at 0: the robot's joints jump"
-    " between their true position and 0.",
-    fix="Start joint_state_publisher only where no hardware or simulator is, or let it read the others"
-    " (`source_list`) and publish on another topic.",
-    bad="""\
-running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
-running: /robot1/joint_state_publisher publishes /robot1/joint_states sensor_msgs/msg/JointState
-""",
-    good="""\
-running: /robot1/joint_state_broadcaster publishes /robot1/joint_states sensor_msgs/msg/JointState
-running: /robot1/robot_state_publisher subscribes /robot1/joint_states sensor_msgs/msg/JointState
-""",
-    line=2,
-)
+@system_rule("MG324", "joint-states-twice", WARNING, meant=(PUBLISHES,))
 def joint_states_twice(seen: Index) -> Iterator[Finding]:
     """Several drivers with a part of the joints each are usual."""
     for ends in seen.topics:
@@ -202,26 +125,7 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
             )
 
 
-@system_rule(
-    "MG325",
-    "sensor-twice",
-    ERROR,
-    meant=(PUBLISHES,),
-    what="Two nodes publish the odometry of one robot, its description, or the data of one sensor"
-    " (scan, image, IMU, points, GPS) on the same topic. For all but odometry it is a warning.",
-    why="Its readers get both by turns. The odometry of two filters jumps from one to the other, a "
-    "scan from the front to the rear. A controller takes the description that comes last.",
-    fix="Give each its own topic: `odometry/filtered:=odometry/local` for the first of two filters,"
-    " `scan:=scan_rear` for the second lidar.",
-    bad="""\
-running: /robot1/ekf_local publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
-running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
-""",
-    good="""\
-running: /robot1/ekf_local publishes /robot1/odometry/local nav_msgs/msg/Odometry
-running: /robot1/ekf_global publishes /robot1/odometry/filtered nav_msgs/msg/Odometry
-""",
-)
+@system_rule("MG325", "sensor-twice", ERROR, meant=(PUBLISHES,))
 def sensor_twice(seen: Index) -> Iterator[Finding]:
     """A bag that is played is one as well, and so are relays and bridges in both directions: who reads
     what it sends passes it on."""

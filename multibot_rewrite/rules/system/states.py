@@ -26,27 +26,7 @@ from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 ACTIVE = "active"
 
 
-@system_rule(
-    "MG511",
-    "not-active",
-    ERROR,
-    what="A managed (lifecycle) node is not active. For one that no lifecycle manager has it is a"
-    " warning. Asked for by `--state`.",
-    why="It is in the graph and does nothing: it publishes nothing and refuses goals.",
-    fix="See the log of its lifecycle manager, which stops at the first node that fails; `ros2"
-    " lifecycle set NODE configure`, then `activate`.",
-    bad="""\
-running: /robot1/manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl is inactive
-""",
-    good="""\
-running: /robot1/manager calls /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl serves /robot1/amcl/change_state lifecycle_msgs/srv/ChangeState
-running: /robot1/amcl is active
-""",
-    line=3,
-)
+@system_rule("MG511", "not-active", ERROR)
 def not_active(seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that are in one state and have one manager."""
     found: dict[tuple[str, str, str], list[str]] = defaultdict(list)
@@ -73,24 +53,7 @@ def _manager(seen: Index, node: str) -> str:
     return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
 
 
-@system_rule(
-    "MG512",
-    "interface-commanded-twice",
-    ERROR,
-    what="Active controllers of two controller managers of one robot command the same interface "
-    "(asked for by `--state`). Or launch files start two controllers of one manager that do.",
-    why="Both drive the joint: it jerks between two set points. One manager refuses the second.",
-    fix="Run one controller manager for each hardware; a simulator starts its own. Spawn the "
-    "second controller with --inactive.",
-    bad="""\
-running: /robot1/controller_manager controls joint1/position by arm_controller
-running: /robot1/gz/controller_manager controls joint1/position by arm_controller
-""",
-    good="""\
-running: /robot1/controller_manager controls joint1/position by arm_controller
-running: /robot1/gripper/controller_manager controls finger/position by gripper_controller
-""",
-)
+@system_rule("MG512", "interface-commanded-twice", ERROR)
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
     """A running manager refuses the second of its own controllers."""
     claims: dict[tuple[str, str], list[Controller]] = defaultdict(list)
@@ -121,16 +84,7 @@ def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bo
     return any(last_word(claim.node) == it.name for it in controllers)
 
 
-@system_rule(
-    "MG513",
-    "no-controller-active",
-    WARNING,
-    what="A controller manager has controllers, and none of them is active. Asked for by `--state`.",
-    why="The robot has no joint states and obeys no command.",
-    fix="Start the spawners (`ros2 run controller_manager spawner NAME -c MANAGER`); see their log.",
-    bad="running: /robot1/controller_manager keeps arm_controller inactive\n",
-    good="running: /robot1/controller_manager controls joint1/position by arm_controller\n",
-)
+@system_rule("MG513", "no-controller-active", WARNING)
 def no_controller_active(seen: Index) -> Iterator[Finding]:
     """Some inactive ones beside active ones are usual."""
     kept: dict[str, list[Controller]] = defaultdict(list)
@@ -146,23 +100,7 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
             )
 
 
-@system_rule(
-    "MG514",
-    "use-sim-time-differs",
-    WARNING,
-    what="Nodes of one robot have different values of `use_sim_time`: of a launch file by "
-    "`check-launch`, of running nodes by `--state`.",
-    why="Their messages are decades apart: tf refuses lookups between them.",
-    fix="Set `use_sim_time` alike for all nodes of a robot (`SetParameter` in the launch file).",
-    bad="""\
-running: /robot1/amcl has use_sim_time true
-running: /robot1/driver has use_sim_time false
-""",
-    good="""\
-running: /robot1/amcl has use_sim_time true
-running: /robot1/driver has use_sim_time true
-""",
-)
+@system_rule("MG514", "use-sim-time-differs", WARNING)
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
     """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot."""
     told = {it.robot for it in mixed_clocks(seen)}

@@ -21,27 +21,7 @@ from multibot_rewrite.system.tool_nodes import last_word
 _STATE_PUBLISHER = "robot_state_publisher"
 
 
-@system_rule(
-    "MG406",
-    "tf-tree-in-pieces",
-    ERROR,
-    absence=True,
-    robot_wide=True,
-    what="The odometry frame and the robot's base are on one tf topic and not connected.",
-    why="Nothing that needs the robot's place works: costmaps, AMCL, RViz with the fixed frame `odom`.",
-    fix="Start what sends odometry (a driver, a controller, an EKF), with the frames that the others"
-    " use: `odom_frame`, `base_frame_id`, `robot_base_frame`.",
-    bad="""\
-running: transform map -> odom on /robot1/tf by /robot1/amcl
-running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
-""",
-    good="""\
-running: transform map -> odom on /robot1/tf by /robot1/amcl
-running: transform odom -> base_link on /robot1/tf by /robot1/driver
-running: transform base_link -> laser on /robot1/tf_static by /robot1/robot_state_publisher
-""",
-    line=1,
-)
+@system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True, robot_wide=True)
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
     """By the usual names of these frames (REP 105); other pieces may be meant.
 

@@ -19,26 +19,7 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 
 @system_rule(
-    "MG405",
-    "tf-on-two-topics",
-    ERROR,
-    drawn="leak",
-    meant=(PUBLISHES, SUBSCRIBES),
-    robot_wide=True,
-    what="Of one robot's nodes some send or hear tf on `/tf`, some on the robot's own topic.",
-    why="A listener hears one half of the tree: `Could not find a connection between 'odom' and"
-    " 'base_link'`.",
-    fix="Pass `-r /tf:=tf -r /tf_static:=tf_static` to all nodes of the robot, or to none; for"
-    " listeners in a process to the whole process.",
-    bad="""\
-running: /robot1/robot_state_publisher publishes /robot1/tf tf2_msgs/msg/TFMessage
-running: /robot1/driver publishes /tf tf2_msgs/msg/TFMessage
-""",
-    good="""\
-running: /robot1/robot_state_publisher publishes /robot1/tf tf2_msgs/msg/TFMessage
-running: /robot1/driver publishes /robot1/tf tf2_msgs/msg/TFMessage
-""",
-    line=2,
+    "MG405", "tf-on-two-topics", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES), robot_wide=True
 )
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is

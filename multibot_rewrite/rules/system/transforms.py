@@ -20,23 +20,7 @@ from multibot_rewrite.system.tool_nodes import last_word
 _STATIC = "static_transform_publisher"
 
 
-@system_rule(
-    "MG401",
-    "two-parents",
-    ERROR,
-    what="A tf frame has two parents on one tf topic: two nodes send it.",
-    why="For listeners it jumps between two places.",
-    fix="Stop one of the two: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
-    " diff_drive_controller, `tf_broadcast: false` of AMCL; or give each robot its frames.",
-    bad="""\
-running: transform odom -> robot1/base_link on /tf
-running: transform map -> robot1/base_link on /tf
-""",
-    good="""\
-running: transform odom -> robot1/base_link on /tf
-running: transform map -> odom on /tf
-""",
-)
+@system_rule("MG401", "two-parents", ERROR)
 def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
     """The cause names the nodes that may have sent it."""
     for tree in seen.trees:
@@ -87,25 +71,7 @@ def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str
     return sent or "two nodes send it: stop one"
 
 
-@system_rule(
-    "MG402",
-    "robots-frames-collide",
-    ERROR,
-    what="Several robots send frames on one tf topic whose names do not say which robot's they are:"
-    " `base_link` of both.",
-    why="Every listener sees one robot that jumps between the places of all: Nav2 drives by the"
-    " odometry of another robot, RViz flickers.",
-    fix="Give each robot its own tf topic, with `-r /tf:=tf -r /tf_static:=tf_static` for all "
-    "nodes in its namespace. Or give it its own frames, with `urdf-postfix` and the frames in its "
-    "nodes' parameters.",
-    bad="""\
-running: transform odom -> base_link on /tf by /robot1/driver, /robot2/driver
-""",
-    good="""\
-running: transform odom -> base_link on /robot1/tf by /robot1/driver
-running: transform odom -> base_link on /robot2/tf by /robot2/driver
-""",
-)
+@system_rule("MG402", "robots-frames-collide", ERROR)
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
     """One robot may have no name in its frames, if all others have."""
     for tree in seen.trees:
@@ -172,25 +138,7 @@ def _either(tree: Tree, robots: Sequence[str]) -> str:
     return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
 
 
-@system_rule(
-    "MG403",
-    "tf-cycle",
-    ERROR,
-    what="Transforms on a tf topic go round in a circle: a frame is above itself.",
-    why="tf2 finds no transform between its frames, or takes for ever.",
-    fix="Find the node that sends one of them the wrong way round: `frame_id` and "
-    "`child_frame_id`, or `map_frame` and `odom_frame`, are swapped. Or find the one that sends "
-    "frames of another robot.",
-    bad="""\
-running: transform map -> odom on /tf
-running: transform odom -> base_link on /tf
-running: transform base_link -> map on /tf
-""",
-    good="""\
-running: transform map -> odom on /tf
-running: transform odom -> base_link on /tf
-""",
-)
+@system_rule("MG403", "tf-cycle", ERROR)
 def tf_cycle(seen: Index) -> Iterator[Finding]:
     """Each circle once."""
     for tree in seen.trees:
@@ -236,20 +184,7 @@ def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
     return left
 
 
-@system_rule(
-    "MG404",
-    "static-and-moving",
-    ERROR,
-    what="A transform is sent on `/tf_static` and on `/tf`: two nodes send it.",
-    why="tf2 keeps one of the two, and which one changes with the order of the messages.",
-    fix="Stop one of the senders, usually a static_transform_publisher that was to stand in for"
-    " odometry or localization.",
-    bad="""\
-running: transform map -> odom on /tf_static by /robot1/static_map
-running: transform map -> odom on /tf by /robot1/amcl
-""",
-    good="running: transform map -> odom on /tf by /robot1/amcl\n",
-)
+@system_rule("MG404", "static-and-moving", ERROR)
 def static_and_moving(seen: Index) -> Iterator[Finding]:
     """A frame with two parents is a finding of its own."""
     for tree in seen.trees:
@@ -268,18 +203,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
             )
 
 
-@system_rule(
-    "MG408",
-    "transform-of-two-senders",
-    ERROR,
-    what="Several publishers send the same transform: an EKF and the controller both odometry, AMCL and"
-    " SLAM both the place in the map. A note where the transform is static, and all send one value.",
-    why="The robot jumps between what the two believe, many times a second.",
-    fix="Let one of them send it: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
-    " diff_drive_controller, `publish_odom_tf` of a simulator's plugin, `tf_broadcast: false` of AMCL.",
-    bad="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver twice\n",
-    good="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver\n",
-)
+@system_rule("MG408", "transform-of-two-senders", ERROR)
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
     for tree in seen.trees:
@@ -321,21 +245,7 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
-@system_rule(
-    "MG407",
-    "robots-name-twice",
-    ERROR,
-    robot_wide=True,
-    what="A frame has the robot's name twice, as in `robot1/robot1/base_link`; in `build` also a "
-    "topic or service. An argument of the xacro puts it before the name, and the robot's namespace "
-    "before that.",
-    why="No other node uses that name: every lookup fails, and commands reach no node.",
-    fix="Leave `frame_prefix` of robot_state_publisher empty and set `tf_frame_prefix_enable: false`"
-    " where the description has the robot's name already. Write '' for the argument of the xacro: "
-    "links, joints and frames get the robot's name all the same.",
-    bad="running: transform robot1/odom -> robot1/robot1/base_link on /tf\n",
-    good="running: transform robot1/odom -> robot1/base_link on /tf\n",
-)
+@system_rule("MG407", "robots-name-twice", ERROR, robot_wide=True)
 def robots_name_twice(seen: Index) -> Iterator[Finding]:
     """All frames of a robot and topic are one finding."""
     for tree in seen.trees:

@@ -23,21 +23,7 @@ _GIVES = (PUBLISHES, SERVES)
 _MISSES = (topic_names_miss, server_names_miss)
 
 
-@system_rule(
-    "MG316",
-    "nothing-known-sends",
-    NOTE,
-    absence=True,
-    what="Nodes read topics, or call services, that no known node sends or serves. It is an error where"
-    " a node of the same system does for another robot that runs the same nodes.",
-    why="If nothing else does, these nodes wait for ever.",
-    fix="Nothing, if a driver that the fleet does not name sends them; else name its node or stack.",
-    bad="running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan as scan\n",
-    good="""\
-running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan as scan
-running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-""",
-)
+@system_rule("MG316", "nothing-known-sends", NOTE, absence=True)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """All names of a robot are one finding; without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from multibot_rewrite.fleet.proposal.given_by_launch import readings, started_elsewhere
 from small_robots import PACKAGE, init, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
 from multibot_rewrite.fleet.proposal.companions import srdf_of
+from multibot_rewrite.fleet.proposal.given_by_launch import readings, started_elsewhere
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
 

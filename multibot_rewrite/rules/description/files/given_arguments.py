@@ -12,29 +12,11 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet
 from multibot_rewrite.rules.subject import Subject
 
-_HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-_BODY = """\
-  <xacro:arg name="{}" default=""/>
-  <link name="$(arg {})base_link"/>
-</robot>
-"""
-
 
 @rule(
     "MB144",
     "argument-not-read",
     WARNING,
-    what="A xacro argument is given (NAME:=VALUE, xacro_args, arguments of a fleet file) that "
-    "neither the file nor one that it includes declares or reads. An argument that is only "
-    "read, by $(arg NAME), is known. Of several files that urdf-lint looks at together, one "
-    "has to know it. If none does, it is reported at those that have an argument of a similar"
-    " name.",
-    why="xacro ignores it without a message. If it was a prefix or a namespace for one robot, that "
-    "is missing from all names of the description.",
-    fix="Correct the name; the message says what may be meant. Where the file should take it, declare "
-    'it: <xacro:arg name="NAME" default=""/>.',
-    bad=_HEAD + _BODY.format("tf_prefx", "tf_prefx"),
-    good=_HEAD + _BODY.format("tf_prefix", "tf_prefix"),
     options={"arguments": (ArgumentSet(EVERY_FILE, (("tf_prefix", "left_"),)),)},
 )
 def argument_not_read(subject: Subject) -> Iterator[Problem]:

@@ -46,16 +46,7 @@ def plugins_without_library(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, "<plugin> has no 'name'", None, "SDF requires one before 1.10")
 
 
-@rule(
-    "MB160",
-    "class-not-in-library",
-    ERROR,
-    what="The name of a system of Gazebo is a class that its library does not have.",
-    why="Gazebo reports 'library does not contain requested plugin' and does not load it.",
-    fix="Write the class of the library; the hint has it.",
-    bad='<gazebo><plugin name="gz::sim::systems::IMU" filename="gz-sim-imu-system"/></gazebo>',
-    good='<gazebo><plugin name="gz::sim::systems::Imu" filename="gz-sim-imu-system"/></gazebo>',
-)
+@rule("MB160", "class-not-in-library", ERROR)
 def class_not_in_library(subject: Subject) -> Iterator[Problem]:
     """Systems that come with Gazebo: their libraries have no other classes, in any release."""
     for it in simulator_plugins(subject):
@@ -128,19 +119,7 @@ def _is_in_sources(subject: Subject, package: str) -> bool:
     return package in around or bool(package_folder(package, file, subject.settings.roots))
 
 
-@rule(
-    "MB172",
-    "library-of-ignition",
-    WARNING,
-    what="A system of Gazebo is loaded by the name that it had in Ignition. It is an error where "
-    "Gazebo is chosen as the simulator.",
-    why="Gazebo Jetty (Lyrical and later) no longer takes ignition-gazebo for gz-sim: it reports "
-    "that it cannot find the library.",
-    fix="Write gz-sim, and gz::sim::systems for the class: all releases since Jazzy read it.",
-    bad='<gazebo><plugin name="ignition::gazebo::systems::Imu" '
-    'filename="ignition-gazebo-imu-system"/></gazebo>',
-    good='<gazebo><plugin name="gz::sim::systems::Imu" filename="gz-sim-imu-system"/></gazebo>',
-)
+@rule("MB172", "library-of-ignition", WARNING)
 def library_of_ignition(subject: Subject) -> Iterator[Problem]:
     """Libraries by their old names, in releases that no longer know them."""
     release = subject.settings.distro

@@ -21,24 +21,7 @@ from multibot_rewrite.rules.subject import Subject
 Look = tuple[tuple[float, ...] | str, str]
 
 
-@rule(
-    "MB131",
-    "undefined-material",
-    WARNING,
-    what="A visual uses a material that neither the robot nor an earlier visual defines. Or a "
-    "material of the robot has neither a color nor a texture.",
-    why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
-    "viewers and Gazebo draw it in their default colour.",
-    fix="Define it once as a child of <robot>, with a <color> or <texture>.",
-    bad='<link name="a">\n'
-    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
-    "</link>\n",
-    good='<link name="a">\n'
-    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
-    "</link>\n"
-    '<material name="m"><color rgba="1 0 0 1"/></material>\n',
-    line=2,
-)
+@rule("MB131", "undefined-material", WARNING)
 def undefined_material(subject: Subject) -> Iterator[Problem]:
     """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
     tops = _materials(subject.elements)
@@ -86,31 +69,7 @@ def _defines(material: etree._Element) -> bool:
     return any(it.get("rgba") or it.get("filename") for it in material.iterchildren("*"))
 
 
-@rule(
-    "MB132",
-    "material-differs",
-    WARNING,
-    what="A visual defines a material whose name is already defined with another colour or "
-    "texture.",
-    why="urdfdom keeps the first definition of a name for the whole robot: the visual gets that "
-    "colour, not its own.",
-    fix="Give the material its own name.",
-    bad='<material name="m"><color rgba="1 0 0 1"/></material>\n'
-    '<link name="a">\n'
-    "  <visual>\n"
-    '    <geometry><sphere radius="1"/></geometry>\n'
-    '    <material name="m"><color rgba="0 1 0 1"/></material>\n'
-    "  </visual>\n"
-    "</link>\n",
-    good='<material name="m"><color rgba="1 0 0 1"/></material>\n'
-    '<link name="a">\n'
-    "  <visual>\n"
-    '    <geometry><sphere radius="1"/></geometry>\n'
-    '    <material name="m"><color rgba="1.0 0 0 1"/></material>\n'
-    "  </visual>\n"
-    "</link>\n",
-    line=5,
-)
+@rule("MB132", "material-differs", WARNING)
 def material_differs(subject: Subject) -> Iterator[Problem]:
     """Each visual whose own definition is ignored."""
     looks = [it for it in _looks(subject) if len(it) and it.get("name") and _defines(it)]

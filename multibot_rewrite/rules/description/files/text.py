@@ -24,18 +24,7 @@ _NAMESPACE = lazy_compile(rb"(?<!\s)\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']
 _ROOT = lazy_compile(rb"<robot\b" + ATTRIBUTES + rb">")
 
 
-@rule(
-    "MB140",
-    "xml-declaration",
-    WARNING,
-    what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
-    why="urdfdom and Gazebo read the file as UTF-8, whatever it declares. expat (xacro, Python "
-    "launch files) rejects encodings such as gb2312 and decodes letters differently.",
-    fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
-    bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
-    good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
-    fixed='<?xml version="1.0" encoding="UTF-8"?><robot name="r"><link name="a"/></robot>',
-)
+@rule("MB140", "xml-declaration", WARNING)
 def xml_declaration(subject: Subject) -> Iterator[Problem]:
     """With a fix: a file of another encoding that was read at all is plain ASCII."""
     source = subject.document.source
@@ -56,18 +45,7 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
             yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
 
 
-@rule(
-    "MB141",
-    "byte-order-mark",
-    NOTE,
-    what="The file starts with a byte order mark.",
-    why="UTF-8 needs none. XML parsers skip it at the start of a file, but reject it where a "
-    "script or template puts the description after other text.",
-    fix="Save the file as UTF-8 without it.",
-    bad='\ufeff<robot name="r"><link name="a"/></robot>',
-    good='<robot name="r"><link name="a"/></robot>',
-    fixed='<robot name="r"><link name="a"/></robot>',
-)
+@rule("MB141", "byte-order-mark", NOTE)
 def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     """With a fix."""
     if subject.document.source.startswith(BOM):
@@ -76,18 +54,7 @@ def byte_order_mark(subject: Subject) -> Iterator[Problem]:
         yield Problem(root, "the file starts with a byte order mark", None, "", (edit,))
 
 
-@rule(
-    "MB142",
-    "unused-namespace",
-    NOTE,
-    what="The root element declares a namespace prefix that the file does not use.",
-    why="It has no effect. A xacro prefix in a plain URDF makes programs look for macros that do "
-    "not exist.",
-    fix="Delete the declaration.",
-    bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
-    good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',
-    fixed='<robot name="r"><link name="a"/></robot>',
-)
+@rule("MB142", "unused-namespace", NOTE)
 def unused_namespace(subject: Subject) -> Iterator[Problem]:
     """Prefixes of the root that are written nowhere else in the file."""
     root, source = subject.document.root, subject.document.source
@@ -105,23 +72,7 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
             yield Problem(root, message, f"xmlns:{found[1].decode()}", "", (edit,))
 
 
-@rule(
-    "MB146",
-    "loose-xml",
-    WARNING,
-    what="A prefix that nothing declares (gz:type), -- in a comment, an XML declaration behind blank "
-    "lines, or a default namespace (xmlns=).",
-    why="urdfdom, sdformat and ros2_control read XML with TinyXML-2, which takes it: a prefix is "
-    "part of the name. xacro, launch files and spawn_entity.py of Gazebo Classic read it with "
-    "Python's parsers. These reject the first three, and find no <link> in a default namespace. In "
-    "a xacro file it is an error.",
-    fix='Declare the prefix on the root element, as xmlns:gz="http://gazebosim.org/schema"; write == '
-    "for --; delete what is before <?xml, and the default namespace.",
-    bad='<link name="a"/>\n<!-- old -- and wrong -->\n<link name="b"/>',
-    good='<link name="a"/>\n<!-- old and wrong -->\n<link name="b"/>',
-    line=3,
-    formats=(URDF, SRDF, XACRO),
-)
+@rule("MB146", "loose-xml", WARNING, formats=(URDF, SRDF, XACRO))
 def loose_xml(subject: Subject) -> Iterator[Problem]:
     """As the rewrite says it; xacro itself cannot read what is wrong here."""
     found = () if subject.origins else loosely_written(subject.document)

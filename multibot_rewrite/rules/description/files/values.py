@@ -14,7 +14,6 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.examples import a_link, block
 from multibot_rewrite.rules.description.structure.control_values import unreadable_numbers
 from multibot_rewrite.rules.description.structure.limits import (
     limits_in_degrees,
@@ -25,79 +24,19 @@ from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, number_at
 from multibot_rewrite.rules.subject import Subject
 
 
-def _imu(inside: str) -> str:
-    sensor = block('<sensor name="s" type="imu">', inside)
-    return a_link("a") + block('<gazebo reference="a">', sensor)
-
-
-@rule(
-    "MB120",
-    "unreadable-value",
-    ERROR,
-    what="A value is not what its place asks for. Examples are a word in place of a number, too "
-    "many or too few numbers, a unit, a decimal comma and nan. A space or line break after a "
-    "number is one, too. Others are a word that is neither true nor false, and a parameter of "
-    "another type than its node declares. It is a warning where a part is read, in a colour of a "
-    "URDF and in parameters that another release takes.",
-    why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
-    "collisions if it is in a link. Below <gazebo> the model is not loaded. A plugin reads "
-    "0,5 as 0, and anything but true, false, 1 and 0 as false. ros2_control hardware and "
-    "rclcpp throw: the node does not come up, or its controller is not loaded. MoveIt ignores"
-    " a joint in a state.",
-    fix="Write plain numbers with a decimal point, separated by spaces, as many as the place has. "
-    "Units are metres, radians and kilograms, colours are from 0 to 1. A switch is true or false. "
-    "A double of a node needs a point.",
-    bad='<link name="a"><visual><geometry><sphere radius="0,5"/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><sphere radius="5e-1"/></geometry></visual></link>',
-    formats=(URDF, SRDF, PARAMS, MOVEIT),
-)
+@rule("MB120", "unreadable-value", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def unreadable_value(subject: Subject) -> Iterator[Problem]:
     """All but those with a substitution: MB105 reports them."""
     yield from (it for it in faults("value", subject) if "$" not in it.message)
     yield from unreadable_numbers(subject)
 
 
-unknown_word = rule(
-    "MB124",
-    "unknown-word",
-    ERROR,
-    what="A value is not one of the words that its reader knows. It is the type of a joint, of a "
-    "sensor, of a ros2_control or a virtual joint, or a version of URDF. Or it is the name of"
-    " a joint property, or the class of a plugin or controller in parameters. It is a warning"
-    " for a parameter of a plugin, where it is nearly such a word, and for a class that "
-    "another release has. It is a note for a class of a package that is not known.",
-    why="urdfdom rejects the file ('has no known type'), or the sensor or hardware does not "
-    "exist. srdfdom takes a virtual joint for fixed, and a plugin takes its default. "
-    "pluginlib throws for a class that no package registers: a server of Nav2 does not "
-    "start, a controller is not loaded.",
-    fix="Use one of the words in the message or hint; case counts.",
-    bad='<ros2_control name="c" type="System">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    "</ros2_control>\n",
-    good='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    "</ros2_control>\n",
-    formats=(URDF, SRDF, PARAMS, MOVEIT),
-)(partial(faults, "word"))
-
-
-@rule(
-    "MB125",
-    "out-of-range",
-    ERROR,
-    what="A number is outside of what its reader takes: a negative mass or limit, or a shape with "
-    "a size of 0 or less. Or a value below <gazebo> is outside of the range of SDF, a "
-    "parameter of a plugin or node outside of what its code checks. It is a warning for "
-    "parameters, and in shapes and limits before URDF 1.2.",
-    why="From URDF 1.2 on urdfdom rejects the file for a limit and drops the shapes of the link. "
-    "Sdformat and MuJoCo reject a negative mass, pinocchio a negative effort. Gazebo does not load "
-    "the model ('greater than the maximum allowed value'), or a plugin divides by the value. Where "
-    "generate_parameter_library rejects it, the controller is not loaded.",
-    fix="Write a number that its reader takes, in metres, kilograms and radians.",
-    bad='<link name="a"><visual><geometry><box size="0 0 0"/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>',
-    formats=(URDF, PARAMS, MOVEIT),
+unknown_word = rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))(
+    partial(faults, "word")
 )
+
+
+@rule("MB125", "out-of-range", ERROR, formats=(URDF, PARAMS, MOVEIT))
 def out_of_range(subject: Subject) -> Iterator[Problem]:
     """By what each reader takes, and what a sensor needs to see anything; MB120 has what is misread."""
     misread = {it.element for it in faults("value", subject)}
@@ -106,20 +45,7 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
     yield from (it for it in sees_nothing(subject) if it.element not in misread)
 
 
-@rule(
-    "MB170",
-    "angle-in-degrees",
-    WARNING,
-    what="An angle is more than a turn: in a lidar's scan, a <pose> below <gazebo> or a plugin. Or "
-    "an rpy of an <origin> has a round number of degrees. Or a limit of a revolute joint looks "
-    "like degrees.",
-    why="URDF, SDF and plugins use radians. A scan from -180 to 180 goes round 57 times, and a "
-    "joint turns many times before it reaches its limit. A steering limit of 30 limits nothing.",
-    fix='Multiply by pi/180; xacro has radians(). A pose may have degrees="true" from SDF 1.9 on.',
-    bad=_imu("<pose>0 0 0 0 0 90</pose>"),
-    good=_imu("<pose>0 0 0 0 0 1.5708</pose>"),
-    line=4,
-)
+@rule("MB170", "angle-in-degrees", WARNING)
 def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Values below <gazebo> and of plugins, and limits."""
     yield from faults("degrees", subject)

@@ -22,7 +22,6 @@ from multibot_rewrite.rules.convert.versions import (
     raised,
     rotated_origins,
 )
-from multibot_rewrite.rules.description.examples import a_joint, a_link, block
 from multibot_rewrite.rules.facts.faults import faults, urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.schema.readers import (
@@ -38,53 +37,16 @@ from multibot_rewrite.rules.subject import Subject
 QUATERNIONS = KNOWN[1]
 # What makes another version another file than the one that is read now.
 _REFUSED = ("word", "missing", "value", "range", "rotation-twice")
-_TURNED = '<origin quat_xyzw="0 0 1 0"/>'
-_LINKS = a_link("a") + a_link("b")
 
 
-def _robot(version: str, *inside: str) -> str:
-    """An example: a robot of a version, whose content begins in line 2."""
-    return block(f'<robot name="r" version="{version}">', *inside)
-
-
-def _joint(origin: str) -> str:
-    return _LINKS + a_joint("j", "fixed", "a", "b", origin)
-
-
-def _visual(shape: str, *more: str) -> str:
-    return block('<link name="a">', f"<visual><geometry>{shape}</geometry></visual>", *more)
-
-
-@rule(
-    "MB126",
-    "rotation-twice",
-    ERROR,
-    what="An <origin> has both rpy and quat_xyzw, in a file of URDF 1.1 or 1.2.",
-    why="urdfdom rejects the file if it is in a joint ('Both rpy and quat_xyzw orientations are "
-    "defined'). In a link it drops the inertial, or the remaining visuals and collisions.",
-    fix="Keep one of them; --fix does where they are the same rotation.",
-    bad=_robot("1.1", _joint('<origin rpy="0 0 0" quat_xyzw="0 0 0 1"/>')),
-    good=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 1"/>')),
-    fixed=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 1"/>')),
-    line=6,
-)
+@rule("MB126", "rotation-twice", ERROR)
 def rotation_twice(subject: Subject) -> Iterator[Problem]:
     """With a fix where both are the same."""
     for it in faults("rotation-twice", subject):
         yield it._replace(edits=one_rotation(_text(subject), it.element, "rpy"))
 
 
-@rule(
-    "MB127",
-    "no-rotation",
-    WARNING,
-    what="A quat_xyzw has no length: four zeros, or numbers too small or too large to square.",
-    why="urdfdom divides by the length, and takes what has none for no rotation, without a word.",
-    fix="Write x, y, z and w of a quaternion of length 1; 0 0 0 1 is no rotation.",
-    bad=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 0"/>')),
-    good=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 1"/>')),
-    line=6,
-)
+@rule("MB127", "no-rotation", WARNING)
 def no_rotation(subject: Subject) -> Iterator[Problem]:
     """Quaternions that cannot be made one of length 1."""
     if version_of(subject.document.root) < QUATERNIONS:
@@ -96,20 +58,7 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
             yield Problem(origin, message, "quat_xyzw")
 
 
-@rule(
-    "MB128",
-    "needs-later-version",
-    WARNING,
-    what="A quat_xyzw or <capsule> in a file of URDF 1.0, which is one without a version, too.",
-    why="urdfdom reads no rotation: the joint or shape is in another pose at run time, with a "
-    "warning only. Of a link it drops the capsule and the visuals and collisions after it.",
-    fix='Write version="1.1" in <robot> where the release reads it, else rpy, a cylinder and spheres. '
-    "--fix does.",
-    bad='<robot name="r">\n' + _joint(_TURNED) + "</robot>\n",
-    good=_robot("1.1", _joint(_TURNED)),
-    fixed='<robot version="1.1" name="r">\n' + _joint(_TURNED) + "</robot>\n",
-    line=6,
-)
+@rule("MB128", "needs-later-version", WARNING)
 def needs_later_version(subject: Subject) -> Iterator[Problem]:
     """With a fix that keeps the pose that is written."""
     for it in faults("needs-later-version", subject):
@@ -131,23 +80,7 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
     return as_rpy(text, element)
 
 
-@rule(
-    "MB129",
-    "ignored-limit",
-    NOTE,
-    what="A <limit> has an acceleration, deceleration or jerk that is not read. The file is not of "
-    "URDF 1.2, or the release does not read URDF 1.2.",
-    why="urdfdom 6 warns ('Ignoring jerk attribute') and older ones say nothing: the joint has no such "
-    "limit.",
-    fix='Write version="1.2" in <robot>; joint_limits.yaml has such limits for MoveIt.',
-    bad=_LINKS + a_joint("j", "continuous", "a", "b", '<limit effort="1" velocity="1" jerk="5"/>'),
-    good=_robot(
-        "1.2",
-        _LINKS,
-        a_joint("j", "continuous", "a", "b", '<limit effort="1" velocity="1" jerk="5"/>'),
-    ),
-    line=5,
-)
+@rule("MB129", "ignored-limit", NOTE)
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
     """Limits that came with version 1.2; one finding for a <limit>."""
     newest = KNOWN[-1]
@@ -162,19 +95,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, there[0], f"needs URDF {newest}")
 
 
-@rule(
-    "MB133",
-    "version-of-release",
-    ERROR,
-    what="The file declares a version of URDF that the release's urdfdom does not read.",
-    why="urdfdom rejects the whole file: robot_state_publisher ends, RViz and MoveIt have no robot.",
-    fix="Write what URDF 1.0 has. --fix does where every pose and shape stays: rpy for quat_xyzw, a "
-    "cylinder and two spheres for a capsule.",
-    bad=_robot("1.1", _joint(_TURNED)),
-    good=_robot("1.0", _joint('<origin rpy="0 0 3.14"/>')),
-    fixed=_robot("1.0", _joint('<origin rpy="0 0 3.141592653589793"/>')),
-    options={"distro": "jazzy"},
-)
+@rule("MB133", "version-of-release", ERROR, options={"distro": "jazzy"})
 def version_of_release(subject: Subject) -> Iterator[Problem]:
     """With a fix where the file means the same in URDF 1.0."""
     root = subject.document.root
@@ -187,28 +108,7 @@ def version_of_release(subject: Subject) -> Iterator[Problem]:
         yield Problem(root, message, "version", f"write version {reads}{more}", edits)
 
 
-@rule(
-    "MB134",
-    "capsule-in-gazebo",
-    WARNING,
-    what="A <capsule> in a robot for Gazebo.",
-    why="sdformat's reader of URDF knows no capsules ('Unknown body type'): the visual or collision "
-    "has no shape, and the link passes through others.",
-    fix="Use a cylinder and two spheres, which is the same shape; --fix does where nothing refers to "
-    "the collision by name.",
-    bad=_robot("1.1", _visual('<capsule length="1" radius="0.1"/>'), '<gazebo reference="a"/>'),
-    good=_robot("1.1", _visual('<sphere radius="0.1"/>'), '<gazebo reference="a"/>'),
-    fixed=_robot(
-        "1.1",
-        _visual(
-            '<cylinder length="1" radius="0.1"/>',
-            '<visual><origin xyz="0 0 0.5"/><geometry><sphere radius="0.1"/></geometry></visual>',
-            '<visual><origin xyz="0 0 -0.5"/><geometry><sphere radius="0.1"/></geometry></visual>',
-        ),
-        '<gazebo reference="a"/>',
-    ),
-    line=3,
-)
+@rule("MB134", "capsule-in-gazebo", WARNING)
 def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
     """One finding for a link, with a fix."""
     root = subject.document.root
@@ -219,17 +119,7 @@ def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
         yield Problem(shapes[0], message, None, "", capsule_edits(_text(subject), link))
 
 
-@rule(
-    "MB135",
-    "capsule-in-rviz",
-    NOTE,
-    what="A <visual> has a <capsule>, and the release's RViz draws none.",
-    why="RViz says 'Unsupported geometry type for element: 4' and shows nothing for it.",
-    fix="Use a cylinder and two spheres, or RViz 16.0.1 or later.",
-    bad=_robot("1.1", _visual('<capsule length="1" radius="0.1"/>')),
-    good=_robot("1.1", _visual('<cylinder length="1" radius="0.1"/>')),
-    line=3,
-)
+@rule("MB135", "capsule-in-rviz", NOTE)
 def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
     """One finding for a link."""
     reader = reader_of(subject.settings.distro, RVIZ)
@@ -239,19 +129,7 @@ def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
             yield Problem(shapes[0], message)
 
 
-@rule(
-    "MB136",
-    "quaternion-in-mujoco",
-    WARNING,
-    what="A quat_xyzw in a file of URDF 1.1 or 1.2 (checked with the target mjcf).",
-    why="MuJoCo (4.0.0) reads rpy alone and says nothing: the joint or shape is not turned.",
-    fix="Write rpy; --fix does.",
-    bad=_robot("1.1", _joint(_TURNED)),
-    good=_robot("1.1", _joint('<origin rpy="0 0 3.14"/>')),
-    fixed=_robot("1.1", _joint('<origin rpy="0 0 3.141592653589793"/>')),
-    line=6,
-    options={"targets": ("mjcf",)},
-)
+@rule("MB136", "quaternion-in-mujoco", WARNING, options={"targets": ("mjcf",)})
 def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
     """With a fix; what urdfdom does not read or refuses, other rules report."""
     root = subject.document.root

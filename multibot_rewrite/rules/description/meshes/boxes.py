@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.poses import minus
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import Extent
 from multibot_rewrite.rules.description.meshes.lookup import Lookup, lookups
-from multibot_rewrite.rules.description.meshes.shared import MESH, used_files
+from multibot_rewrite.rules.description.meshes.shared import used_files
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -54,23 +54,7 @@ def _on_disk(it: Lookup) -> str:
     return next(filter(is_file, paths), "")
 
 
-@rule(
-    "MB714",
-    "mesh-units",
-    WARNING,
-    what="A mesh is larger than a house. An STL or OBJ file has no scale that makes metres of it, "
-    "or a Collada file has a wrong unit.",
-    why="STL and OBJ have no units, and every program takes metres; of Collada, every program takes "
-    "what the file says. RViz shows the robot as a dot inside of the mesh, and as a collision the "
-    "robot hits everything in the world.",
-    fix='Add scale="0.001 0.001 0.001" to a mesh in millimetres, or export it in metres.',
-    bad=MESH % "package://arm_description/meshes/base.obj",
-    good=MESH % 'package://arm_description/meshes/base.obj" scale="0.001 0.001 0.001',
-    beside={
-        "arm_description/package.xml": "<package><name>arm_description</name></package>",
-        "arm_description/meshes/base.obj": "v 0 0 0\nv 300 0 0\nv 0 200 100\nf 1 2 3\n",
-    },
-)
+@rule("MB714", "mesh-units", WARNING)
 def mesh_units(subject: Subject) -> Iterator[Problem]:
     """Each mesh once; the beginning of a file is enough to tell that it is too large."""
     seen: set[tuple[str, str]] = set()

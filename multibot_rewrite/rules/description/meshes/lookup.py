@@ -19,7 +19,7 @@ from multibot_rewrite.description.sources.packages import (
     package_of,
 )
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.rules.description.meshes.shared import MESH, Used, problem, used_files
+from multibot_rewrite.rules.description.meshes.shared import Used, problem, used_files
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import EXPANDED, Subject
 
@@ -108,22 +108,7 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     return "package.xml" in names or any(name.lower() == first for name in names)
 
 
-@rule(
-    "MB701",
-    "mesh-missing",
-    ERROR,
-    what="A mesh or texture file does not exist, though its package does. It is a warning where the "
-    "whole folder is missing, which the build may make, and for a relative path.",
-    why="RViz shows the link without a shape and marks the robot as faulty. Gazebo spawns it "
-    "without that visual or collision, so a wheel falls through the ground.",
-    fix="Correct the path, or add the file to the package and to its install rules.",
-    bad=MESH % "package://arm_description/meshes/base.stl",
-    good=MESH % "package://arm_description/meshes/link.stl",
-    beside={
-        "arm_description/package.xml": "<package><name>arm_description</name></package>",
-        "arm_description/meshes/link.stl": "solid",
-    },
-)
+@rule("MB701", "mesh-missing", ERROR)
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
     lost: dict[tuple[str, ...], list[Lookup]] = {}
@@ -148,23 +133,7 @@ def _missing_folder(it: Lookup) -> tuple[str, ...]:
     return () if there else (*it.folders, inner)
 
 
-@rule(
-    "MB713",
-    "mesh-elsewhere",
-    NOTE,
-    what="A relative path does not lead to the file from the folder of the description, and the "
-    "package has it elsewhere.",
-    why="Who reads relative paths starts at a folder of its own: that of the description (yourdfpy, "
-    "MuJoCo, gz), or of the process. robot_state_publisher and RViz get the text of the description, "
-    "not its folder, and show the link without a shape.",
-    fix="Name it from its package: package://PACKAGE/meshes/base.stl.",
-    bad=MESH % "base.stl",
-    good=MESH % "meshes/base.stl",
-    beside={
-        "package.xml": "<package><name>arm_description</name></package>",
-        "meshes/base.stl": "solid",
-    },
-)
+@rule("MB713", "mesh-elsewhere", NOTE)
 def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
     """Relative files that are in the package, but not where the path says."""
     for it in lookups(subject):
@@ -203,21 +172,7 @@ def _nearest(it: Lookup) -> str:
     return nearest(os.path.basename(it.path), sorted(entries(folder)))
 
 
-@rule(
-    "MB702",
-    "package-not-found",
-    NOTE,
-    what="A package that holds meshes was not found in the searched folders.",
-    why="Its files were not checked; at run time they are looked up in the packages of the sourced "
-    "workspace.",
-    fix="Give the source folder of the workspace as a root (--roots), or source the workspace.",
-    bad=MESH % "package://arm_description/meshes/base.stl",
-    good=MESH % "package://hand_description/meshes/base.stl",
-    beside={
-        "hand_description/package.xml": "<package><name>hand_description</name></package>",
-        "hand_description/meshes/base.stl": "solid",
-    },
-)
+@rule("MB702", "package-not-found", NOTE)
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in lookups(subject) if it.path and not it.folders]
@@ -229,21 +184,7 @@ def _package(it: Lookup) -> str:
     return it.used.path.partition("/")[0]
 
 
-@rule(
-    "MB703",
-    "mesh-name-case",
-    ERROR,
-    what="The name of a mesh file differs from the file on the disk in upper and lower case.",
-    why="macOS and Windows find it anyway, Linux does not: on the robot and in CI the link has no "
-    "shape.",
-    fix="Use the name of the file as it is on the disk.",
-    bad=MESH % "package://arm_description/meshes/base.stl",
-    good=MESH % "package://arm_description/meshes/Base.STL",
-    beside={
-        "arm_description/package.xml": "<package><name>arm_description</name></package>",
-        "arm_description/meshes/Base.STL": "solid",
-    },
-)
+@rule("MB703", "mesh-name-case", ERROR)
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
     """Paths that differ from the file only in upper and lower case."""
     for it in lookups(subject):

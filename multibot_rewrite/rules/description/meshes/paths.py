@@ -11,7 +11,6 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.meshes.shared import (
-    MESH,
     Used,
     and_more,
     problem,
@@ -25,17 +24,7 @@ def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
     return [it for it in used_files(subject) if it.scheme in schemes]
 
 
-@rule(
-    "MB704",
-    "path-of-one-machine",
-    WARNING,
-    what="A mesh is named by an absolute path of one machine.",
-    why="On every other machine, in CI and in a container the file does not exist. The link has no "
-    "shape in RViz and none in Gazebo.",
-    fix="Use package://NAME/..., or file://$(find NAME)/... in xacro.",
-    bad=MESH % "file:///home/me/ws/src/arm/meshes/base.stl",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB704", "path-of-one-machine", WARNING)
 def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
     """The first absolute path that is written out in the source, and how many there are."""
     found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
@@ -50,17 +39,7 @@ def _is_literal(subject: Subject, start: int) -> bool:
     return is_fixed(subject, start, "filename", constants=False)
 
 
-@rule(
-    "MB705",
-    "backslash-in-path",
-    WARNING,
-    what="The path of a mesh contains backslashes.",
-    why="On Linux a backslash is an ordinary character of a file name, so no program finds the "
-    "file.",
-    fix="Use slashes.",
-    bad=MESH % r"package://arm\meshes\base.stl",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB705", "backslash-in-path", WARNING)
 def backslash_in_path(subject: Subject) -> Iterator[Problem]:
     """File names with a backslash."""
     for it in used_files(subject):
@@ -69,17 +48,7 @@ def backslash_in_path(subject: Subject) -> Iterator[Problem]:
             yield problem(it, f"{it.name!r} has backslashes", f"write {right!r}")
 
 
-@rule(
-    "MB706",
-    "mesh-without-file",
-    ERROR,
-    what="A mesh has no file name.",
-    why="Without the attribute urdfdom rejects the robot (urdf_parser link.cpp); if it is empty, "
-    "RViz and Gazebo find nothing to load.",
-    fix="Add the file name, or remove the visual or collision.",
-    bad='<link name="a"><visual><geometry><mesh filename=""/></geometry></visual></link>',
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB706", "mesh-without-file", ERROR)
 def mesh_without_file(subject: Subject) -> Iterator[Problem]:
     """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
     for mesh in subject.elements.every("mesh"):
@@ -95,18 +64,7 @@ def _is_shape(mesh: _Element) -> bool:
     return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
 
 
-@rule(
-    "MB709",
-    "mixed-schemes",
-    NOTE,
-    what="The meshes of one robot are named in different ways: package://, model://, paths.",
-    why="Each program resolves only some of them, so some links have a shape and others none.",
-    fix="Use package:// for all of them.",
-    bad=(MESH % "package://arm/meshes/a.stl")
-    + '<link name="b"><visual><geometry><mesh filename="meshes/b.stl"/></geometry></visual></link>',
-    good=(MESH % "package://arm/meshes/a.stl"),
-    line=2,
-)
+@rule("MB709", "mixed-schemes", NOTE)
 def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     """The first file that is named in another way than the first."""
     used = [it for it in used_files(subject) if "$" not in it.name]
@@ -116,17 +74,7 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
         yield problem(other, message, "use package:// for all")
 
 
-@rule(
-    "MB710",
-    "model-uri",
-    WARNING,
-    what="A mesh is named with model://.",
-    why="Gazebo finds it through its resource path; RViz's resource_retriever supports only "
-    "package://, file:// and http://, and shows the link without a shape.",
-    fix="Use package://NAME/...; both Gazebos convert it to model:// when they load a URDF.",
-    bad=MESH % "model://arm/meshes/base.stl",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB710", "model-uri", WARNING)
 def model_uri(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
     found = _with_scheme(subject, "model")
@@ -135,17 +83,7 @@ def model_uri(subject: Subject) -> Iterator[Problem]:
         yield problem(found[0], message, "write package://")
 
 
-@rule(
-    "MB711",
-    "mesh-from-the-net",
-    NOTE,
-    what="A mesh is loaded from the network.",
-    why="RViz downloads it at every start, Gazebo supports only URLs of Fuel: without a network, "
-    "or when the page moves, the link has no shape.",
-    fix="Put the file into a package.",
-    bad=MESH % "https://example.org/base.stl",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB711", "mesh-from-the-net", NOTE)
 def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
     found = _with_scheme(subject, "http", "https")
@@ -154,17 +92,7 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
         yield problem(found[0], message, "put it into a package")
 
 
-@rule(
-    "MB712",
-    "find-left-over",
-    WARNING,
-    what="The path of a mesh holds $(find ...), which only xacro understands.",
-    why="In a plain URDF nothing replaces it: no program finds the file. xacro does, if a launch file "
-    "passes the file to it all the same.",
-    fix="Name the file .xacro and expand it, or use package://NAME/....",
-    bad=MESH % "file://$(find arm)/meshes/base.stl",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB712", "find-left-over", WARNING)
 def find_left_over(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are; MB105 reports xacro files with a wrong name."""
     if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
@@ -186,17 +114,7 @@ PARTLY = {
 }
 
 
-@rule(
-    "MB707",
-    "mesh-format-unknown",
-    WARNING,
-    what="The file name of a mesh has no extension, or that of a format that neither RViz nor "
-    "Gazebo reads.",
-    why="Both choose the loader by the extension: the link has no shape.",
-    fix="Convert it to STL, COLLADA (.dae) or OBJ.",
-    bad=MESH % "package://arm/meshes/base.step",
-    good=MESH % "package://arm/meshes/base.stl",
-)
+@rule("MB707", "mesh-format-unknown", WARNING)
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
     """Extensions of meshes that no program knows."""
     for it in _meshes(subject):
@@ -216,17 +134,7 @@ def _ending(it: Used) -> str:
     return base.rpartition(".")[2].lower() if "." in base else ""
 
 
-@rule(
-    "MB708",
-    "mesh-format-partly",
-    NOTE,
-    what="A mesh has a format that some of RViz, Gazebo Classic and gz cannot read.",
-    why="In those programs the link has no shape. Gazebo Classic loads STL, COLLADA and OBJ. From "
-    "Garden on gz also loads glTF and FBX, and RViz loads what assimp reads.",
-    fix="Convert it if the robot is to be shown in those programs too.",
-    bad=MESH % "package://arm/meshes/base.glb",
-    good=MESH % "package://arm/meshes/base.dae",
-)
+@rule("MB708", "mesh-format-partly", NOTE)
 def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
     """Once for each such format."""
     seen = set()

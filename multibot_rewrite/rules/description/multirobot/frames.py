@@ -20,25 +20,7 @@ from multibot_rewrite.rules.facts.source_values import claim_is_fixed
 from multibot_rewrite.rules.subject import Subject
 
 
-@rule(
-    "MB404",
-    "robot-name-in-frame",
-    WARNING,
-    what="A frame is the name of a link with a robot's name in front, which the link does not have.",
-    why="The frame exists only with that frame_prefix. The second robot's data gets the first "
-    "one's frame and appears on it. A rewrite cannot know what was intended.",
-    fix="Use the link's own name and let frame_prefix or urdf-postfix add the robot's name, or "
-    "make the name in front a xacro argument.",
-    bad='<link name="laser"/>\n'
-    '<gazebo reference="laser">\n'
-    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>robot1/laser</gz_frame_id></sensor>\n'
-    "</gazebo>\n",
-    good='<link name="laser"/>\n'
-    '<gazebo reference="laser">\n'
-    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>laser</gz_frame_id></sensor>\n'
-    "</gazebo>\n",
-    line=3,
-)
+@rule("MB404", "robot-name-in-frame", WARNING)
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that are a link with something and a slash in front."""
     links = subject.inventory.declared["link"]
@@ -56,27 +38,7 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, f"use {link!r}")
 
 
-@rule(
-    "MB406",
-    "default-frame-shared",
-    NOTE,
-    what="A plugin publishes its default frame, which is the same for every robot.",
-    why="gazebo_ros_diff_drive and similar plugins broadcast odom -> base_footprint without a "
-    "namespace or prefix: on a shared /tf two robots move one base to two places.",
-    fix="Set the frame, a different one for each robot; urdf-postfix inserts it.",
-    bad="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <robot_base_frame>base</robot_base_frame>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <robot_base_frame>base</robot_base_frame>\n"
-    "    <odometry_frame>r1/odom</odometry_frame>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=2,
-)
+@rule("MB406", "default-frame-shared", NOTE)
 def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     """Frames that would have to be inserted for a robot."""
     for element, item in inserted(subject):
@@ -85,30 +47,7 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, message, None, f"set <{item[2]}> for each robot")
 
 
-@rule(
-    "MB433",
-    "default-frame-below-model",
-    NOTE,
-    what="A system of gz-sim sends odometry without its frames, whose defaults start with the name of "
-    "the model.",
-    why="It sends robot1/odom -> robot1/base_link, robot_state_publisher sends base_link. Once "
-    "bridged, the odometry is a tree of its own, and no lookup from odom to the robot succeeds.",
-    fix="Set both frames to those of the robot; urdf-postfix inserts them.",
-    bad='<link name="base"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">\n'
-    "    <frame_id>odom</frame_id>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good='<link name="base"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">\n'
-    "    <frame_id>odom</frame_id>\n"
-    "    <child_frame_id>base</child_frame_id>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-)
+@rule("MB433", "default-frame-below-model", NOTE)
 def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
     """Frames that would be below the name by which the model is spawned."""
     for element, item in missed(subject):
@@ -119,30 +58,7 @@ def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, message, None, f"set <{tag}>; urdf-postfix does")
 
 
-@rule(
-    "MB407",
-    "fixed-odometry-frame",
-    NOTE,
-    what="An odometry frame has a fixed name, which is the same for every copy of the robot.",
-    why="On one /tf two robots then share the frame odom: their trees are connected, and every "
-    "lookup through it is wrong for one of them.",
-    fix="Use a different name for each robot: a xacro argument, or urdf-postfix. With a tf topic "
-    "for each robot it may stay.",
-    bad="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <odometry_frame>odom</odometry_frame>\n"
-    "    <robot_base_frame>b</robot_base_frame>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good='<link name="b"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_p3d.so">\n'
-    "    <frame_name>world</frame_name>\n"
-    "    <body_name>b</body_name>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-)
+@rule("MB407", "fixed-odometry-frame", NOTE)
 def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
     """Literal odometry frames that are no links and hold no robot's name."""
     if not subject.inventory.hosts:
@@ -167,29 +83,7 @@ def _words(claim: Claim) -> str:
     return f"{claim.value} {claim.site.path}".lower()
 
 
-@rule(
-    "MB408",
-    "tf-not-remapped",
-    NOTE,
-    what="A plugin publishes on /tf, and no remap rule moves it to the robot's own tf topic.",
-    why="tf2's broadcaster publishes on the absolute topic /tf, which a namespace does not move. "
-    "With a tf topic for each robot this plugin's transforms are missing there, and on /tf those "
-    "of all robots are mixed.",
-    fix="Add <remapping>/tf:=tf</remapping> to its <ros> block; urdf-postfix inserts it where each "
-    "robot has its tf topic. Not needed where all robots share /tf and have different frames.",
-    bad="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <publish_odom_tf>true</publish_odom_tf>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <publish_odom_tf>true</publish_odom_tf>\n"
-    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=2,
-)
+@rule("MB408", "tf-not-remapped", NOTE)
 def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:

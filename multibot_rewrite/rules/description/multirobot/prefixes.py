@@ -34,36 +34,7 @@ _BUILTIN = frozenset(
 )
 
 
-@rule(
-    "MB417",
-    "prefix-forgotten",
-    WARNING,
-    what="A name lacks the prefix that the other names of its macro or file have.",
-    why="An empty prefix works. With the second robot's prefix the name exists twice, or "
-    "refers to a link or joint of another name. Then urdfdom rejects the robot.",
-    fix="Put the prefix in front of the name.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-    '  <xacro:macro name="arm" params="prefix">\n'
-    '    <link name="${prefix}base"/>\n'
-    '    <link name="tool"/>\n'
-    '    <joint name="${prefix}j" type="fixed">\n'
-    '      <parent link="${prefix}base"/>\n'
-    '      <child link="${prefix}tip"/>\n'
-    "    </joint>\n"
-    "  </xacro:macro>\n"
-    "</robot>\n",
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-    '  <xacro:macro name="arm" params="prefix parent">\n'
-    '    <link name="${prefix}base"/>\n'
-    '    <joint name="${prefix}j" type="fixed">\n'
-    '      <parent link="${parent}"/>\n'
-    '      <child link="${prefix}base"/>\n'
-    "    </joint>\n"
-    "  </xacro:macro>\n"
-    "</robot>\n",
-    line=4,
-    formats=(XACRO,),
-)
+@rule("MB417", "prefix-forgotten", WARNING, formats=(XACRO,))
 def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     """Literal names where others have the prefix, and literal uses of names that have it."""
     for scope in scopes(subject.document.root):
@@ -79,23 +50,7 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
                 yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
 
 
-@rule(
-    "MB418",
-    "prefix-unused",
-    WARNING,
-    what="A macro or file takes a prefix and does not use it.",
-    why="Two copies should differ, but the second one has the same names again. urdfdom rejects "
-    "the robot because its links are not unique.",
-    fix="Put it in front of the names, or remove the parameter.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-    '  <xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro>\n'
-    "</robot>\n",
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
-    '  <xacro:macro name="arm" params="prefix"><link name="${prefix}base"/></xacro:macro>\n'
-    "</robot>\n",
-    line=2,
-    formats=(XACRO,),
-)
+@rule("MB418", "prefix-unused", WARNING, formats=(XACRO,))
 def prefix_unused(subject: Subject) -> Iterator[Problem]:
     """Parameters and arguments that nothing in the file reads, and no included file can."""
     root = subject.document.root

@@ -22,26 +22,7 @@ DEVICE = lazy_compile(
 )
 
 
-@rule(
-    "MB411",
-    "one-controller-file",
-    NOTE,
-    what="A control plugin has a fixed file of controller parameters.",
-    why="Every robot's controller manager reads it. Its keys match only nodes with the names in "
-    "it. In another namespace, without /**, no controller has a type. Its joints are the first "
-    "robot's.",
-    fix="Write the keys as /**/controller_manager; where joints are renamed, give each robot its "
-    "own file through a xacro argument.",
-    bad="<gazebo>\n"
-    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">\n'
-    "    <parameters>/opt/c.yaml</parameters>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system"/>\n'
-    "</gazebo>\n",
-    line=3,
-)
+@rule("MB411", "one-controller-file", NOTE)
 def one_controller_file(subject: Subject) -> Iterator[Problem]:
     """Literal ``<parameters>`` of plugins that load a controller manager."""
     plugins = process_wide_plugins(subject)
@@ -78,40 +59,11 @@ def _usual_device(subject: Subject) -> Iterator[Problem]:
 
 
 one_device = of_both.ONE_DEVICE._replace(
-    level=NOTE,
-    check=_one_device,
-    formats=(URDF,),
-    bad='<ros2_control name="h" type="system">\n'
-    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
-    "</ros2_control>\n",
-    good='<ros2_control name="h" type="system">\n'
-    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
-    "</ros2_control>\n",
-    options={},
+    level=NOTE, check=_one_device, formats=(URDF,), options={}, examples="MB412-urdf"
 )
 
 
-@rule(
-    "MB415",
-    "sensor-found-by-bare-name",
-    NOTE,
-    what="A plugin looks sensors up by their bare name in the whole world.",
-    why="gz_ros2_control takes the first IMU with that name. The realsense and kobuki plugins "
-    "find none if two have it: the second robot reads the first one's data, or nothing.",
-    fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
-    "both.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
-    '<ros2_control name="h" type="system">\n'
-    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
-    '  <sensor name="imu"/>\n'
-    "</ros2_control>\n",
-    good='<link name="a"/>\n'
-    '<ros2_control name="h" type="system">\n'
-    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
-    "</ros2_control>\n",
-    line=3,
-)
+@rule("MB415", "sensor-found-by-bare-name", NOTE)
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
     """Only if no robots are named: otherwise MB425 knows whether their names differ."""
     if subject.settings.robots or not _has_fixed_sensor(subject):
@@ -125,23 +77,7 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     return any(claim_is_fixed(subject, it) for it in declared)
 
 
-@rule(
-    "MB416",
-    "world-system-in-robot",
-    WARNING,
-    what="The robot loads a gz system that acts on the whole world.",
-    why="gz-sim loads it again with every copy. Two Sensors systems crash it (gz-sensors issue "
-    "497). Two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
-    fix="Load it in the world's SDF, once, and remove it from the robot. `urdf-postfix` takes it out "
-    "of several robots, and with `--world-systems leave` out of one.",
-    bad="<gazebo>\n"
-    '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>\n'
-    "</gazebo>\n",
-    line=2,
-)
+@rule("MB416", "world-system-in-robot", WARNING)
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""
     for it in hazards.world_systems(subject.inventory):

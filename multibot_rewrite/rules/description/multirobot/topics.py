@@ -31,27 +31,7 @@ NOUNS = {"topic": "topic", "service": "service", "stem": "name"}
 GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 
 
-@rule(
-    "MB401",
-    "absolute-topic",
-    NOTE,
-    what="A plugin's topic or service is absolute, or its remap rule has an absolute target.",
-    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots "
-    "subscribe to one /cmd_vel, and their sensor data is mixed on one topic.",
-    fix="Leave out the leading slash and start each robot in its namespace, or rename it for each "
-    "robot with urdf-postfix.",
-    bad="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <ros><remapping>cmd_vel:=/cmd_vel</remapping></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
-    "    <ros><remapping>cmd_vel:=drive</remapping></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-)
+@rule("MB401", "absolute-topic", NOTE)
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
     """Absolute ROS names that are not shared by the settings."""
     has_wide = controller_way(subject.inventory.release).process_wide
@@ -83,23 +63,7 @@ def _target(claim: Claim) -> str:
     return found.target if found else ""
 
 
-@rule(
-    "MB402",
-    "gz-topic-shared",
-    NOTE,
-    what="A sensor or system of gz-sim has a topic that is the same for every copy of the robot.",
-    why="gz topics are global in their partition, and a ROS namespace does not move them. One "
-    "command drives both robots, both lidars publish on one topic, and ros_gz_bridge cannot "
-    "separate them.",
-    fix="Leave the element out: then gz puts the model's name into the topic. Or give each "
-    "robot its own topic with a xacro argument or urdf-postfix.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a">\n'
-    '  <sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor>\n'
-    "</gazebo>\n",
-    good='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar"/></gazebo>',
-    line=3,
-)
+@rule("MB402", "gz-topic-shared", NOTE)
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Literal gz topics."""
     claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
@@ -129,28 +93,7 @@ def _is_classic(subject: Subject) -> bool:
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
 
 
-@rule(
-    "MB413",
-    "default-topic-shared",
-    NOTE,
-    what="A plugin or hardware class uses a default topic or name that a namespace does not move.",
-    why="All robots' components of that class use the same absolute topic: each joint command "
-    "reaches every robot.",
-    fix="Set the name, a different one for each robot; urdf-postfix inserts it.",
-    bad='<ros2_control name="h" type="system">\n'
-    "  <hardware>\n"
-    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
-    '    <param name="joint_states_topic">states</param>\n'
-    "  </hardware>\n"
-    "</ros2_control>\n",
-    good='<ros2_control name="h" type="system">\n'
-    "  <hardware>\n"
-    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
-    '    <param name="joint_states_topic">states</param>\n'
-    '    <param name="joint_commands_topic">commands</param>\n'
-    "  </hardware>\n"
-    "</ros2_control>\n",
-)
+@rule("MB413", "default-topic-shared", NOTE)
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Topics, services and prefixes of names that would have to be inserted for a robot."""
     for element, (kind, old, _) in inserted(subject):

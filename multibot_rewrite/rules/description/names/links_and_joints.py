@@ -17,17 +17,7 @@ from multibot_rewrite.rules.subject import Subject
 WORLD = "world"
 
 
-@rule(
-    "MB302",
-    "empty-name",
-    ERROR,
-    what="A link or joint has an empty name.",
-    why="urdfdom rejects a joint to a link without a name, and sdformat rejects the empty name of "
-    "a joint. tf2 accepts no transform with an empty frame.",
-    fix="Give it a name; in xacro check which argument or property is empty.",
-    bad='<link name=""/>',
-    good='<link name="a"/>',
-)
+@rule("MB302", "empty-name", ERROR)
 def empty_name(subject: Subject) -> Iterator[Problem]:
     """Names that are empty or white space."""
     for kind, name, element in named(subject):
@@ -35,17 +25,7 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, f"a {kind} has an empty name", "name")
 
 
-@rule(
-    "MB303",
-    "space-in-name",
-    WARNING,
-    what="The name of a link or joint contains white space.",
-    why="ROS names must not contain white space: rcl rejects topics, nodes and namespaces made "
-    "from it. Lists of names in plugins and hardware parameters are split at spaces.",
-    fix="Use an underscore, or delete the space around it, at every use as well.",
-    bad='<link name="left wheel"/>',
-    good='<link name="left_wheel"/>',
-)
+@rule("MB303", "space-in-name", WARNING)
 def space_in_name(subject: Subject) -> Iterator[Problem]:
     """White space in a name or around it."""
     for kind, name, element in named(subject):
@@ -57,18 +37,7 @@ def space_in_name(subject: Subject) -> Iterator[Problem]:
             )
 
 
-@rule(
-    "MB305",
-    "double-colon",
-    ERROR,
-    what="The name of the robot, a link or a joint contains '::'.",
-    why="SDF reserves '::' for names inside of models: From version 13 on sdformat converts "
-    "the URDF to SDF 1.11 and rejects the whole model. Older versions look for a model "
-    "with the first part as its name.",
-    fix="Use an underscore.",
-    bad='<link name="arm::hand"/>',
-    good='<link name="arm_hand"/>',
-)
+@rule("MB305", "double-colon", ERROR)
 def double_colon(subject: Subject) -> Iterator[Problem]:
     """Names that become names in SDF."""
     for kind, name, element in named(subject):
@@ -83,18 +52,7 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
         )
 
 
-@rule(
-    "MB306",
-    "reserved-name",
-    ERROR,
-    what="A link, a joint or the robot has a name that SDF reserves: __x__, or world for a joint "
-    "or the robot.",
-    why="sdformat rejects the model: 'The supplied joint name [world] is reserved'. Gazebo spawns "
-    "nothing.",
-    fix="Give it another name.",
-    bad='<link name="__base__"/>',
-    good='<link name="_base_"/>',
-)
+@rule("MB306", "reserved-name", ERROR)
 def reserved_name(subject: Subject) -> Iterator[Problem]:
     """Links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
@@ -106,23 +64,7 @@ def reserved_name(subject: Subject) -> Iterator[Problem]:
         yield Problem(subject.document.root, message, "name")
 
 
-@rule(
-    "MB307",
-    "world-link",
-    WARNING,
-    what="A link called world is more than the point to which the robot is fixed. It is not the "
-    "root, or it has mass or shapes.",
-    why="A root link called world is the simulation's own world: sdformat ignores its mass and "
-    "shapes. Elsewhere the name is reserved, and a world that moves with the robot breaks every tf "
-    "tree.",
-    fix="Rename a link with content; fix the robot to an empty root link called world.",
-    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>\n'
-    '<link name="a"/>\n'
-    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
-    good='<link name="world"/>\n'
-    '<link name="a"/>\n'
-    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
-)
+@rule("MB307", "world-link", WARNING)
 def world_link(subject: Subject) -> Iterator[Problem]:
     """One finding, for its worst fault."""
     link = subject.robot.link.get(WORLD)
@@ -140,22 +82,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
         yield Problem(link.element, message, "name")
 
 
-@rule(
-    "MB308",
-    "link-and-joint-alike",
-    WARNING,
-    what="A link and a joint have the same name, and both become parts of the simulated model.",
-    why="In SDF a link and a joint must not share a name. sdformat reports 'name collision' and "
-    "rejects the model, so Gazebo does not spawn it.",
-    fix="Rename the joint, usually to NAME_joint.",
-    bad='<link name="a"/>\n'
-    '<link name="b"/>\n'
-    '<joint name="b" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
-    good='<link name="a"/>\n'
-    '<link name="b"/>\n'
-    '<joint name="b_joint" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
-    line=3,
-)
+@rule("MB308", "link-and-joint-alike", WARNING)
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
     """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
     robot = subject.robot
@@ -167,17 +94,7 @@ def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
             yield Problem(joint.element, message, "name", f"call it {joint.name + '_joint'!r}")
 
 
-@rule(
-    "MB309",
-    "names-differ-by-case",
-    NOTE,
-    what="The names of two links or two joints differ only in upper and lower case.",
-    why="ROS and Gazebo distinguish them; people, and files named after them on a case-insensitive "
-    "disk, do not.",
-    fix="Rename one of them.",
-    bad='<link name="arm"/><link name="Arm"/>',
-    good='<link name="arm"/><link name="arm_2"/>',
-)
+@rule("MB309", "names-differ-by-case", NOTE)
 def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
     """The second of each pair."""
     links = {it.name: it.element for it in subject.robot.links}
@@ -193,17 +110,7 @@ def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
                 yield Problem(element, message, "name")
 
 
-@rule(
-    "MB310",
-    "name-not-ascii",
-    NOTE,
-    what="The name of a link or joint contains a letter that is not ASCII.",
-    why="ROS names must be ASCII: rcl rejects topics, nodes and namespaces made from it. Two "
-    "letters that look the same can be different.",
-    fix="Use the letters a to z.",
-    bad='<link name="fühler"/>',
-    good='<link name="fuehler"/>',
-)
+@rule("MB310", "name-not-ascii", NOTE)
 def name_not_ascii(subject: Subject) -> Iterator[Problem]:
     """The message names the letter, which may look like another one."""
     for kind, name, element in named(subject):
@@ -213,18 +120,7 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")
 
 
-@rule(
-    "MB320",
-    "invalid-usd-name",
-    WARNING,
-    what="A name is not a valid USD identifier (checked with the target usd).",
-    why="The names of USD prims have letters, digits and underscores, without a leading digit. "
-    "Converters to USD replace the rest, and a program that looks for the URDF name finds nothing.",
-    fix="Use underscores in place of other characters.",
-    bad='<link name="left/wheel"/>',
-    good='<link name="left_wheel"/>',
-    options={"targets": ("usd",)},
-)
+@rule("MB320", "invalid-usd-name", WARNING, options={"targets": ("usd",)})
 def no_usd_name(subject: Subject) -> Iterator[Problem]:
     """The message has the name that a converter makes, and whether it already exists."""
     if "usd" not in subject.settings.targets:
@@ -253,18 +149,7 @@ def _encoded(name: str) -> str:
     return f"'tn__{plain}_' and a code" if plain else "'tn__' and a code"
 
 
-@rule(
-    "MB321",
-    "slash-for-mjcf",
-    WARNING,
-    what="The name of a link or joint contains a slash (checked with the target mjcf).",
-    why="MuJoCo accepts it; dm_control's mjcf does not: it reserves '/' for the names of attached "
-    "models, and raises ValueError when the model is loaded.",
-    fix="Use an underscore.",
-    bad='<link name="left/wheel"/>',
-    good='<link name="left_wheel"/>',
-    options={"targets": ("mjcf",)},
-)
+@rule("MB321", "slash-for-mjcf", WARNING, options={"targets": ("mjcf",)})
 def slash_for_mjcf(subject: Subject) -> Iterator[Problem]:
     """Links become bodies, joints stay joints."""
     if "mjcf" not in subject.settings.targets:

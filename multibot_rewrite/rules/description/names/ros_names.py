@@ -25,37 +25,7 @@ ROS_KINDS = frozenset({"topic", "service", "namespace"})
 _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
 
-@rule(
-    "MB301",
-    "leading-slash",
-    WARNING,
-    what="A frame starts with a slash, in a description or a file beside it. In a file it is a note "
-    "where the node takes the slash off in this release; then it is written without it.",
-    why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\". robot_state_publisher sends "
-    "a link's name as it is, so a link with a leading slash cannot be looked up. Some nodes took "
-    "the slash off up to Kilted and no longer do.",
-    fix="Delete the slash.",
-    bad='<link name="lidar"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
-    "    <frame_name>/lidar</frame_name>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good='<link name="lidar"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
-    "    <frame_name>lidar</frame_name>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=4,
-    fixed='<link name="lidar"/>\n'
-    "<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
-    "    <frame_name>lidar</frame_name>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    formats=(URDF, SRDF, *EVERY),
-)
+@rule("MB301", "leading-slash", WARNING, formats=(URDF, SRDF, *EVERY))
 def leading_slash(subject: Subject) -> Iterator[Problem]:
     """With a fix where the frame without the slash is a link. Plugins know /world."""
     shared = subject.settings.naming.shared_frames
@@ -77,26 +47,7 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     return (Edit(slot[0], slot[0] + 1, b"", None),)
 
 
-@rule(
-    "MB304",
-    "slash-in-joint",
-    NOTE,
-    what="The name of a joint, sensor or gpio in <ros2_control> contains a slash.",
-    why="Its interfaces are called NAME/INTERFACE, and the controller manager splits that at the "
-    "first slash. If there is a controller 'arm', arm/j1/position is taken as one of its "
-    "interfaces.",
-    fix="Use an underscore, in the URDF and in the controllers' parameters; or give no controller "
-    "the name before the slash.",
-    bad='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    '  <joint name="arm/j1"><state_interface name="position"/></joint>\n'
-    "</ros2_control>\n",
-    good='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    '  <joint name="arm_j1"><state_interface name="position"/></joint>\n'
-    "</ros2_control>\n",
-    line=3,
-)
+@rule("MB304", "slash-in-joint", NOTE)
 def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     """Every component that has interfaces."""
     for system in subject.elements.every("ros2_control"):
@@ -109,19 +60,7 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
                 yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
 
 
-@rule(
-    "MB311",
-    "robot-name",
-    NOTE,
-    what="The robot's name is not a valid ROS name: empty, or with spaces, hyphens, dots or a "
-    "leading digit.",
-    why="Spawners use it for the model, and Gazebo puts it into topics like /model/NAME/odometry. "
-    "ROS rejects these when they are bridged. It also rejects a namespace or node name made from "
-    "it.",
-    fix="Use letters, digits and underscores.",
-    bad='<robot name="my-robot"><link name="a"/></robot>',
-    good='<robot name="my_robot"><link name="a"/></robot>',
-)
+@rule("MB311", "robot-name", NOTE)
 def robot_name(subject: Subject) -> Iterator[Problem]:
     """Names with '::' are MB305."""
     name = name_of_robot(subject)
@@ -133,30 +72,7 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     )
 
 
-@rule(
-    "MB312",
-    "invalid-ros-name",
-    WARNING,
-    what="A topic, service, namespace or node name, of a plugin or in a file beside the description, "
-    "is not a valid ROS name. Without ros_topic_name the topic of a bridge is the gz topic, where a "
-    "part may be a number.",
-    why="rcl throws InvalidTopicNameError, or the node is not created. The plugin does not load, "
-    "or publishes nothing. rcl also rejects a file with such a section, and a topic is not "
-    "bridged.",
-    fix="Use letters, digits, underscores and slashes, without a leading digit.",
-    bad="<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
-    "    <ros><namespace>my-robot</namespace></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    good="<gazebo>\n"
-    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
-    "    <ros><namespace>my_robot</namespace></ros>\n"
-    "  </plugin>\n"
-    "</gazebo>\n",
-    line=3,
-    formats=(URDF, *EVERY),
-)
+@rule("MB312", "invalid-ros-name", WARNING, formats=(URDF, *EVERY))
 def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
@@ -186,27 +102,7 @@ def _name_fault(name: str, section: str) -> str:
     return fault.reason if fault else ""
 
 
-@rule(
-    "MB313",
-    "odd-interface-name",
-    WARNING,
-    what="A <ros2_control> component or interface has an empty name, or a component's name has "
-    "white space. Or an interface's name has white space beside position, velocity, effort or "
-    "acceleration.",
-    why="Controllers ask for NAME/INTERFACE exactly: the parser strips white space around a name "
-    "but not inside it, and an empty name cannot be requested. Interfaces of a driver's own may have "
-    "it on purpose, as the registers of Dynamixel's: 'Present Position'.",
-    fix="Write the name without spaces, or two interfaces for two names.",
-    bad='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    '  <joint name="j"><state_interface name=""/></joint>\n'
-    "</ros2_control>\n",
-    good='<ros2_control name="c" type="system">\n'
-    "  <hardware><plugin>p/P</plugin></hardware>\n"
-    '  <joint name="j"><state_interface name="position"/></joint>\n'
-    "</ros2_control>\n",
-    line=3,
-)
+@rule("MB313", "odd-interface-name", WARNING)
 def odd_interface(subject: Subject) -> Iterator[Problem]:
     """Components and their interfaces; the name of a joint is reported at its declaration."""
     for system in subject.elements.every("ros2_control"):

@@ -12,7 +12,6 @@ from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import is_unknown
-from multibot_rewrite.rules.description.physics.shared import LEFT, RIGHT, a_rover, a_wheel
 from multibot_rewrite.rules.facts.drives import (
     Drive,
     are_opposite,
@@ -32,20 +31,7 @@ from multibot_rewrite.rules.subject import Subject
 ENDLESS = 20 * pi
 
 
-@rule(
-    "MB620",
-    "wheel-size",
-    WARNING,
-    what="The wheel separation of a drive is not the distance of its wheels, or its wheel radius "
-    "or diameter is not that of its wheels. Where several wheels of a side skid in a turn the "
-    "separation may be up to twice the distance.",
-    why="The plugin computes the speed of each wheel from them. The robot drives or turns faster "
-    "or slower than its commands say. Its odometry is wrong by the same factor, so maps bend.",
-    fix="Write the distance of the wheels, and the size of the wheel's collision shape, in metres.",
-    bad=a_rover(LEFT, RIGHT, separation="0.8"),
-    good=a_rover(),
-    line=28,
-)
+@rule("MB620", "wheel-size", WARNING)
 def wheel_size(subject: Subject) -> Iterator[Problem]:
     """The distance along the axis of the first pair, of joints or of shapes, and the radii of round
     shapes of all wheels; of other wheels they are unknown."""
@@ -71,22 +57,7 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
     return Problem(place[0], message, place[1], f"write {measured:.4g}")
 
 
-@rule(
-    "MB622",
-    "wheels-turn-wrong",
-    WARNING,
-    what="The left wheel of a drive is on the right, seen in the direction in which a positive "
-    "speed turns the wheels. The joints are swapped, or the axes of both point the wrong way. Or "
-    "the axes of the left and the right wheel point in opposite directions. Or the two do not "
-    "roll: an upright axis, a cylinder that lies flat, wheels at two heights.",
-    why="A command to turn left turns the robot right, and its odometry says left. With "
-    "opposite axes it turns on the spot on a command to drive straight. Localization is "
-    "lost at once.",
-    fix="Swap the joints, or turn axes around: with x forward both are 0 1 0 in the frame of the base.",
-    bad=a_rover(a_wheel("left", "-0.2"), a_wheel("right", "0.2")),
-    good=a_rover(),
-    line=26,
-)
+@rule("MB622", "wheels-turn-wrong", WARNING)
 def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
     """The first pair of each drive whose plugin turns left with slower left wheels, and pairs whose
     axes are against each other in the robot's frame."""
@@ -108,18 +79,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
                 yield Problem(right.named, message, "", "turn one of them around")
 
 
-@rule(
-    "MB624",
-    "wheel-cannot-turn",
-    ERROR,
-    what="A joint that a drive turns as a wheel is fixed, slides, or stops after less than ten turns.",
-    why="The plugin sets its speed all the same: the robot stands still, or stops after a part of "
-    "a turn. Gazebo removes a fixed joint, and the plugin does not find it.",
-    fix="Make the joint continuous.",
-    bad=a_rover(a_wheel("left", "0.2", "fixed"), RIGHT),
-    good=a_rover(),
-    line=26,
-)
+@rule("MB624", "wheel-cannot-turn", ERROR)
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
     """Each such joint that a drive names."""
     for element, joint in wheel_joints(subject):
@@ -146,18 +106,7 @@ def _fault_of(joint: Joint) -> str:
 _FRICTION = ("mu1", "mu", "mu2")
 
 
-@rule(
-    "MB636",
-    "wheel-without-grip",
-    WARNING,
-    what="A driven wheel has a friction of 0 or less: mu1 and mu2 in its <gazebo> block, without the "
-    "<fdir1> of wheels with rollers. No plugin moves the body of the robot itself.",
-    why="The wheel turns and the robot stands still, or slides. Casters have no friction, wheels do.",
-    fix="Write 1.0 or so for both.",
-    bad=a_rover() + '<gazebo reference="left"><mu1>0</mu1></gazebo>\n',
-    good=a_rover() + '<gazebo reference="left"><mu1>1</mu1></gazebo>\n',
-    line=32,
-)
+@rule("MB636", "wheel-without-grip", WARNING)
 def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     """Blocks of links on a continuous joint that something drives, if nothing else moves the robot."""
     blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]

@@ -24,8 +24,6 @@ from multibot_rewrite.description.checks.poses import (
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.rules.description.examples import a_joint, block
-from multibot_rewrite.rules.description.physics.shared import INERTIA, a_rover, one_link
 from multibot_rewrite.rules.facts.drives import drives
 from multibot_rewrite.rules.facts.memo import driven_joints, link_poses, memoized
 from multibot_rewrite.rules.facts.support import beyond, contacts, hull
@@ -39,27 +37,7 @@ STANDS = 0.003
 DRIVEN = ("revolute", "continuous", "prismatic")
 
 
-def _arm(effort: str) -> str:
-    """An example: 2 kg, 0.5 m beside a joint, whose limit is in line 9."""
-    mass = block("<inertial>", '<origin xyz="0.5 0 0"/>', '<mass value="2"/>', INERTIA)
-    limit = f'<limit lower="-1" upper="1" effort="{effort}" velocity="1"/>'
-    joint = a_joint("j", "revolute", "a", "b", '<axis xyz="0 1 0"/>', limit)
-    return '<link name="a"/>\n' + one_link(mass, name="b") + joint
-
-
-@rule(
-    "MB633",
-    "too-weak-for-gravity",
-    NOTE,
-    what="The weight of what a joint carries is more than its <limit effort>, with all joints at "
-    "0 and the root upright.",
-    why="Gazebo, MuJoCo and ros2_control keep to the effort: the arm sinks as soon as it is "
-    "spawned, and no controller gets it up.",
-    fix="Write the effort of the motor in Nm or N; the hint has the least that holds the pose.",
-    bad=_arm("5"),
-    good=_arm("20"),
-    line=12,
-)
+@rule("MB633", "too-weak-for-gravity", NOTE)
 def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
     """Driven joints with an effort that are not balanced at 0, if 0 is within their limits.
 
@@ -114,31 +92,7 @@ def _load(subject: Subject, joint: Joint) -> float:
     return abs(dot(along, cross(minus(weight.centre, pose.at), force)))
 
 
-def _cart(xyz: str) -> str:
-    """An example: a rover with a caster, and a load at some place."""
-    ball = block("<collision>", '<geometry><sphere radius="0.1"/></geometry>')
-    caster = one_link(ball, name="ball") + a_joint(
-        "caster", "fixed", "base", "ball", '<origin xyz="-0.3 0 0"/>'
-    )
-    mass = block("<inertial>", f'<origin xyz="{xyz}"/>', '<mass value="9"/>', INERTIA)
-    load = one_link(mass, name="load") + a_joint("on", "fixed", "base", "load")
-    return a_rover() + caster + load
-
-
-@rule(
-    "MB634",
-    "tips-over",
-    WARNING,
-    what="The centre of mass of a robot on wheels is not above the area between its wheels and "
-    "casters.",
-    why="It tips over in the simulator, until its body lies on the ground: wheels lose contact, "
-    "and cameras and lidars look at the floor.",
-    fix="Correct the centres of mass, move a wheel or caster, or add one; the message has the "
-    "distance.",
-    bad=_cart("0.2 0 0"),
-    good=_cart("-0.1 0 0"),
-    line=1,
-)
+@rule("MB634", "tips-over", WARNING)
 def tips_over(subject: Subject) -> Iterator[Problem]:
     """Robots with a drive whose collisions are all simple, and which stand on more than one point."""
     points = contacts(subject) if drives(subject) else None

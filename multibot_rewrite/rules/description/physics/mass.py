@@ -11,13 +11,9 @@ from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached, weighs
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.examples import a_joint, a_link
 from multibot_rewrite.rules.description.physics.shared import (
-    an_inertial,
     inertials,
     moves,
-    moving_link,
-    one_link,
 )
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
@@ -25,21 +21,7 @@ from multibot_rewrite.rules.subject import Subject
 TINY_MASS = 1e-6
 
 
-@rule(
-    "MB603",
-    "link-without-mass",
-    WARNING,
-    what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
-    "robot have.",
-    why="Gazebo leaves out the link and everything below it, with their sensors. sdformat says 'is "
-    "not modeled in sdf', and that its joint and child joints are 'ignored'. MuJoCo rejects the "
-    "file. It is an error where the robot runs in Gazebo and nothing is "
-    "left. So it is if a sensor, a plugin or ros2_control needs what is left out.",
-    fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
-    bad=moving_link(),
-    good=moving_link(an_inertial()),
-    line=7,
-)
+@rule("MB603", "link-without-mass", WARNING)
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
     """The uppermost bodies without mass, if the robot has several bodies and some mass: an error of a
     robot that runs in Gazebo, where what it relies on goes with them."""
@@ -65,18 +47,7 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
         yield Problem(link.element, message, "name", level=level)
 
 
-@rule(
-    "MB609",
-    "root-inertia",
-    NOTE,
-    what="The root link has an inertia.",
-    why="KDL drops it, and robot_state_publisher warns at every start ('KDL does not support a "
-    "root link with an inertia').",
-    fix="Add a link without inertia above it, connected by a fixed joint.",
-    bad=one_link(an_inertial()),
-    good=a_link("base") + one_link(an_inertial()) + a_joint("j", "fixed", "base", "a"),
-    line=2,
-)
+@rule("MB609", "root-inertia", NOTE)
 def root_inertia(subject: Subject) -> Iterator[Problem]:
     """A root with <inertial>."""
     robot = subject.robot
@@ -85,20 +56,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
             yield Problem(inertial.element, f"root link {link.name!r} has an inertia: KDL drops it")
 
 
-@rule(
-    "MB610",
-    "no-inertia",
-    NOTE,
-    what="No link has a mass: the robot cannot be simulated. It is an error where the description has "
-    "plugins or sensors of a simulator, or the robot runs in one.",
-    why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
-    "do not need it.",
-    fix="Add <inertial> to the links, if the robot is to be simulated.",
-    bad='<link name="a"/>\n'
-    '<link name="b"/>\n'
-    '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
-    good=moving_link(an_inertial()),
-)
+@rule("MB610", "no-inertia", NOTE)
 def no_inertia(subject: Subject) -> Iterator[Problem]:
     """A robot without mass: with joints that move, or one that runs in Gazebo."""
     robot, chosen = subject.robot, subject.settings.simulated
@@ -116,19 +74,7 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     yield Problem(subject.document.root, message, level=ERROR if simulated else "")
 
 
-@rule(
-    "MB612",
-    "mass-tiny",
-    NOTE,
-    what="A link that moves on its own weighs a milligram or less. It is a warning in Humble.",
-    why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
-    "rejects a body below 1e-15 kg. Humble's Gazebo takes that for no mass, and leaves out the link "
-    "with its joint and all below it (parser_urdf.cc of sdformat 12).",
-    fix="Write the real mass, or make the joint fixed.",
-    bad=moving_link(an_inertial("1e-8")),
-    good=moving_link(an_inertial("0.01")),
-    line=8,
-)
+@rule("MB612", "mass-tiny", NOTE)
 def mass_tiny(subject: Subject) -> Iterator[Problem]:
     """Bodies of nearly no mass."""
     robot = subject.robot

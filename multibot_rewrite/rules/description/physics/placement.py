@@ -16,13 +16,9 @@ from multibot_rewrite.description.checks.poses import Pose, length, minus, pose_
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.rotation import is_same
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.meshes.boxes import box_of
 from multibot_rewrite.rules.description.physics.shared import (
-    BOX,
-    INERTIA,
     inertials,
-    one_link,
     part_of,
 )
 from multibot_rewrite.rules.facts.memo import memoized, parts
@@ -36,23 +32,7 @@ AWAY, MOVED, MARKER = 0.01, 0.05, 0.02
 FAR, FAR_OF_MESH, LIGHT = 1.0, 3.0, 0.01
 
 
-def _placed(tag: str, xyz: str, shape: str = BOX) -> str:
-    return block(f"<{tag}>", f'<origin xyz="{xyz}"/>', shape)
-
-
-@rule(
-    "MB631",
-    "collision-away",
-    WARNING,
-    what="The collision of a link is not where its visual is: the two do not touch, or are one "
-    "mesh at two places. Of meshes, STL, OBJ and Collada files of up to 4 MB are measured.",
-    why="The robot bumps into what is not there, and drives and reaches through what is; planners keep "
-    "a distance from empty space.",
-    fix="Give <collision> and <visual> the same <origin>.",
-    bad=one_link(_placed("visual", "0 0 0"), _placed("collision", "0 0 3")),
-    good=one_link(_placed("visual", "0 0 0"), _placed("collision", "0 0 0.5")),
-    line=6,
-)
+@rule("MB631", "collision-away", WARNING)
 def collision_away(subject: Subject) -> Iterator[Problem]:
     """Links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
@@ -160,23 +140,7 @@ def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
     return way if way > MOVED else 0.0
 
 
-def _weighs(xyz: str) -> str:
-    return block("<inertial>", f'<origin xyz="{xyz}"/>', '<mass value="1"/>', INERTIA)
-
-
-@rule(
-    "MB632",
-    "centre-of-mass-outside",
-    WARNING,
-    what="The centre of mass of a link is far outside of it.",
-    why="Gazebo applies its weight there. The robot tips over, swings or shakes when it is "
-    "spawned, and an arm's controller sees torques that the real arm does not have.",
-    fix="Write the centre in metres, in the frame of the link; CAD programs may export "
-    "millimetres or the frame of the whole robot.",
-    bad=one_link(_placed("collision", "0 0 0"), _weighs("0 0 3")),
-    good=one_link(_placed("collision", "0 0 0"), _weighs("0 0 0.4")),
-    line=7,
-)
+@rule("MB632", "centre-of-mass-outside", WARNING)
 def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
     """Links whose shapes have a known size; others only where the centre is metres away from all."""
     for link, inertial in inertials(subject.robot):

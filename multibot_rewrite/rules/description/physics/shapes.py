@@ -12,14 +12,9 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.physics.shared import (
-    BOX,
     SHAPES,
-    an_inertial,
     moves,
-    moving_link,
-    one_link,
     sizes_of,
-    visual,
 )
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized, parts
@@ -29,17 +24,7 @@ LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
 
 
-@rule(
-    "MB611",
-    "visual-without-collision",
-    NOTE,
-    what="A link that moves has <visual> but no <collision>, and no link fixed to it has one.",
-    why="MoveIt plans through it, and in Gazebo it passes through everything.",
-    fix="Add <collision>, with a simpler shape.",
-    bad=moving_link(an_inertial(), f"<visual>{BOX}</visual>"),
-    good=moving_link(an_inertial(), f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"),
-    line=7,
-)
+@rule("MB611", "visual-without-collision", NOTE)
 def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     """Bodies; one finding for the robot where no link has a collision."""
     robot, root = subject.robot, subject.document.root
@@ -62,17 +47,7 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     return {subject.robot.body.get(name, name): None for name in names}
 
 
-@rule(
-    "MB614",
-    "shape-units",
-    WARNING,
-    what="A box, cylinder or sphere is larger than a house.",
-    why="URDF uses metres: the robot is inside of the shape, in collision with itself.",
-    fix="Divide millimetres by 1000.",
-    bad=visual('<box size="300 200 100"/>'),
-    good=visual('<box size="0.3 0.2 0.1"/>'),
-    line=3,
-)
+@rule("MB614", "shape-units", WARNING)
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
     for shape, sizes in _shapes(subject):
@@ -82,18 +57,7 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
             yield Problem(shape, message, None, "are these millimetres?")
 
 
-@rule(
-    "MB615",
-    "shape-missing",
-    WARNING,
-    what="A <visual> or <collision> has no geometry, or a shape that URDF does not have.",
-    why="urdfdom reports 'Could not parse visual element' and stops reading the link: the visuals "
-    "and collisions after it are missing.",
-    fix="Add <geometry> with a box, cylinder, sphere or mesh, or delete the element.",
-    bad=one_link("<visual/>"),
-    good=one_link(f"<visual>{BOX}</visual>"),
-    line=2,
-)
+@rule("MB615", "shape-missing", WARNING)
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
     # MB128 reports a capsule in a file of URDF 1.0.
@@ -111,20 +75,7 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
             yield Problem(shape, message)
 
 
-@rule(
-    "MB616",
-    "mesh-scale",
-    WARNING,
-    what="A mesh is scaled by 0, by a negative number, or by one that does not fit any unit; the "
-    "last two are notes.",
-    why="Scaled by 0 it becomes flat or a point. A mirror image turns the faces inside out, unless "
-    "the program corrects their normals. Meshes are in millimetres (0.001), centimetres, inches "
-    "(0.0254) or metres: with another scale the part is much too large, too small or stretched.",
-    fix="Use the same scale three times: 0.001 for a mesh in millimetres; export a mirrored mesh.",
-    bad=visual('<mesh filename="a.stl" scale="1 1 0"/>'),
-    good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
-    line=3,
-)
+@rule("MB616", "mesh-scale", WARNING)
 def mesh_scale(subject: Subject) -> Iterator[Problem]:
     """An odd number of negative scales mirrors: two of them are a rotation."""
     for mesh, scale in _scales(subject):

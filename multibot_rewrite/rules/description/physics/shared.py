@@ -18,11 +18,6 @@ INERTIA = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
 BOX = '<geometry><box size="1 1 1"/></geometry>'
 
 
-def an_inertial(mass: str = "1", inertia: str = INERTIA) -> str:
-    """An example's mass and inertia."""
-    return block("<inertial>", f'<mass value="{mass}"/>', *filter(None, [inertia]))
-
-
 def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
     """An inertia with these moments."""
     return f'<inertia ixx="{ixx}" ixy="{ixy}" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>'
@@ -31,12 +26,6 @@ def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
 def one_link(*inside: str, name: str = "a") -> str:
     """An example: a link, whose content begins in line 2."""
     return block(f'<link name="{name}">', *inside)
-
-
-def moving_link(*inside: str) -> str:
-    """An example: a link on a wheel's joint; the link is in line 7."""
-    wheel = one_link(*inside, name="b")
-    return one_link(an_inertial()) + wheel + a_joint("j", "continuous", "a", "b")
 
 
 def visual(shape: str) -> str:
@@ -86,17 +75,3 @@ def a_wheel(side: str, y: str, type_: str = "continuous", axis: str = "0 1 0") -
 
 
 LEFT, RIGHT = a_wheel("left", "0.2"), a_wheel("right", "-0.2")
-
-
-def a_rover(
-    left: str = LEFT, right: str = RIGHT, separation: str = "0.4", radius: str = "0.1"
-) -> str:
-    """An example: the plugin's wheels are in line 26 and 27, its sizes in 28 and 29."""
-    plugin = block(
-        '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">',
-        "<left_joint>left_joint</left_joint>",
-        "<right_joint>right_joint</right_joint>",
-        f"<wheel_separation>{separation}</wheel_separation>",
-        f"<wheel_radius>{radius}</wheel_radius>",
-    )
-    return '<link name="base"/>\n' + left + right + block("<gazebo>", plugin)

@@ -11,12 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
-    FIXED,
-    a_pair,
-    a_system,
     name_of,
 )
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
@@ -28,17 +23,7 @@ from multibot_rewrite.rules.subject import Subject
 UNDRIVEN = ("fixed", "floating", "planar", "")
 
 
-@rule(
-    "MB223",
-    "transmission-without-joint",
-    WARNING,
-    what="A <transmission> has no joint.",
-    why="transmission_interface and gazebo_ros_control of ROS 1 skip it ('has no associated "
-    "joints'), so it has no effect.",
-    fix="Add the joint, or delete the transmission.",
-    bad='<transmission name="t"><actuator name="m"/></transmission>',
-    good=ARM + block('<transmission name="t">', '<joint name="j"/>', '<actuator name="m"/>'),
-)
+@rule("MB223", "transmission-without-joint", WARNING)
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot; those of the PR2 name joints by other tags."""
     with_joint = subject.elements.first("joint")
@@ -50,18 +35,7 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, None, "name its joint")
 
 
-@rule(
-    "MB224",
-    "driven-fixed-joint",
-    ERROR,
-    what="A joint in a <ros2_control> is fixed.",
-    why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
-    "sense in ros2_control'). Gazebo removes fixed joints before it looks for them.",
-    fix="Remove the joint, or give it a type that moves.",
-    bad=FIXED + a_system('<joint name="j"/>'),
-    good=ARM + a_system('<joint name="j"/>'),
-    line=7,
-)
+@rule("MB224", "driven-fixed-joint", ERROR)
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     """Joints that ros2_control is to move and that cannot."""
     for it in _components(subject.document.root):
@@ -71,18 +45,7 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
 
-@rule(
-    "MB225",
-    "fixed-transmission",
-    WARNING,
-    what="A transmission drives a fixed joint.",
-    why="Gazebo removes fixed joints, so gazebo_ros_control does not find the joint and loads no "
-    "hardware at all.",
-    fix="Delete the transmission, or give the joint a type that moves.",
-    bad=FIXED + '<transmission name="t"><joint name="j"/></transmission>\n',
-    good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
-    line=6,
-)
+@rule("MB225", "fixed-transmission", WARNING)
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     """Joints of transmissions that cannot move."""
     if all(it.type != "fixed" for it in subject.robot.joints):
@@ -94,27 +57,7 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
                 yield Problem(it, f"joint {joint.name!r} is fixed", "name", "nothing moves it")
 
 
-@rule(
-    "MB226",
-    "commanded-mimic",
-    WARNING,
-    what="A joint that mimics another one has a command interface in <ros2_control>. It is a note in "
-    "Humble.",
-    why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
-    'cannot have command interfaces\'), unless the joint has mimic="false".',
-    fix='Delete the command interface; set mimic="false" if the hardware drives both.',
-    bad=a_pair('<mimic joint="j"/>')
-    + a_system(
-        '<joint name="j"/>',
-        block('<joint name="k">', '<command_interface name="position"/>'),
-    ),
-    good=a_pair('<mimic joint="j"/>')
-    + a_system(
-        '<joint name="j"/>',
-        block('<joint name="k">', '<state_interface name="position"/>'),
-    ),
-    line=13,
-)
+@rule("MB226", "commanded-mimic", WARNING)
 def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints with a command interface of their own."""
     for it, other in _mimicking(subject):
@@ -124,19 +67,7 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "name", hint, level=NOTE if since_jazzy(subject) else "")
 
 
-@rule(
-    "MB227",
-    "mimic-without-its-joint",
-    WARNING,
-    what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>, or has "
-    'mimic="true" and none to mimic.',
-    why="From Jazzy on the controller manager rejects the description ('Mimic joint ... not found "
-    "in <ros2_control> tag').",
-    fix='Put both joints in one <ros2_control>, or set mimic="false".',
-    bad=a_pair('<mimic joint="j"/>') + a_system('<joint name="k"/>'),
-    good=a_pair('<mimic joint="j"/>') + a_system('<joint name="j"/>', '<joint name="k"/>'),
-    line=12,
-)
+@rule("MB227", "mimic-without-its-joint", WARNING)
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints whose leader is not in the same <ros2_control>."""
     yield from mimic_of_none(subject)
@@ -153,19 +84,7 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "name", "put both in one <ros2_control>")
 
 
-@rule(
-    "MB228",
-    "undriven-joint",
-    NOTE,
-    what="Other joints are driven by <ros2_control>, transmissions or plugins, but this one is "
-    "not.",
-    why="Nothing moves it. Unless a node publishes its state, robot_state_publisher does not send "
-    "its transform and the links below it have no frame in tf.",
-    fix="Add it to <ros2_control>; if it is passive, publish its state in joint_states.",
-    bad=a_pair() + a_system('<joint name="j"/>'),
-    good=a_pair() + a_system('<joint name="j"/>', '<joint name="k"/>'),
-    line=7,
-)
+@rule("MB228", "undriven-joint", NOTE)
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
     """One finding per robot: the joints that were forgotten, or are passive."""
     if not subject.elements.tops("ros2_control", "transmission"):

@@ -18,12 +18,9 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import of_both
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
     COMMAND,
     STATE,
-    a_system,
     name_of,
     owners,
 )
@@ -38,17 +35,6 @@ if TYPE_CHECKING:
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
 _BESIDE = "controllers"
-_DRIVE = "diff_drive_controller/DiffDriveController"
-_LOADS = block(
-    "<gazebo>",
-    block(
-        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
-        'filename="gz_ros2_control-system">',
-        "<parameters>controllers.yaml</parameters>",
-    ),
-)
-_VELOCITY = block('<joint name="j">', '<command_interface name="velocity"/>')
-_POSITION = block('<joint name="j">', '<command_interface name="position"/>')
 
 
 def _not_exported(subject: Subject) -> Iterator[Problem]:
@@ -77,35 +63,11 @@ def _place(element: _Element) -> str | None:
     return "" if element.tag == "parameters" else None
 
 
-def _own(type_: str, parameters: str) -> dict[str, str]:
-    """A file with one controller."""
-    manager = f"controller_manager:\n  ros__parameters:\n    own: {{type: {type_}}}\n"
-    return {"controllers.yaml": f"{manager}own:\n  ros__parameters: {{{parameters}}}\n"}
-
-
 interface_not_exported = of_both.NOT_EXPORTED._replace(
-    check=_not_exported,
-    formats=(URDF,),
-    bad=ARM + a_system(_VELOCITY) + _LOADS,
-    good=ARM + a_system(_POSITION) + _LOADS,
-    line=13,
-    beside=_own(
-        "forward_command_controller/ForwardCommandController",
-        "joints: [j], interface_name: position",
-    ),
-    options={},
+    check=_not_exported, formats=(URDF,), options={}, examples="MB229-urdf"
 )
 interface_claimed_twice = of_both.CLAIMED_TWICE._replace(
-    check=_claimed_twice,
-    formats=(URDF,),
-    bad=ARM + a_system(_VELOCITY) + _LOADS,
-    good=ARM + a_system(_VELOCITY) + _LOADS.replace("controllers", "one_wheel"),
-    line=13,
-    beside={
-        **_own(_DRIVE, "left_wheel_names: [j],\n    right_wheel_names: [j]"),
-        "one_wheel.yaml": _own(_DRIVE, "left_wheel_names: [j]")["controllers.yaml"],
-    },
-    options={},
+    check=_claimed_twice, formats=(URDF,), options={}, examples="MB240-urdf"
 )
 
 

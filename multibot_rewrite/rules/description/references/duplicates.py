@@ -27,23 +27,7 @@ if TYPE_CHECKING:
     from multibot_rewrite.description.sources.trace import Origin
 
 
-@rule(
-    "MB201",
-    "duplicate-name",
-    ERROR,
-    what="Two things of one kind have the same name: links, joints and materials of a robot, "
-    "sensors of a link, <ros2_control> elements, nodes of plugins. Links that fixed joints merge "
-    "count as one. It is a warning for "
-    "transmissions, and for the joints, sensors and gpios of one <ros2_control>. So it is for a "
-    "system of Gazebo that is loaded again with the same parameters.",
-    why="urdfdom rejects the file ('link ... is not unique'), libsdformat an SDF model or a link "
-    "with such sensors, ros2_control's resource manager the hardware. gazebo_ros gives the second "
-    "plugin a null pointer, and gzserver crashes. Interfaces of the second joint are mixed up with "
-    "the first.",
-    fix="Rename one of the two and what refers to it, or delete the copy; define each material once.",
-    bad='<link name="a"/><link name="a"/>',
-    good='<link name="a"/>',
-)
+@rule("MB201", "duplicate-name", ERROR)
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
     """Every one except the first."""
     yield from declared_twice(subject)

@@ -11,11 +11,8 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.rules.description.examples import a_link
-from multibot_rewrite.rules.description.examples import block as a_block
 from multibot_rewrite.rules.subject import Subject
 
-_SYSTEM = '<plugin filename="gz-sim-{0}-system" name="gz::sim::systems::{1}">{2}</plugin>'
 _OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags.
@@ -50,45 +47,13 @@ SINGLE = {
 }
 
 
-@rule(
-    "MB203",
-    "link-and-joint",
-    WARNING,
-    what="A <gazebo reference> is the name of both a link and a joint.",
-    why="Both get the block where they can use it. libsdformat rejects a model in which a link and "
-    "a joint share a name, so Gazebo does not spawn the robot.",
-    fix="Rename the joint.",
-    bad='<link name="a"/>\n'
-    '<link name="b"/>\n'
-    '<joint name="b" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
-    '<gazebo reference="b"/>\n',
-    good='<link name="a"/>\n'
-    '<link name="b"/>\n'
-    '<joint name="b_joint" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
-    '<gazebo reference="b"/>\n',
-    line=4,
-)
+@rule("MB203", "link-and-joint", WARNING)
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
     """Every such reference."""
     yield from ambiguous(subject.inventory)
 
 
-@rule(
-    "MB210",
-    "contradicting-blocks",
-    NOTE,
-    what="Two <gazebo> blocks for one link or joint give a property different values.",
-    why="Gazebo uses the later one, with a warning at most: the result depends on the order of the "
-    "blocks.",
-    fix="Keep the right one.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
-    '<gazebo reference="a"><mu1>0.2</mu1></gazebo>\n',
-    good='<link name="a"/>\n'
-    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
-    '<gazebo reference="a"><mu2>0.2</mu2></gazebo>\n',
-    line=3,
-)
+@rule("MB210", "contradicting-blocks", NOTE)
 def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
     """Properties of which a link or joint has one."""
     values: dict[tuple[str, str], str] = {}
@@ -128,24 +93,7 @@ def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
                     yield Problem(it, message, None, f"refer to a link: {child!r}?")
 
 
-def _two_sensors(other: str) -> str:
-    one = '<sensor name="a" type="imu"><topic>imu</topic></sensor>'
-    two = f'<sensor name="b" type="camera"><topic>{other}</topic></sensor>'
-    return a_link("a") + a_block('<gazebo reference="a">', one, two)
-
-
-@rule(
-    "MB241",
-    "topic-of-two-sensors",
-    WARNING,
-    what="Two simulated sensors of a robot have the same <topic>.",
-    why="Readers get the data of both in turn; if the sensors are of two types, gz-transport refuses "
-    "the second one, and it sends nothing.",
-    fix="Give each its own.",
-    bad=_two_sensors("imu"),
-    good=_two_sensors("image"),
-    line=4,
-)
+@rule("MB241", "topic-of-two-sensors", WARNING)
 def topic_of_two_sensors(subject: Subject) -> Iterator[Problem]:
     """Topics as they are written; the first sensor keeps its own."""
     first: dict[str, str] = {}
@@ -159,25 +107,7 @@ def topic_of_two_sensors(subject: Subject) -> Iterator[Problem]:
             yield Problem(element, f"sensors {other!r} and {name!r} have one topic, {topic!r}", "")
 
 
-def _two_systems(topic: str) -> str:
-    one = _SYSTEM.format("diff-drive", "DiffDrive", "")
-    two = _SYSTEM.format("odometry-publisher", "OdometryPublisher", topic)
-    return a_link("a") + a_block("<gazebo>", one, two)
-
-
-@rule(
-    "MB243",
-    "topic-of-two-systems",
-    WARNING,
-    what="Two systems of Gazebo in a robot send on the same topic, one that they are given or their "
-    "default.",
-    why="Readers get the data of both in turn. The odometry of one jumps to that of the other, or tf "
-    "has the poses of links among the odometry.",
-    fix="Give one of them a topic of its own.",
-    bad=_two_systems(""),
-    good=_two_systems("<odom_topic>ground_truth</odom_topic>"),
-    line=4,
-)
+@rule("MB243", "topic-of-two-systems", WARNING)
 def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
     """Yield each system that sends on a topic which an earlier one has."""
     if sum("::" in it.get("name", "") for it in subject.elements.every("plugin")) < 2:

@@ -12,16 +12,11 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
     COMMAND,
     OWNERS,
     STANDARD,
     STATE,
-    VELOCITY,
-    driven,
-    hardware_system,
     name_of,
     owners,
 )
@@ -29,18 +24,7 @@ from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 
-@rule(
-    "MB231",
-    "repeated-interface",
-    ERROR,
-    what="A joint, sensor or gpio of a <ros2_control> has one command or state interface twice.",
-    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing "
-    "key' and has no hardware. In Humble a handle of the first is lost.",
-    fix="Delete one.",
-    bad=ARM + hardware_system("p/P", block('<joint name="j">', VELOCITY, VELOCITY)),
-    good=ARM + hardware_system("p/P", driven()),
-    line=10,
-)
+@rule("MB231", "repeated-interface", ERROR)
 def repeated_interface(subject: Subject) -> Iterator[Problem]:
     """Interfaces of one component."""
     for owner in owners(subject):
@@ -54,18 +38,7 @@ def repeated_interface(subject: Subject) -> Iterator[Problem]:
             seen.add(key)
 
 
-@rule(
-    "MB232",
-    "interface-of-two-systems",
-    ERROR,
-    what="Two <ros2_control> elements export the same interface of a joint, sensor or gpio.",
-    why="From Jazzy on the resource manager throws 'Tried to insert ... with already existing key'. A "
-    "mock or simulated system beside the real one is the usual case.",
-    fix="Leave the joint to one of them: choose the system by a xacro argument.",
-    bad=ARM + hardware_system("p/P", driven()) + hardware_system("q/Q", driven(), name="t"),
-    good=ARM + hardware_system("p/P", driven()),
-    line=14,
-)
+@rule("MB232", "interface-of-two-systems", ERROR)
 def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
     """One finding for two systems: the first of what both export."""
     first: dict[str, _Element] = {}
@@ -95,22 +68,7 @@ def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
                 yield Problem(it, message, "name", f"did you mean {near!r}?")
 
 
-@rule(
-    "MB239",
-    "commanded-joint-without-state",
-    NOTE,
-    what="A joint of a <ros2_control> has command interfaces and no state interface.",
-    why="joint_state_broadcaster publishes nothing for it, so robot_state_publisher sends no "
-    "transform for the links below. joint_trajectory_controller and diff_drive_controller "
-    "need its position or velocity unless they run open loop.",
-    fix="Add state interfaces, position at least.",
-    bad=ARM + hardware_system("p/P", driven()),
-    good=ARM
-    + hardware_system(
-        "p/P", block('<joint name="j">', VELOCITY, '<state_interface name="position"/>')
-    ),
-    line=8,
-)
+@rule("MB239", "commanded-joint-without-state", NOTE)
 def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
     """One finding a robot: the first of such joints; another system may have the state."""
     systems = [

@@ -16,16 +16,6 @@ FIXED = LINKS + a_joint("j", "fixed", "a", "b")
 IMU = block('<gazebo reference="a">', '<sensor name="{}" type="imu"/>')
 
 
-def a_pair(*inside: str) -> str:
-    """Two joints, 9 lines; with something in the second it is in line 9, and there are 10."""
-    return ARM + a_link("c") + a_joint("k", "continuous", "b", "c", *inside)
-
-
-def a_system(*inside: str) -> str:
-    """A <ros2_control>."""
-    return block('<ros2_control name="s" type="system">', *inside)
-
-
 def a_plugin(library: str, name: str, *inside: str) -> str:
     """A plugin of Gazebo Classic."""
     opening = f'<plugin filename="lib{library}.so" name="{name}">'
@@ -41,12 +31,6 @@ VELOCITY = '<command_interface name="velocity"/>'
 def driven(*interfaces: str) -> str:
     """A joint of a <ros2_control>; with a command for its velocity where nothing else is said."""
     return block('<joint name="j">', *(interfaces or (VELOCITY,)))
-
-
-def hardware_system(class_: str, *inside: str, name: str = "s") -> str:
-    """A <ros2_control> with its hardware class."""
-    hardware = f"<hardware><plugin>{class_}</plugin></hardware>"
-    return block(f'<ros2_control name="{name}" type="system">', hardware, *inside)
 
 
 def owners(subject: Subject) -> Iterator[_Element]:

@@ -18,13 +18,9 @@ from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.references.shared import (
-    ARM,
     COMMAND,
     STANDARD,
-    driven,
-    hardware_system,
     name_of,
 )
 from multibot_rewrite.rules.facts.certain import level_of_absence
@@ -40,35 +36,8 @@ from multibot_rewrite.rules.facts.simulators import (
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 
-_GZ = "gz_ros2_control/GazeboSimSystem"
-_CLASSIC = "gazebo_ros2_control/GazeboSystem"
 
-
-def _plugin(library: str, class_: str, *inside: str) -> str:
-    return block("<gazebo>", block(f'<plugin filename="{library}" name="{class_}">', *inside))
-
-
-_FILE = "<parameters>controllers.yaml</parameters>"
-_LOADS = _plugin("gz_ros2_control-system", "gz_ros2_control::GazeboSimROS2ControlPlugin", _FILE)
-_DRIVE = _plugin(
-    *("gz-sim-diff-drive-system", "gz::sim::systems::DiffDrive"),
-    *("<left_joint>j</left_joint>", "<right_joint>j</right_joint>"),
-)
-
-
-@rule(
-    "MB233",
-    "simulated-hardware-not-loaded",
-    WARNING,
-    what="A <ros2_control> has the hardware of a simulator, and no <plugin> of the description loads "
-    "it.",
-    why="Only the simulator's plugin makes a controller manager for this hardware: no joint moves, and "
-    "spawners wait for /controller_manager in vain.",
-    fix="Add the plugin in a <gazebo>, with its file of parameters.",
-    bad=ARM + hardware_system(_GZ, driven()),
-    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=7,
-)
+@rule("MB233", "simulated-hardware-not-loaded", WARNING)
 def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
     """Systems of simulators in a whole description without any plugin that makes a manager."""
     if not subject.robot.links or manager_plugins(subject):
@@ -80,22 +49,7 @@ def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
         yield Problem(it, message, "", f"add a <plugin> with {simulator.plugins[0]}")
 
 
-@rule(
-    "MB234",
-    "no-controllers-file",
-    ERROR,
-    what="The plugin that makes the controller manager in Gazebo has no <parameters>, or a file that "
-    "its package does not have.",
-    why="gz_ros2_control reports 'found an empty parameters file. Failed to initialize': there is no "
-    "controller manager. With a file that does not exist rcl throws.",
-    fix="Name the file of the controllers.",
-    bad=ARM
-    + hardware_system(_GZ, driven())
-    + _LOADS.replace(_FILE, "<hold_joints>true</hold_joints>"),
-    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=13,
-    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
-)
+@rule("MB234", "no-controllers-file", ERROR)
 def no_controllers_file(subject: Subject) -> Iterator[Problem]:
     """Plugins of gz_ros2_control; that of Classic goes on without a file."""
     for plugin in manager_plugins(subject):
@@ -140,21 +94,7 @@ def _is_for_xacro(document: Document) -> bool:
     return XACRO in os.path.basename(document.file) or any(spaces)
 
 
-@rule(
-    "MB242",
-    "nothing-to-control",
-    ERROR,
-    what="A plugin makes the controller manager in a simulator, and the description has no "
-    "<ros2_control>.",
-    why="The plugin gets no hardware: it reports 'no ros2_control tag' and is not active, so no joint "
-    "moves and spawners wait for /controller_manager in vain.",
-    fix="Add a <ros2_control> with the simulator's class and the joints, or include the xacro that has "
-    "it. A <transmission> is for ROS 1.",
-    bad=ARM + _LOADS,
-    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=7,
-    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
-)
+@rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
     """Plugins of the two simulators in a whole description without a system: component_parser.cpp
     throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch it."""
@@ -168,19 +108,7 @@ def nothing_to_control(subject: Subject) -> Iterator[Problem]:
             yield Problem(plugin, message, "filename", hint, level=level_of_absence(subject))
 
 
-@rule(
-    "MB235",
-    "hardware-of-other-simulator",
-    ERROR,
-    what="The hardware class of a <ros2_control> is for another simulator than the plugin that makes "
-    "the controller manager.",
-    why="The plugin looks for the class among those of its own simulator and reports that it failed to "
-    "load: no joint has an interface.",
-    fix="Write the class of the plugin's simulator; the hint has it.",
-    bad=ARM + hardware_system(_CLASSIC, driven()) + _LOADS,
-    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=7,
-)
+@rule("MB235", "hardware-of-other-simulator", ERROR)
 def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
     """Systems of one simulator where there are plugins of the other alone."""
     libraries = {library_of(it) for it in manager_plugins(subject)}
@@ -191,23 +119,7 @@ def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "", f"did you mean {there[0].hardware[0]}?")
 
 
-@rule(
-    "MB236",
-    "joint-with-two-drivers",
-    WARNING,
-    what="A plugin of the simulator drives a joint that the simulated <ros2_control> commands, too, or "
-    "that another plugin drives.",
-    why="Both set its velocity in every step and the last one wins: the robot ignores one of its "
-    "commands, or twitches.",
-    fix="Keep the plugin or the controller.",
-    bad=ARM + hardware_system(_GZ, driven()) + _LOADS + _DRIVE,
-    good=ARM
-    + hardware_system(_GZ, block('<joint name="j">', '<state_interface name="velocity"/>'))
-    + _LOADS
-    + _DRIVE,
-    line=19,
-    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
-)
+@rule("MB236", "joint-with-two-drivers", WARNING)
 def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
     """Joints that plugins drive, against command interfaces and each other: once a joint.
 
@@ -231,21 +143,7 @@ def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, f"{rival} commands joint {key[0]!r} as well", "", "keep one of them")
 
 
-@rule(
-    "MB238",
-    "interface-not-simulated",
-    WARNING,
-    what="A joint has a command interface that the hardware of its simulator does not export.",
-    why="GazeboSimSystem and GazeboSystem know position, velocity and effort and pass over the rest: "
-    "controllers that claim it are not activated in simulation.",
-    fix="Leave it out in simulation, or use one that is simulated.",
-    bad=ARM
-    + hardware_system(_GZ, block('<joint name="j">', '<command_interface name="acceleration"/>'))
-    + _LOADS,
-    good=ARM + hardware_system(_GZ, driven()) + _LOADS,
-    line=9,
-    beside={"controllers.yaml": "controller_manager: {ros__parameters: {update_rate: 100}}\n"},
-)
+@rule("MB238", "interface-not-simulated", WARNING)
 def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
     """Command interfaces of joints in systems of simulators; misspelt ones are MB110's."""
     for system, plugin, simulator in simulated(subject):

@@ -12,8 +12,6 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.rules.description.references.lookup import undeclared
 from multibot_rewrite.rules.description.srdf.shared import (
-    ARM,
-    VIRTUAL,
     level_of,
     srdf_rule,
     undeclared_for_moveit,
@@ -21,17 +19,7 @@ from multibot_rewrite.rules.description.srdf.shared import (
 from multibot_rewrite.rules.subject import Subject
 
 
-@srdf_rule(
-    "MB801",
-    "srdf-without-urdf",
-    NOTE,
-    what="No URDF was found that has the SRDF's robot name and most of its links and joints, so "
-    "they could not be checked.",
-    why="An SRDF has no meaning by itself; MoveIt ignores everything that its URDF does not have.",
-    fix="Lint it together with its URDF (found by the robot's name), or give the URDF with --urdf.",
-    bad=f'<robot name="other">{ARM}</robot>',
-    good=ARM,
-)
+@srdf_rule("MB801", "srdf-without-urdf", NOTE)
 def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
     """One finding per file."""
     root = subject.document.root
@@ -40,49 +28,19 @@ def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
         yield Problem(root, message, "name", "give it with --urdf")
 
 
-other_robot = srdf_rule(
-    "MB802",
-    "other-robot",
-    WARNING,
-    what="The SRDF and its URDF have different robot names.",
-    why="srdfdom logs 'Semantic description is not specified for the same robot as the URDF': the "
-    "file may be for another robot.",
-    fix="Use the same name in both.",
-    options={"urdf": "r.urdf"},
-    bad=f'<robot name="other">{ARM}</robot>',
-    good=ARM,
-)(undeclared_for_moveit("MB802"))
-
-
-@srdf_rule(
-    "MB803",
-    "srdf-link",
-    ERROR,
-    what="A group, chain, end effector or virtual joint names a link that the URDF does not have.",
-    why="srdfdom leaves the link, chain, end effector or virtual joint out ('is not known to the "
-    "URDF'). The group is too small, or does not exist.",
-    fix="Correct the name.",
-    bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
-    good='<group name="arm"><joint name="j"/><link name="b"/></group>',
+other_robot = srdf_rule("MB802", "other-robot", WARNING, options={"urdf": "r.urdf"})(
+    undeclared_for_moveit("MB802")
 )
+
+
+@srdf_rule("MB803", "srdf-link", ERROR)
 def srdf_link(subject: Subject) -> Iterator[Problem]:
     """Of Pinocchio, which reads none of these, a warning."""
     level = level_of(subject)
     yield from (it._replace(level=level) for it in undeclared("MB803", subject))
 
 
-@srdf_rule(
-    "MB804",
-    "srdf-joint",
-    ERROR,
-    what="A group, state or passive joint names a joint that the URDF does not have.",
-    why="srdfdom leaves the joint out ('is not known to the URDF'): the group does not move it, "
-    "the state has no value for it.",
-    fix="Correct the name.",
-    bad=ARM + '<passive_joint name="jj"/>',
-    good=ARM + '<passive_joint name="j"/>',
-    line=2,
-)
+@srdf_rule("MB804", "srdf-joint", ERROR)
 def srdf_joint(subject: Subject) -> Iterator[Problem]:
     """All but the free flyer in a state for Pinocchio, which leaves the others out: a warning."""
     level = level_of(subject)
@@ -93,31 +51,10 @@ def srdf_joint(subject: Subject) -> Iterator[Problem]:
     )
 
 
-srdf_group = srdf_rule(
-    "MB805",
-    "srdf-group",
-    ERROR,
-    what="A state, end effector or group names a group that the SRDF does not have.",
-    why="srdfdom leaves out the state or end effector, and a group with such a subgroup as a whole "
-    "('has unsatisfied subgroups').",
-    fix="Correct the name.",
-    bad=ARM + '<group name="all"><group name="amr"/></group>',
-    good=ARM + '<group name="all"><group name="arm"/></group>',
-    line=2,
-)(undeclared_for_moveit("MB805"))
+srdf_group = srdf_rule("MB805", "srdf-group", ERROR)(undeclared_for_moveit("MB805"))
 
 
-@srdf_rule(
-    "MB806",
-    "srdf-duplicate",
-    ERROR,
-    what="Two groups, two end effectors or two virtual joints have the same name.",
-    why="MoveIt does not add the second ('A group named ... already exists'): its content is lost.",
-    fix="Rename one, or merge them.",
-    bad=ARM * 2,
-    good=ARM,
-    line=2,
-)
+@srdf_rule("MB806", "srdf-duplicate", ERROR)
 def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
     """Every declaration but the first."""
     for claim, _ in repeated(subject.inventory):
@@ -125,18 +62,7 @@ def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
         yield Problem(claim.element, message, claim.attribute, "rename one")
 
 
-@srdf_rule(
-    "MB815",
-    "virtual-joint-not-at-root",
-    WARNING,
-    what="The child of a virtual joint is not the root link of the URDF.",
-    why="MoveIt ignores the joint ('does not match the URDF frame'). The robot is at the origin of "
-    "its model frame, which is the root link and not the intended frame.",
-    fix="Use the root link.",
-    bad=ARM + VIRTUAL.format("fixed", "b"),
-    good=ARM + VIRTUAL.format("fixed", "a"),
-    line=2,
-)
+@srdf_rule("MB815", "virtual-joint-not-at-root", WARNING)
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
     robot = subject.beside

@@ -13,22 +13,11 @@ from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import text_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.references.lookup import undeclared
-from multibot_rewrite.rules.description.srdf.shared import APART, ARM, SHOWN, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import SHOWN, srdf_rule
 from multibot_rewrite.rules.subject import Subject
 
 
-@srdf_rule(
-    "MB807",
-    "stale-pair",
-    WARNING,
-    what="A collision pair names a link that the URDF does not have.",
-    why="srdfdom ignores the line. If the link was renamed, the pair is now checked, and a robot "
-    "that touches itself there cannot plan.",
-    fix="Delete the line, or correct the name.",
-    bad=ARM + '<disable_collisions link1="a" link2="bb" reason="Adjacent"/>',
-    good=ARM + APART,
-    line=2,
-)
+@srdf_rule("MB807", "stale-pair", WARNING)
 def stale_pair(subject: Subject) -> Iterator[Problem]:
     """One finding per name, at its first pair."""
     found = list(undeclared("MB807", subject))
@@ -44,17 +33,7 @@ def _link(problem: Problem) -> str:
     return text_of(problem.element, problem.attribute or "")
 
 
-@srdf_rule(
-    "MB809",
-    "duplicate-pair",
-    NOTE,
-    what="Pairs of links are disabled twice.",
-    why="The second line has no effect; it may have been meant for other links.",
-    fix="Delete the second line.",
-    bad=APART + '<disable_collisions link1="b" link2="a" reason="Never"/>',
-    good=APART,
-    line=2,
-)
+@srdf_rule("MB809", "duplicate-pair", NOTE)
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     """One finding per file; the order of the two does not matter."""
     first: dict[frozenset[str], _Element] = {}
@@ -70,17 +49,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
         yield Problem(found[0], message, None, "delete the line")
 
 
-@srdf_rule(
-    "MB818",
-    "self-pair",
-    WARNING,
-    what="A collision pair names the same link twice.",
-    why="A link never collides with itself, so the line has no effect; the intended pair is still "
-    "checked.",
-    fix="Name the other link.",
-    bad='<disable_collisions link1="a" link2="a" reason="Never"/>',
-    good=APART,
-)
+@srdf_rule("MB818", "self-pair", WARNING)
 def self_pair(subject: Subject) -> Iterator[Problem]:
     """Pairs to disable or to enable."""
     for it in subject.document.root.iterchildren("disable_collisions", "enable_collisions"):
@@ -89,18 +58,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, f"{one!r} is paired with itself", "link2", "name the other link")
 
 
-@srdf_rule(
-    "MB819",
-    "pair-without-shape",
-    NOTE,
-    what="Collision pairs name links that have no collision geometry.",
-    why="MoveIt has nothing to check there, so the lines have no effect. Often the geometry was "
-    "forgotten, or the lines were made for another version of the URDF.",
-    fix="Give the links a <collision>, or delete the lines.",
-    bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
-    good=ARM + APART,
-    line=2,
-)
+@srdf_rule("MB819", "pair-without-shape", NOTE)
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     """One finding per link, at its first pair."""
     robot = subject.beside
@@ -124,18 +82,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
                 )
 
 
-@srdf_rule(
-    "MB820",
-    "adjacent-links",
-    NOTE,
-    what="Links that a joint connects are checked for collision with each other.",
-    why="Their shapes usually touch, so every state of the robot is in collision and no motion can "
-    "be planned.",
-    fix="Disable the pair with the reason Adjacent, if the links may touch.",
-    bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
-    good=ARM + APART,
-    line=2,
-)
+@srdf_rule("MB820", "adjacent-links", NOTE)
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
     """One finding per file, if it disables any pair."""
     root, robot = subject.document.root, subject.beside

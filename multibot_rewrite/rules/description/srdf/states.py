@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.planning_groups import (
     text_of,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.srdf.shared import ARM, STATE, of_moveit, srdf_rule
+from multibot_rewrite.rules.description.srdf.shared import of_moveit, srdf_rule
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
@@ -27,17 +27,7 @@ LIMITED = ("revolute", "prismatic")
 ROUNDING = 1e-4
 
 
-@srdf_rule(
-    "MB808",
-    "duplicate-state",
-    WARNING,
-    what="Two states of one group have the same name.",
-    why="MoveIt keeps the values of the last one only.",
-    fix="Rename one.",
-    bad=STATE.format("") + '<group_state name="home" group="arm"/>',
-    good=STATE.format("") + '<group_state name="up" group="arm"/>',
-    line=3,
-)
+@srdf_rule("MB808", "duplicate-state", WARNING)
 @of_moveit
 def duplicate_state(subject: Subject) -> Iterator[Problem]:
     """Every state but the first of its name."""
@@ -51,17 +41,7 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
         seen.add(key)
 
 
-@srdf_rule(
-    "MB812",
-    "state-of-another-group",
-    WARNING,
-    what="A state has a value for a joint that is not in its group.",
-    why="MoveIt ignores the value ('that joint is not part of group').",
-    fix="Remove the joint, or add it to the group.",
-    bad=STATE.format('<joint name="k" value="0"/>'),
-    good=STATE.format('<joint name="j" value="0"/>'),
-    line=2,
-)
+@srdf_rule("MB812", "state-of-another-group", WARNING)
 @of_moveit
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     """Joints of states that exist and are not in the group, of which all groups are known."""
@@ -79,17 +59,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, f"joint {joint!r} is not in group {group!r}", "name", "remove it")
 
 
-@srdf_rule(
-    "MB813",
-    "state-beyond-limits",
-    WARNING,
-    what="The value of a state is outside of the joint's limits.",
-    why="MoveIt rejects the state as a goal, and a plan that starts there is invalid.",
-    fix="Correct the value or the limit.",
-    bad=STATE.format('<joint name="j" value="1.5"/>'),
-    good=STATE.format('<joint name="j" value="1"/>'),
-    line=2,
-)
+@srdf_rule("MB813", "state-beyond-limits", WARNING)
 def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Joints of one value that have limits."""
     robot = subject.beside
@@ -124,17 +94,7 @@ def _limits(joint: Joint) -> tuple[float, float] | None:
     return lower, upper
 
 
-@srdf_rule(
-    "MB810",
-    "broken-chain",
-    ERROR,
-    what="The base and tip of a chain are not connected, or are the same link.",
-    why="srdfdom ignores the chain ('do not form a chain'), or it has no joint: MoveIt cannot plan "
-    "for the group.",
-    fix="Use two links of one tree.",
-    bad='<group name="arm"><chain base_link="b" tip_link="b"/></group>',
-    good='<group name="arm"><chain base_link="a" tip_link="b"/></group>',
-)
+@srdf_rule("MB810", "broken-chain", ERROR)
 def broken_chain(subject: Subject) -> Iterator[Problem]:
     """Chains whose links exist."""
     robot = subject.beside
@@ -148,17 +108,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, f"{base!r} and {tip!r} {fault}", None, "use two links of one tree")
 
 
-@srdf_rule(
-    "MB811",
-    "empty-group",
-    WARNING,
-    what="A group has no joint.",
-    why="MoveIt does not add it ('must have at least one valid joint'). There is no planning for "
-    "it, and its states and end effectors are lost.",
-    fix="Add a joint, link, chain or group, or delete it.",
-    bad='<group name="arm"/>',
-    good=ARM,
-)
+@srdf_rule("MB811", "empty-group", WARNING)
 @of_moveit
 def empty_group(subject: Subject) -> Iterator[Problem]:
     """Groups with nothing in them."""
@@ -167,22 +117,7 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, f"group {text_of(it)!r} is empty", "name", "add a joint")
 
 
-@srdf_rule(
-    "MB816",
-    "end-effector-parent",
-    WARNING,
-    what="The parent group of an end effector is its own group, or does not have its parent link.",
-    why="MoveIt warns and uses another group that has the link, or none: grasps are planned for "
-    "the wrong arm.",
-    fix="Use the group that has the parent link.",
-    bad=ARM
-    + '<group name="hand"><link name="c"/></group>\n'
-    + '<end_effector name="e" group="hand" parent_link="a" parent_group="arm"/>\n',
-    good=ARM
-    + '<group name="hand"><link name="c"/></group>\n'
-    + '<end_effector name="e" group="hand" parent_link="b" parent_group="arm"/>\n',
-    line=3,
-)
+@srdf_rule("MB816", "end-effector-parent", WARNING)
 def end_effector_parent(subject: Subject) -> Iterator[Problem]:
     """End effectors that name their parent group."""
     robot, groups = subject.beside, groups_of(subject.document.root)

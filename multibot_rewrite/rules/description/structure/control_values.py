@@ -18,8 +18,7 @@ from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.examples import block
-from multibot_rewrite.rules.description.structure.shared import BOUNDED, LIMIT, one_joint
+from multibot_rewrite.rules.description.structure.shared import BOUNDED
 from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
@@ -73,28 +72,7 @@ def mimic_of_none(subject: Subject) -> Iterator[Problem]:
                 yield Problem(it, message, "mimic", "add <mimic>, or leave the attribute out")
 
 
-def _commanded(least: str) -> str:
-    interface = block('<command_interface name="position">', f'<param name="min">{least}</param>')
-    return one_joint("revolute", LIMIT) + block(
-        '<ros2_control name="s" type="system">',
-        "<hardware><plugin>p/P</plugin></hardware>",
-        block('<joint name="j">', interface),
-    )
-
-
-@rule(
-    "MB538",
-    "command-beyond-limits",
-    WARNING,
-    what="A command interface of a joint has a min or max outside of the joint's <limit>, or a min "
-    "above its max. It is a note for velocities and efforts outside of the limit.",
-    why="ros2_control takes the narrower one, a driver or simulator without joint limits the wider "
-    "one: the joint is commanded past its stop.",
-    fix="Write the joint's limits, or narrower ones.",
-    bad=_commanded("-9"),
-    good=_commanded("-1"),
-    line=11,
-)
+@rule("MB538", "command-beyond-limits", WARNING)
 def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Positions against lower and upper, velocities and efforts against theirs."""
     for system in subject.elements.tops("ros2_control"):

@@ -14,11 +14,9 @@ from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import vector
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.structure.shared import (
-    LIMIT,
     ONE_AXIS,
     TOLERANCE,
     joints_with,
-    one_joint,
 )
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
@@ -26,18 +24,7 @@ from multibot_rewrite.rules.subject import Subject
 FAR = 50.0
 
 
-@rule(
-    "MB519",
-    "zero-axis",
-    ERROR,
-    what="The axis of a joint that moves is 0 0 0, or its <axis> has no xyz.",
-    why="sdformat rejects the file ('The norm of the xyz vector cannot be zero'), and so does "
-    "MuJoCo. KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
-    fix='Write the axis: <axis xyz="0 0 1"/>; without <axis> it is 1 0 0.',
-    bad=one_joint("revolute", '<axis xyz="0 0 0"/>', LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0 1"/>', LIMIT),
-    line=5,
-)
+@rule("MB519", "zero-axis", ERROR)
 def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Axes of length 0."""
     for joint, axis, length in _axes(subject):
@@ -46,19 +33,7 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
             yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
 
 
-@rule(
-    "MB520",
-    "axis-length",
-    WARNING,
-    what="The axis of a joint does not have length 1. It is a note for a joint that turns.",
-    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it. MoveIt and yourdfpy "
-    "move a prismatic joint further by that factor, so the planner's robot is not the one in tf. A "
-    "program that does not normalize it turns a joint by another angle.",
-    fix="Divide the axis by its length.",
-    bad=one_joint("prismatic", '<axis xyz="0 0 2"/>', LIMIT),
-    good=one_joint("prismatic", '<axis xyz="0 0 1"/>', LIMIT),
-    line=5,
-)
+@rule("MB520", "axis-length", WARNING)
 def axis_length(subject: Subject) -> Iterator[Problem]:
     """Axes whose length is neither 0 nor 1."""
     for joint, axis, length in _axes(subject):
@@ -80,17 +55,7 @@ def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
     return found
 
 
-@rule(
-    "MB522",
-    "fixed-joint-ignores",
-    NOTE,
-    what="A fixed joint has a limit, a mimic or a safety controller.",
-    why="urdfdom reads them, but a joint that cannot move does not use them.",
-    fix="Delete them, or correct the type of the joint.",
-    bad=one_joint("fixed", LIMIT),
-    good=one_joint("fixed"),
-    line=5,
-)
+@rule("MB522", "fixed-joint-ignores", NOTE)
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     """One finding per joint; exporters write <axis> and <dynamics> everywhere."""
     for joint in subject.robot.joints:
@@ -104,19 +69,7 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
             yield Problem(joint.parts[useless[0]], message, None, hint)
 
 
-@rule(
-    "MB523",
-    "floating-or-planar",
-    WARNING,
-    what="A joint is floating or planar.",
-    why="robot_state_publisher sends no transform for a floating joint, and a fixed one for a "
-    "planar joint. sdformat makes neither joint and rejects the link below.",
-    fix="Make the link below it the root: its pose comes from odometry or, in MoveIt, from a "
-    "<virtual_joint> of the SRDF.",
-    bad=one_joint("floating"),
-    good=one_joint("fixed"),
-    line=3,
-)
+@rule("MB523", "floating-or-planar", WARNING)
 def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     """Joints of these two types."""
     for joint in subject.robot.joints:
@@ -125,17 +78,7 @@ def floating_or_planar(subject: Subject) -> Iterator[Problem]:
             yield Problem(joint.element, f"{joint.type} joint {joint.name!r} {tf}", "type")
 
 
-@rule(
-    "MB524",
-    "joint-origin-units",
-    WARNING,
-    what="The origin of a joint is very far from its parent link.",
-    why="URDF uses metres: the child is drawn, planned and simulated at that distance.",
-    fix="Divide millimetres by 1000.",
-    bad=one_joint("fixed", '<origin xyz="0 0 120"/>'),
-    good=one_joint("fixed", '<origin xyz="0 0 0.12"/>'),
-    line=5,
-)
+@rule("MB524", "joint-origin-units", WARNING)
 def joint_origin_units(subject: Subject) -> Iterator[Problem]:
     """Origins that are farther away than any robot is long."""
     for joint, origin in joints_with(subject.robot, "origin"):

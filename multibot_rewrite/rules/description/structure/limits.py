@@ -16,12 +16,10 @@ from multibot_rewrite.description.checks.numbers import number, numbers, value_o
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.structure.shared import (
     BOUNDED,
-    LIMIT,
     ONE_AXIS,
     TOLERANCE,
     TYPES,
     joints_with,
-    one_joint,
 )
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import commanded
@@ -42,21 +40,7 @@ ENDS = ("lower", "upper")
 STRICT = KNOWN[2]
 
 
-@rule(
-    "MB509",
-    "limit-missing",
-    ERROR,
-    what="A revolute or prismatic joint has no <limit>, or its <limit> lacks lower or upper. "
-    "Before URDF 1.2 effort and velocity are needed, too. Without lower or upper it is a "
-    "warning before URDF 1.2.",
-    why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits', 'joint "
-    "limit: no effort'). Before URDF 1.2 it reads a missing bound as 0, and joint_state_publisher "
-    "publishes no joint at all.",
-    fix="Write lower, upper, effort and velocity; a wheel's joint is continuous and needs no <limit>.",
-    bad=one_joint("revolute"),
-    good=one_joint("revolute", LIMIT),
-    line=3,
-)
+@rule("MB509", "limit-missing", ERROR)
 def limit_missing(subject: Subject) -> Iterator[Problem]:
     """Joints without a limit that they need, and limits without a part that they need."""
     strict = version_of(subject.document.root) >= STRICT
@@ -76,18 +60,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
                 yield Problem(limit, message, level=level)
 
 
-@rule(
-    "MB511",
-    "limits-inverted",
-    ERROR,
-    what="A joint's lower limit is above its upper one.",
-    why="No position is inside: MoveIt finds every state out of bounds, MuJoCo drops the limits, "
-    "sdformat swaps them. In a file of URDF 1.2 urdfdom rejects it, whatever the joint's type.",
-    fix="Swap them, or correct the sign.",
-    bad=one_joint("revolute", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
+@rule("MB511", "limits-inverted", ERROR)
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one; in URDF 1.2 of any joint."""
     types = TYPES if _is_strict(subject) else BOUNDED
@@ -97,19 +70,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, "lower")
 
 
-@rule(
-    "MB512",
-    "limits-zero-range",
-    NOTE,
-    what="A joint's limits leave it no range.",
-    why="robot_state_publisher still needs its position in joint_states and sends no transform "
-    "without it. MuJoCo takes equal limits for none, and the joint turns freely.",
-    fix="Write the real limits, or make the joint fixed (<preserveFixedJoint> keeps its link in "
-    "Gazebo).",
-    bad=one_joint("revolute", '<limit lower="0" upper="0" effort="1" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
+@rule("MB512", "limits-zero-range", NOTE)
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
     for joint, limit, lower, upper in _bounds(subject):
@@ -120,19 +81,7 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message)
 
 
-@rule(
-    "MB515",
-    "zero-limit",
-    NOTE,
-    what="The greatest effort or velocity of a joint that moves is 0. It is a warning for the effort "
-    "of a joint that a simulator commands.",
-    why="ros2_control's joint limits use the 0 as it is: no velocity is allowed; MoveIt treats a "
-    "velocity of 0 as no limit. Gazebo has no force for the joint: the arm falls, the wheel stands.",
-    fix="Write what the motor can do.",
-    bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="0" velocity="1"/>'),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
+@rule("MB515", "zero-limit", NOTE)
 def zero_limit(subject: Subject) -> Iterator[Problem]:
     """One finding per joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
@@ -146,19 +95,7 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, zero[0], level=WARNING if weak else "")
 
 
-@rule(
-    "MB516",
-    "continuous-limits",
-    WARNING,
-    what="A continuous joint has limits of less than a turn, which are ignored.",
-    why="sdformat, MoveIt and ros2_control read no limits of a continuous joint: it turns without "
-    "end.",
-    fix="Make it revolute, or prismatic if it slides; delete lower and upper if it does turn "
-    "without end.",
-    bad=one_joint("continuous", LIMIT),
-    good=one_joint("revolute", LIMIT),
-    line=5,
-)
+@rule("MB516", "continuous-limits", WARNING)
 def continuous_limits(subject: Subject) -> Iterator[Problem]:
     """Bounds of less than a turn: a whole turn means the same as continuous."""
     for joint, limit in joints_with(subject.robot, "limit"):
@@ -170,17 +107,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
             yield Problem(limit, message, "lower")
 
 
-@rule(
-    "MB517",
-    "prismatic-units",
-    WARNING,
-    what="The limits of a prismatic joint look like millimetres.",
-    why="URDF uses metres: planners and simulators let the joint move out of the room.",
-    fix="Divide by 1000.",
-    bad=one_joint("prismatic", '<limit lower="0" upper="40" effort="1" velocity="1"/>'),
-    good=one_joint("prismatic", '<limit lower="0" upper="0.04" effort="1" velocity="1"/>'),
-    line=5,
-)
+@rule("MB517", "prismatic-units", WARNING)
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
     """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits,
     and one that moves nothing stands for something else: a pressure, a dial."""
@@ -255,24 +182,7 @@ def _cannot_move(joint: Joint, limit: _Element) -> bool:
 Range = tuple[float, float]
 
 
-@rule(
-    "MB532",
-    "soft-limits",
-    WARNING,
-    what="The soft limits of a <safety_controller> leave the joint no range; or one of them is "
-    "outside of the joint's limits, which is a note.",
-    why="A missing soft limit is 0. MoveIt, ros2_control and joint_state_publisher use the range "
-    "that is inside both kinds of limits. MoveIt cannot plan for a joint that can only be at 0. A "
-    "soft limit outside has no effect.",
-    fix="Write soft_lower_limit and soft_upper_limit inside of lower and upper, or delete the element.",
-    bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
-    good=one_joint(
-        "revolute",
-        LIMIT,
-        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
-    ),
-    line=6,
-)
+@rule("MB532", "soft-limits", WARNING)
 def soft_limits(subject: Subject) -> Iterator[Problem]:
     """Against hard limits that leave a range themselves."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
@@ -286,18 +196,7 @@ def soft_limits(subject: Subject) -> Iterator[Problem]:
             yield Problem(safety, message, level=NOTE)
 
 
-@rule(
-    "MB534",
-    "dynamics-empty",
-    ERROR,
-    what="A <dynamics> has neither damping nor friction.",
-    why="urdfdom rejects the file ('joint dynamics element specified with no damping and no "
-    "friction').",
-    fix="Add one of them, or delete the element.",
-    bad=one_joint("continuous", "<dynamics/>"),
-    good=one_joint("continuous", '<dynamics damping="0.1"/>'),
-    line=5,
-)
+@rule("MB534", "dynamics-empty", ERROR)
 def dynamics_empty(subject: Subject) -> Iterator[Problem]:
     """Dynamics without a value."""
     for joint, dynamics in joints_with(subject.robot, "dynamics"):

@@ -10,31 +10,16 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import a_joint, a_link
 from multibot_rewrite.rules.description.structure.shared import (
-    LIMIT,
     ONE_AXIS,
     TYPES,
     first_names,
     joints_with,
-    two_joints,
 )
 from multibot_rewrite.rules.subject import Subject
 
 
-@rule(
-    "MB526",
-    "mimic-loop",
-    ERROR,
-    what="Joints mimic each other in a loop, or a joint mimics itself.",
-    why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other'). "
-    "joint_state_publisher stops ('Found an infinite recursive mimic chain'). Current sdformat "
-    "rejects a joint that mimics itself.",
-    fix="Delete the <mimic> of the joint that is driven.",
-    bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
-    good=two_joints('<mimic joint="j"/>'),
-    line=6,
-)
+@rule("MB526", "mimic-loop", ERROR)
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
     """Each loop, at its first mimic, and each mimic of the joint it is in."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
@@ -46,21 +31,7 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
             yield Problem(mimic, f"joints mimic each other in a loop: {first_names(loop)}", "joint")
 
 
-@rule(
-    "MB528",
-    "mimic-chain",
-    NOTE,
-    what="A joint mimics a joint that mimics another one.",
-    why="MoveIt and joint_state_publisher follow the chain. robot_state_publisher goes through the "
-    "mimics once, by name. It sends no transform for one whose leader comes later in the alphabet, "
-    "unless joint_states has the leader.",
-    fix="Use the first joint of the chain, and multiply the multipliers.",
-    bad=two_joints('<mimic joint="j"/>')
-    + a_link("d")
-    + a_joint("l", "revolute", "c", "d", LIMIT, '<mimic joint="k"/>'),
-    good=two_joints('<mimic joint="j"/>'),
-    line=17,
-)
+@rule("MB528", "mimic-chain", NOTE)
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
     """Mimics of mimics; a loop is MB526."""
     leader = _leaders(subject.robot)
@@ -73,18 +44,7 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
             yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
 
 
-@rule(
-    "MB529",
-    "mimic-of-fixed",
-    ERROR,
-    what="A joint mimics one that does not have a single position: fixed, floating or planar.",
-    why="joint_state_publisher stops with a KeyError, MoveIt ignores the mimic ('different number "
-    "of DOF'), and no joint_states message ever has the leader.",
-    fix="Use a joint that moves, or make this one fixed.",
-    bad=two_joints('<mimic joint="j"/>').replace("revolute", "fixed", 1),
-    good=two_joints('<mimic joint="j"/>'),
-    line=11,
-)
+@rule("MB529", "mimic-of-fixed", ERROR)
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
@@ -99,17 +59,7 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
             yield Problem(mimic, message, "joint")
 
 
-@rule(
-    "MB530",
-    "mimic-multiplier-zero",
-    WARNING,
-    what="The multiplier of a <mimic> is 0.",
-    why="The joint does not move, whatever the other one does.",
-    fix="Write the ratio, or make the joint fixed.",
-    bad=two_joints('<mimic joint="j" multiplier="0"/>'),
-    good=two_joints('<mimic joint="j" multiplier="0.5"/>'),
-    line=11,
-)
+@rule("MB530", "mimic-multiplier-zero", WARNING)
 def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
     """Mimics whose joint never moves."""
     for joint, mimic in joints_with(subject.robot, "mimic"):

@@ -14,13 +14,9 @@ from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.examples import block
 from multibot_rewrite.rules.description.structure.shared import (
     BOUNDED,
-    LIMIT,
     joints_with,
-    one_joint,
-    two_joints,
 )
 from multibot_rewrite.rules.subject import Subject
 
@@ -30,20 +26,7 @@ PART, ROUNDING = 0.05, 0.01
 CONTROLLER = "gz-sim-joint-position-controller-system"
 
 
-@rule(
-    "MB536",
-    "mimic-beyond-limits",
-    WARNING,
-    what="A joint that mimics another one leaves its own limits before the other one reaches its "
-    "limits.",
-    why="The simulator and MoveIt stop it at its limit. The two fingers no longer move together, a "
-    "closed chain is pulled apart, and MoveIt rejects the state as out of bounds.",
-    fix="Give it the limits of the leader, times the multiplier and plus the offset, or correct "
-    "these two.",
-    bad=two_joints('<mimic joint="j" multiplier="2"/>'),
-    good=two_joints('<mimic joint="j" multiplier="-1"/>'),
-    line=11,
-)
+@rule("MB536", "mimic-beyond-limits", WARNING)
 def mimic_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Joints with limits that follow a joint with limits."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
@@ -75,28 +58,7 @@ def _outside(value: float, bounds: Bounds) -> bool:
     return not bounds[0] - slack <= value <= bounds[1] + slack
 
 
-def _starting(value: str) -> str:
-    """An example: a joint that starts at some position, whose value is in line 13."""
-    state = block(
-        '<state_interface name="position">', f'<param name="initial_value">{value}</param>'
-    )
-    joint = block('<joint name="j">', '<command_interface name="position"/>', state)
-    return one_joint("revolute", LIMIT) + block('<ros2_control name="s" type="system">', joint)
-
-
-@rule(
-    "MB537",
-    "start-beyond-limits",
-    WARNING,
-    what="A joint starts at a position outside of its limits: initial_value in <ros2_control>, or "
-    "initial_position of a joint position controller.",
-    why="gz_ros2_control and mock_components set it as it is. The robot jumps to a limit when it "
-    "is spawned, and MoveIt refuses to plan from there ('start state out of bounds').",
-    fix="Start it between the limits; revolute joints take radians.",
-    bad=_starting("1.57"),
-    good=_starting("0.5"),
-    line=11,
-)
+@rule("MB537", "start-beyond-limits", WARNING)
 def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Values that are numbers, of joints with a range."""
     for element, name in _starts(subject):

@@ -12,13 +12,9 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import is_tree, loops, reached, roots
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.examples import a_link
 from multibot_rewrite.rules.description.structure.shared import (
     SHOWN,
-    TWO_LINKS,
     first_names,
-    fixed_joint,
-    one_joint,
 )
 from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.subject import Subject
@@ -29,18 +25,7 @@ MANY = 50
 WITHOUT_LINKS = frozenset(("material", "webots"))
 
 
-@rule(
-    "MB501",
-    "several-roots",
-    ERROR,
-    what="More than one link has no parent: the robot is in several pieces. It is a warning in a "
-    "xacro file, which may be a part of one.",
-    why="urdfdom rejects the file ('Two root links found'): no robot_state_publisher, no tf.",
-    fix="Add the joint that connects the pieces.",
-    bad=TWO_LINKS,
-    good=one_joint("fixed"),
-    line=2,
-)
+@rule("MB501", "several-roots", ERROR)
 def several_roots(subject: Subject) -> Iterator[Problem]:
     """Every root except the one with the most links below it; a misspelled child link is MB202."""
     robot = subject.robot
@@ -61,16 +46,7 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
         yield Problem(link.element, message, "name", hint, level=level)
 
 
-@rule(
-    "MB502",
-    "no-link",
-    WARNING,
-    what="The robot has no link. Files with only materials, or for Webots, need none.",
-    why="urdfdom rejects the file ('No link elements found in urdf file').",
-    fix="Add the links, directly below <robot>.",
-    bad='<robot name="r"/>',
-    good='<link name="a"/>',
-)
+@rule("MB502", "no-link", WARNING)
 def no_link(subject: Subject) -> Iterator[Problem]:
     """A robot without links that is no expansion: files of macros have no links of their own."""
     root = subject.document.root
@@ -81,26 +57,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
         yield Problem(root, "the robot has no link")
 
 
-@rule(
-    "MB503",
-    "kinematic-loop",
-    ERROR,
-    what="Joints close a loop: a link is below itself.",
-    why="urdfdom accepts a loop beside the tree: its links get no frame in tf, and pinocchio "
-    "leaves them out. If all links are in loops it rejects the file ('No root link found').",
-    fix="Reverse or delete one joint; close a real loop in the simulator.",
-    bad=a_link("a")
-    + a_link("b")
-    + a_link("c")
-    + fixed_joint("j", "b", "c")
-    + fixed_joint("k", "c", "b"),
-    good=a_link("a")
-    + a_link("b")
-    + a_link("c")
-    + fixed_joint("j", "a", "b")
-    + fixed_joint("k", "b", "c"),
-    line=7,
-)
+@rule("MB503", "kinematic-loop", ERROR)
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     """Each loop, at the last of its joints in the file."""
     order: dict[_Element, int] = {}
@@ -117,22 +74,7 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
         )
 
 
-@rule(
-    "MB504",
-    "several-parents",
-    ERROR,
-    what="A link is the child of two joints.",
-    why="urdfdom keeps one of the joints, by name; sdformat rejects the file (two links with one "
-    "name), and so does MuJoCo ('body has multiple parents').",
-    fix="Delete one of the joints, or add another link for it.",
-    bad=a_link("a") + a_link("b") + fixed_joint("j", "a", "b") + fixed_joint("k", "a", "b"),
-    good=a_link("a")
-    + a_link("b")
-    + a_link("c")
-    + fixed_joint("j", "a", "b")
-    + fixed_joint("k", "a", "c"),
-    line=7,
-)
+@rule("MB504", "several-parents", ERROR)
 def several_parents(subject: Subject) -> Iterator[Problem]:
     """Every joint but the first that has the link as its child; copies of a joint are MB201."""
     for name, joints in subject.robot.above.items():
@@ -147,25 +89,7 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
                 )
 
 
-@rule(
-    "MB505",
-    "unreachable-link",
-    ERROR,
-    what="Links are below a loop, or below a joint from a link to itself: they are not connected "
-    "to the root.",
-    why="urdfdom accepts the file, but the links are lost: they get no frame in tf, and Gazebo and "
-    "pinocchio leave them out.",
-    fix="Correct the loop above them.",
-    bad=a_link("a")
-    + a_link("b")
-    + a_link("c")
-    + a_link("d")
-    + fixed_joint("j", "b", "c")
-    + fixed_joint("k", "c", "b")
-    + fixed_joint("l", "c", "d"),
-    good=a_link("a") + a_link("b") + fixed_joint("j", "a", "b"),
-    line=4,
-)
+@rule("MB505", "unreachable-link", ERROR)
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
     """One finding, at the first link; links in the loop itself are MB503."""
     robot = subject.robot
@@ -183,18 +107,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
         yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 
 
-@rule(
-    "MB506",
-    "joint-to-itself",
-    ERROR,
-    what="A joint's parent and child are the same link.",
-    why="For urdfdom the link has a parent and is not a root. If it should be the root, urdfdom "
-    "rejects the file ('No root link found'). Any other link is missing in tf and Gazebo.",
-    fix="Correct the parent link.",
-    bad=a_link("a") + fixed_joint("j", "a", "a"),
-    good=one_joint("fixed"),
-    line=3,
-)
+@rule("MB506", "joint-to-itself", ERROR)
 def joint_to_itself(subject: Subject) -> Iterator[Problem]:
     """Joints from a link to itself."""
     for joint in subject.robot.joints:
