@@ -106,7 +106,7 @@ def sorted_out(
 def _gaps(
     plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
-    """Robots of the same sources are looked at once."""
+    """Yield what is open; robots of the same sources are judged once, and all of them are named."""
     shown = of_each_kind(plan)
     few = with_robots(fleet, shown)
     whole, whose = written_system(plan, few, shown, texts), whose_names(few)
@@ -117,12 +117,17 @@ def _gaps(
         evidence = plan.evidence_of(robot)
         before = system_before(robot, evidence, plan.jobs[robot.spec.sources].srdf)
         after = system_after(robot, evidence, texts, parameters, whole)
-        yield from controlled(robot, before.control, after.control, texts)
-        yield from apart(robot, before.system, after.system, whose)
-        yield from not_sent(robot, before.system)
         loads = any(it.name.endswith(MANAGER) for it in group.facts)
-        yield from unread_drives(robot, loads)
-        yield from missing(robot, before.system, after.system, whose)
+        found = (
+            *controlled(robot, before.control, after.control, texts),
+            *apart(robot, before.system, after.system, whose),
+            *not_sent(robot, before.system),
+            *unread_drives(robot, loads),
+            *missing(robot, before.system, after.system, whose),
+        )
+        alike = tuple(it.spec.name for it in group.robots)
+        several = alike if len(alike) > 1 else ()
+        yield from (it._replace(robots=it.robots or several) for it in found)
         yield from written_findings(plan, group, texts, known)
 
 
