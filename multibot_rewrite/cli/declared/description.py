@@ -91,9 +91,9 @@ POSTFIX = Command(
                     "--world-systems",
                     "HOW",
                     WORLD_SYSTEMS,
-                    "Gazebo systems of the whole world, such as Sensors: keep them in the description"
-                    " (default for one robot), or leave them out, so that the world loads each once"
-                    " (default for several)",
+                    "Gazebo systems of the whole world, such as Sensors: keep them (default for one"
+                    " robot); or leave them out, so that the world loads each once (default for"
+                    " several)",
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
                 form(POSTFIX_FORMS, "the result, or every change for every robot as JSON"),

@@ -8,7 +8,7 @@ complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling
 complete -c urdf-postfix -l trust -d 'run xacro files without the sandbox'
 complete -c urdf-postfix -s o -l output -r -d 'write it there'
 complete -c urdf-postfix -l in-place -d 'write the result over the input'
-complete -c urdf-postfix -l world-systems -r -f -a 'keep leave' -d 'Gazebo systems of the whole world, such as Sensors: keep them in the description (default for one robot), or leave them out, so that the world loads each once (default for several)'
+complete -c urdf-postfix -l world-systems -r -f -a 'keep leave' -d 'Gazebo systems of the whole world, such as Sensors: keep them (default for one robot)'
 complete -c urdf-postfix -l diff -d 'print a unified diff instead of the result'
 complete -c urdf-postfix -l form -r -f -a 'description changes' -d 'the result, or every change for every robot as JSON: description, changes'
 complete -c urdf-postfix -l undo -d 'remove the robot\'s name again'
