@@ -25,6 +25,7 @@ from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
+from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import policy, robots, separators
 from multibot_rewrite.cli.values import MAX_DOMAIN
 from multibot_rewrite.lint.catalogue import rules
@@ -572,3 +573,10 @@ def test_wrong_words_are_answered_by_the_right_ones(
 ) -> None:
     code, _, err = said(capsys, *words)
     assert code == 2 and answer in err and len(err.splitlines()) == 1
+
+
+def test_the_name_of_a_rule_selects_and_ignores_it() -> None:
+    words = ("--select", "undeclared-link,MG1", "--ignore", "several-roots,MB3")
+    options = given("plan", ROVER, *words)
+    check_report(options, printed=False)
+    assert (options.select, options.ignore) == (["MB202", "MG1"], ["MB501", "MB3"])
