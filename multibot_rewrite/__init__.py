@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rewrite a robot description for one robot or many, and prove that nothing was missed."""
+"""Put a robot's name into all names that robots must not share, and verify it."""
 
 from __future__ import annotations
 

@@ -91,10 +91,21 @@ def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
 
 
 def did_you_mean_one_of(word: str, choices: Iterable[str], alike: float = CHOICE) -> str:
-    """The same for a word of a short list: less alike will do, and the beginning of one."""
+    """Return the hint for a word of a short list: less alike will do, and the beginning of one.
+
+    Where the word is the first part of several (shared: shared_frames, shared_topics), it has all.
+    """
     words = list(choices)
+    whole = extensions(word, words)
+    if len(whole) > 1:
+        return f"did you mean one of {', '.join(whole)}?"
     begun = (it for it in words if len(word) >= _BEGINNING and it.startswith(word))
     return _hint(min(begun, key=len, default="") or nearest(word, words, alike))
+
+
+def extensions(word: str, choices: Iterable[str]) -> list[str]:
+    """Return the choices that are the word with more parts behind it."""
+    return [it for it in choices if word and it.startswith((f"{word}_", f"{word}-"))]
 
 
 def _hint(near: str) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.base import other_words
-from multibot_rewrite.base.nearest import CHOICE, nearest
+from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.options import Command
@@ -15,38 +15,37 @@ from multibot_rewrite.cli.options import Command
 _BEGUN = 2
 
 
-def option_hint(wrong: str, command: str, known: Collection[str], takes_fleet: bool) -> str:
+def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: bool) -> str:
     """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
 
-    An option that begins with it comes first. Then its meaning counts: a key of the fleet file, a word
-    of other tools, an option of another command. Its letters come last.
+    An option that begins with it comes first. Then its meaning counts: what is known for this command,
+    a key of the fleet file, a word of other tools, an option of another command. Its letters come last.
     """
     if begun := _begun(wrong.lstrip("-"), known):
         return f"; did you mean '{begun}'?"
-    if key := _fleet_key(wrong) if takes_fleet else "":
-        return f"; write the key {key}: into the fleet file"
-    hint = _by_meaning(wrong, command, known)
-    return "".join(f"; {it}" for it in ([hint] if hint else _by_letters(wrong, known)))
-
-
-def _by_meaning(wrong: str, command: str, known: Collection[str]) -> str:
-    """Return the answer that is known for the option in this command; "" if there is none."""
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
-    other = other_words.OPTIONS.get(f"{command} {word}") or other_words.OPTIONS.get(word, "")
-    option = other.replace(",", "").partition(" ")[0]
-    if not option.startswith("-") or option in known:
-        return f"use {other}" if other else ""
-    return f"{option} does that, which {_takers(option)}"
+    if own := other_words.OPTIONS.get(f"{command} {word}"):
+        return f"; use {own}"
+    other = other_words.OPTIONS.get(word, "")
+    first_word = other.replace(",", "").partition(" ")[0]
+    meant = first_word if first_word.startswith("-") else ""
+    if meant in known:
+        return f"; use {other}"
+    if has_fleet and (keys := _fleet_keys(wrong) or _fleet_keys(meant)):
+        return f"; write the key {' or '.join(f'{it}:' for it in keys)} into the fleet file"
+    if meant:
+        return f"; {meant} does that, which {_takers(meant)}"
+    return f"; use {other}" if other else "".join(f"; {it}" for it in _by_letters(wrong, known))
 
 
-def _fleet_key(wrong: str) -> str:
-    """Return the key of a fleet file that the option would be; "" if it is none."""
+def _fleet_keys(wrong: str) -> list[str]:
+    """Return the keys of a fleet file that the option may mean: one, those that begin so, or none."""
     from multibot_rewrite.fleet.file.fleet_data import schema
 
     word = wrong.lstrip("-").replace("-", "_")
     top = schema()["properties"]
     key = word if word in top else other_words.KEYS.get(word, word)
-    return key if key in top else ""
+    return [key] if key in top else extensions(key, top)
 
 
 def _by_letters(wrong: str, known: Collection[str]) -> Iterator[str]:

@@ -61,7 +61,10 @@ def _run(options: argparse.Namespace) -> int:
     wanted = _wanted(options)
     seen = _quietly(wanted, see)
     if wanted.names and seen.named and len(seen.robots) > 1:
-        raise UsageError("--robots is for one description; give --count for several")
+        raise UsageError(
+            "--robots is for one description; for several leave it out, then name, add or remove"
+            " robots in the fleet file"
+        )
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
         made = ask_for_fleet(seen, wanted)
     else:

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.findings.codes import near_name
 from multibot_rewrite.base.model import Site, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import shorten
@@ -30,6 +31,7 @@ from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
 _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
@@ -89,10 +91,10 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
     if others:
         where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
         return UsageError(f"{name!r} {where}; name one of them with --distro")
-    near = near_names(vocabulary, name, types)
-    hint = f"the nearest known: {', '.join(near)}" if near else "multibot inspect lists all"
-    what = "plugin, class, element, sensor type or block of the vocabulary"
-    return UsageError(f"{name!r} is no {what}, no finding's code, and no file or folder; {hint}")
+    near = near_names(vocabulary, name, types) or [near_name(name, rules())]
+    hint = f"the nearest known: {', '.join(near)}" if any(near) else "multibot inspect lists all"
+    what = "plugin, class, element, sensor type, rule, file or folder"
+    return UsageError(f"{name!r} is not known: no {what} has this name; {hint}")
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:

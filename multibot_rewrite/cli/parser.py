@@ -110,8 +110,8 @@ def declare(parser: Parser, command: Command) -> None:
     general = parser._action_groups[-1]
     version = f"{parser.prog} {__version__}"
     general.add_argument("--version", action="version", version=version, help="show the version")
-    general.add_argument("-h", action=_Short, nargs=0, help="show what there is, on one screen")
-    general.add_argument("--help", action="help", help="show all of it")
+    general.add_argument("-h", action=_Short, nargs=0, help="show a short summary")
+    general.add_argument("--help", action="help", help="show this help")
     parser.set_defaults(command=command.name, findings_first=command.findings_first)
     if command.fail_on:
         parser.set_defaults(fail_on=command.fail_on)
@@ -190,8 +190,9 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
     if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
 
-        command, takes_fleet = parser.prog.rpartition(" ")[2], "fleet" in parser.arguments()
-        hint = option_hint(wrong, command, parser.known(), takes_fleet)
+        command = parser.prog.rpartition(" ")[2]
+        has_fleet = command == "init" or "fleet" in parser.arguments()
+        hint = option_hint(wrong, command, parser.known(), has_fleet)
         parser.error(f"unknown option {wrong}{hint}")
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:

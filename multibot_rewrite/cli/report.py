@@ -52,14 +52,17 @@ def by_themselves(robots: Iterable[str]) -> dict[str, str]:
 
 
 def check_report(options: argparse.Namespace, printed: bool) -> None:
-    """Raise UsageError for a code that no rule has, or where findings and a result would both go to
-    standard output; ``printed`` is whether the result does."""
-    for option, codes in (("--select", options.select), ("--ignore", options.ignore)):
-        if codes:
-            from multibot_rewrite.base.findings.codes import check_codes
+    """Put codes in place of rules' names in ``--select`` and ``--ignore``.
+
+    Raise UsageError for a code that no rule has, or where findings and a result would both go to
+    standard output; ``printed`` is whether the result does.
+    """
+    for option in ("select", "ignore"):
+        if words := getattr(options, option):
+            from multibot_rewrite.base.findings.codes import find_codes
             from multibot_rewrite.lint.catalogue import rules  # it imports every check
 
-            check_codes(codes, option, rules())
+            setattr(options, option, [*find_codes(words, f"--{option}", rules())])
     if printed and options.format != TEXT:
         raise UsageError(
             f"--format {options.format} prints the findings; name a file for the result with -o"

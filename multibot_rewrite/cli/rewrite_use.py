@@ -36,7 +36,9 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     if options.input is None:
         raise UsageError("no INPUT and no ROBOT given; see urdf-postfix --help")
     if not names:
-        raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
+        undo = " --undo" * options.undo
+        example = f"urdf-postfix {options.input} robot1{undo}"
+        raise UsageError(f"no robot name given; for example: {example}")
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):
@@ -49,7 +51,8 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     if len(names) > 1 and not (is_one or options.diff or PLACEHOLDER in (options.output or "")):
         ending = os.path.splitext(options.input)[1] or ".urdf"
         hint = f"-o out/, or -o 'out/{{robot}}{ending}'"
-        raise UsageError(f"several robots need one file each: {hint}")
+        also = "; multibot build writes one for all robots" * (ending == ".rviz")
+        raise UsageError(f"several robots need one file each: {hint}{also}")
     _check_targets(
         options, [target_path(options.output, robot) for robot in names if options.output]
     )

@@ -315,7 +315,7 @@ def test_rules_by_code_or_name(word: str, found: list[str]) -> None:
 @pytest.mark.parametrize(
     ("word", "hint"),
     [
-        ("odd-name", "did you mean 'MB102'?"), ("MB1019", "did you mean 'MB101'?"),
+        ("MB1019", "did you mean 'MB101'?"),
         ("mb199", "did you mean 'MB1'?"), ("MG21", "did you mean 'MG2'?"),
         ("lost-topc", "did you mean 'lost-topic'?"),
         ("xyz", "see multibot inspect"),
@@ -323,12 +323,18 @@ def test_rules_by_code_or_name(word: str, found: list[str]) -> None:
 )  # fmt: skip
 def test_a_code_that_no_rule_has(word: str, hint: str) -> None:
     with pytest.raises(UsageError) as caught:
-        codes.check_codes(["MB", "MB101", word], "--select", KNOWN)  # type: ignore[arg-type]
+        codes.find_codes(["MB", "MB101", word], "--select", KNOWN)  # type: ignore[arg-type]
     assert str(caught.value) == (
         f"--select: no rule has the code {word!r}, and none begins with it; {hint}"
     )
     with pytest.raises(UsageError):
-        codes.check_codes(["M"], "--select", KNOWN)  # type: ignore[arg-type]
+        codes.find_codes(["M"], "--select", KNOWN)  # type: ignore[arg-type]
+
+
+def test_codes_by_name() -> None:
+    words = ["odd-name", "MG", "MB101", "lost-topic"]
+    found = codes.find_codes(words, "--select", KNOWN)  # type: ignore[arg-type]
+    assert found == ("MB102", "MG", "MB101", "MG201")
 
 
 def test_a_rule_for_a_terminal() -> None:

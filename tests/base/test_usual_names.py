@@ -173,6 +173,7 @@ def test_answers_are_options_and_keys_that_there_are() -> None:
         "namespace": "ns",
         "nodes": "nodes_file",
         "stack": "stacks",
+        "separators": "separator",
     }
     assert {word: key for key, words in keys.items() for word in words.split()} == other_words.KEYS
     assert {other_words.OPTIONS[it] for it in ("--again", "--overwrite")} == {"--force"}

@@ -301,14 +301,13 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
         row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
         assert [*inspect._list([section])] == [Grid(columns, [row])]
     assert "" in [*inspect._details([section, section])], "an empty line is between two"
-    said = "'qqqqqq' is no plugin, class, element, sensor type or block of the vocabulary, no"
+    said = "no plugin, class, element, sensor type, rule, file or folder has this name"
     for name, hint in (
         ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
+        ("undeclared-lnk", "the nearest known: undeclared-link"),
     ):  # fmt: skip
         text = str(inspect._unknown(known, name, ("plugin",)))
-        assert text == (
-            f"{said.replace('qqqqqq', name)} finding's code, and no file or folder; {hint}"
-        )
+        assert text == f"{name!r} is not known: {said}; {hint}"
     later = load_vocabulary((str(file),), "humble")
     text = str(inspect._unknown(later, "mine", ("plugin",)))
     assert text.startswith("'mine' is not in humble, only in jazzy, kilted, lyrical, rolling; ")
@@ -623,7 +622,7 @@ def test_the_whole_help(monkeypatch: pytest.MonkeyPatch) -> None:
         "  multibot do a    # as it is\n", f"  # long\n  multibot do {'b' * 60}\n",
         "One paragraph.\n\n  as it is\n", "input, and more:\n", "  --form FORM", "100 % of it",
         "exit codes:\n  0 done\n  2 wrong\n", "  --version", "show the version",
-        "show what there is, on one screen", "show all of it",
+        "show a short summary", "show this help",
     ):  # fmt: skip
         assert part in text, part
 

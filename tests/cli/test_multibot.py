@@ -128,7 +128,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("inspect", "no.urdf"), "no.urdf: there is no such file or folder"),
         (("inspect", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
         (("inspect", "--vocabulary", "no"), "no: cannot be read: No such file"),
-        (("inspect", "no"), "'no' is no plugin, class, element, sensor type or block"),
+        (("inspect", "no"), "'no' is not known: no plugin, class, element, sensor type"),
         (("inspect", "MX1"), "multibot: no rule has the code 'MX1', and none begins with it; "),
         (("build", ROVER, "-o", "x"), "rover.urdf: a description; use multibot init, which makes"),
         (
@@ -569,7 +569,7 @@ def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
 def test_an_unknown_name_gets_the_nearest(multibot: Multibot, name: str, near: str) -> None:
     result = multibot("inspect", name)
     assert (result.code, result.out) == (2, "")
-    assert f"{name!r} is no plugin" in result.err and near in result.err
+    assert f"{name!r} is not known: no plugin" in result.err and near in result.err
     assert result.err.count("\n") == 1
 
 

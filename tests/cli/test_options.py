@@ -25,6 +25,7 @@ from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
+from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import policy, robots, separators
 from multibot_rewrite.cli.values import MAX_DOMAIN
 from multibot_rewrite.lint.catalogue import rules
@@ -174,7 +175,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --fail-on eror", "did you mean 'error'?"),
         ("multibot build --color", "argument --color: expected one argument"),
         ("urdf-postfix a b --select MB9999", "did you mean 'MB9'?"),
-        ("multibot plan a b --ignore undeclared-link", "did you mean 'MB202'?"),
+        ("multibot plan a b --ignore undeclared-lnk", "did you mean 'undeclared-link'?"),
         ("multibot inspect MB20X", "did you mean 'MB20'?"),
         (f"multibot snapshot {PARAMS}", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
@@ -182,6 +183,20 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-lint a --output-format github", "did you mean '--format'?"),
         ("multibot build --robots a,b", "write the key robots: into the fleet file"),
         ("multibot build --urdf a.urdf", "write the key description: into the fleet file"),
+        ("multibot build --separator _", "write the key separators: into the fleet file"),
+        (
+            "multibot build --keep /scan",
+            "write the key shared_frames: or shared_topics: or shared_nodes: into the fleet file",
+        ),
+        ("multibot init a.urdf --stack nav2", "write the key stack: into the fleet file"),
+        ("multibot init a.urdf --prefix r_", "write the key affix: into the fleet file"),
+        ("multibot init a.urdf --namespace r", "write the key topics: into the fleet file"),
+        ("multibot init --urdf a.urdf", "use the file as a word: multibot init FILE"),
+        ("multibot init a.urdf --rviz a.rviz", "use the file or its folder as a word"),
+        ("multibot init a.urdf --names a,b", "use --robots A,B"),
+        ("urdf-postfix a b --keep /scan", "use --shared FRAME,/TOPIC"),
+        ("urdf-postfix a b --exclude /scan", "use --shared FRAME,/TOPIC"),
+        ("urdf-lint a --severity error", "use --fail-on LEVEL"),
         ("multibot rviz f.yaml", "companions: {rviz: FILE} in the fleet file"),
         ("urdf-lint a --list-rules", "use multibot inspect MB;"),
         ("urdf-lint a --rules", "use multibot inspect MB;"),
@@ -558,3 +573,10 @@ def test_wrong_words_are_answered_by_the_right_ones(
 ) -> None:
     code, _, err = said(capsys, *words)
     assert code == 2 and answer in err and len(err.splitlines()) == 1
+
+
+def test_the_name_of_a_rule_selects_and_ignores_it() -> None:
+    words = ("--select", "undeclared-link,MG1", "--ignore", "several-roots,MB3")
+    options = given("plan", ROVER, *words)
+    check_report(options, printed=False)
+    assert (options.select, options.ignore) == (["MB202", "MG1"], ["MB501", "MB3"])

@@ -38,7 +38,9 @@ REWRITE = {
     [
         ({"input": ""}, "a", "the name of the input is empty"),
         ({"input": None}, "a", "no INPUT and no ROBOT given; see urdf-postfix --help"),
-        ({}, "", "no robot name given; for example: urdf-postfix rover.urdf robot1"),
+        ({}, "", "no robot name given; for example: urdf-postfix r.urdf robot1"),
+        ({"undo": True}, "",
+         "no robot name given; for example: urdf-postfix r.urdf robot1 --undo"),
         ({"words": ["a:=b"]}, "a", "NAME:=VALUE is for xacro, r.urdf is no xacro"),
         ({"words": ["a:=b"], "input": "-"}, "a", "NAME:=VALUE is for xacro, <stdin> is no xacro"),
         ({"undo": True}, "ab", "--undo and --in-place take one robot at a time"),
@@ -71,6 +73,9 @@ REWRITE = {
          "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
         ({"input": "r.sdf"}, "ab",
          "several robots need one file each: -o out/, or -o 'out/{robot}.sdf'"),
+        ({"input": "a/one.rviz", "output": "two.rviz"}, "ab",
+         "several robots need one file each: -o out/, or -o 'out/{robot}.rviz'; multibot build"
+         " writes one for all robots"),
         ({"input": "-"}, "ab",
          "several robots need one file each: -o out/, or -o 'out/{robot}.urdf'"),
     ],

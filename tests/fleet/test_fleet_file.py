@@ -212,6 +212,10 @@ BAD: dict[str, tuple[str, ...]] = {
         f"rviz_config: a.rviz\n{ONE}",
         "1: unknown key 'rviz_config'; write companions: {rviz: ...}",
     ),
+    "key-that-begins-several": (
+        f"shared: [/scan]\n{ONE}",
+        "1: unknown key 'shared'; did you mean one of shared_frames, shared_topics, shared_nodes?",
+    ),
     "key-that-is-a-number": (f"1: 2\n{ONE}", "1: unknown key 1; known are include, layout"),
     "key-that-is-a-list": (f"[1]: 2\n{ONE}", "1: found unhashable key; write plain keys"),
     "two-of-a-name": (

@@ -21,7 +21,7 @@ from multibot_rewrite.lint.config.configured import (
     is_excluded,
     with_options,
 )
-from multibot_rewrite.lint.config.values import READERS, check_lint_codes
+from multibot_rewrite.lint.config.values import READERS, find_lint_codes
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import ArgumentSet, Settings, is_silent, matches
 
@@ -273,7 +273,7 @@ WRONG = [
     ("ignore = ['MB99']", "ignore: no rule has the code 'MB99', and none begins with it; did you"),
     ("select = ['mb501']", "did you mean 'MB501'?"),
     ("select = ['MB5011']", "did you mean 'MB501'?"),
-    ("select = ['several-roots']", "did you mean 'MB501'?"),
+    ("select = ['several-rots']", "did you mean 'several-roots'?"),
     ("select = ['M']", "no rule has the code 'M'"),
     ("select = ['']", "no rule has the code ''"),
     ("select = ['E501']", "no rule has the code 'E501'"),
@@ -456,9 +456,24 @@ def test_wrong_options_are_one_line(given: dict[str, Any], words: str) -> None:
 
 
 def test_every_code_and_every_beginning_is_one() -> None:
-    check_lint_codes([code[:size] for code in RULES for size in (2, 3, 4, 5)], "here")
+    beginnings = tuple(code[:size] for code in RULES for size in (2, 3, 4, 5))
+    assert find_lint_codes(beginnings, "here") == beginnings
     with pytest.raises(UsageError, match="here: no rule has the code 'MB50x'"):
-        check_lint_codes(["MB5", "MB50x"], "here")
+        find_lint_codes(["MB5", "MB50x"], "here")
+
+
+def test_the_name_of_a_rule_stands_for_its_code(project: Path) -> None:
+    it = read(
+        project,
+        "select = ['several-roots', 'MB2']\nignore = ['undeclared-link']\n"
+        "levels = {several-roots = 'note'}\nper-file-ignores = {'a.urdf' = ['undeclared-link']}",
+    )
+    assert it.settings.select == ("MB501", "MB2") and it.settings.ignore == ("MB202",)
+    assert it.settings.levels == {"MB501": "note"}
+    assert {codes for _, codes in it.settings.per_file} == {("MB202",)}
+    it = with_options(Configured(), select=("undeclared-link",), ignore=("several-roots", "MB3"))
+    assert it.settings.select == ("MB202",) and it.settings.ignore == ("MB501", "MB3")
+    assert find_lint_codes([*(rule.name for rule in RULES.values())], "here") == tuple(RULES)
 
 
 # The page.

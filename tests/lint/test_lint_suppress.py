@@ -187,7 +187,11 @@ GRAMMAR: list[tuple[str, str | None]] = [
     ("urdf-lint: ignore MB9999", "no rule has the code 'MB9999'"),
     ("urdf-lint: ignore mb501", "no rule has the code 'mb501' (did you mean MB501?)"),
     ("urdf-lint: ignore MB5", "'MB5' is not a whole code (write whole codes)"),
-    ("urdf-lint: ignore several-roots", "'several-roots' is not a code"),
+    (
+        "urdf-lint: ignore several-roots",
+        "'several-roots' is a rule's name, not its code (write MB501)",
+    ),
+    ("urdf-lint: ignore several-rots", "'several-rots' is not a code"),
     ("urdf-lint: ignore MB501-MB503", "'MB501-MB503' is not a code"),
     ("urdf-lint: ignore MB502:MB501", "'MB502:MB501' is not a code"),
     ("urdf-lint: ignore because I say so", "'because' is not a code (put a dash before a reason"),

@@ -65,6 +65,8 @@ def test_the_hint() -> None:
         ("frames_per_robot", ("frames-per-robot",), "did you mean 'frames-per-robot'?"),
         ("p", ("postfix", "prefix"), ""),
         ("pos", ("postfix", "pose"), "did you mean 'pose'?"),
+        ("tf", ("tf-a", "tf_b", "tfx"), "did you mean one of tf-a, tf_b?"),
+        ("", ("_a", "_b"), ""),
         ("zzz", ("postfix", "prefix"), ""),
     ],
 )

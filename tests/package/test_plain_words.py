@@ -112,7 +112,7 @@ def test_the_overview_has_no_private_term() -> None:
 
 EVERY_OPTION = {name for it in (*COMMANDS.values(), *PROGRAMS) for name in make_parser(it).known()}
 # Some commands have these; in the others they are taken for something else.
-OF_SOME = {"--undo", "--prefix", "--namespace", "--plan", "-n", "--count"}
+OF_SOME = {"--undo", "--prefix", "--namespace", "--plan", "-n", "--count", "--urdf", "--pose"}
 
 
 def test_other_words_lead_to_what_there_is() -> None:

@@ -31,22 +31,34 @@ def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
 
 
-def check_codes(codes: Iterable[str], where: str, rules: Mapping[str, Rule]) -> None:
-    """Raise UsageError for what is neither a rule's code nor the beginning of one."""
-    known = known_beginnings(rules)
-    for code in codes:
-        if code not in known:
-            raise UsageError(f"{where}: {no_rule(code, rules)}")
+def find_codes(words: Iterable[str], where: str, rules: Mapping[str, Rule]) -> tuple[str, ...]:
+    """Return the codes, and beginnings of codes, that the words are or name.
+
+    Raise UsageError for a word that is no code, no beginning of one and no rule's name.
+    """
+    known = {**{it: it for it in known_beginnings(rules)}, **names_to_codes(rules)}
+    unknown = next((it for it in words if it not in known), None)
+    if unknown is not None:
+        raise UsageError(f"{where}: {no_rule(unknown, rules)}")
+    return tuple(known[it] for it in words)
+
+
+def names_to_codes(rules: Mapping[str, Rule]) -> dict[str, str]:
+    """Return the code of each rule by the rule's name."""
+    return {it.name: code for code, it in rules.items()}
 
 
 def _near(word: str, rules: Mapping[str, Rule]) -> str:
-    """The code of a rule's name, the longest code that the word begins with, or what is like it."""
-    named = next((code for code, it in rules.items() if it.name == word), "")
+    """Return the longest code that the word begins with, or the code or name most like it."""
     known = known_beginnings(rules)
     begun = (word[:size].upper() for size in range(len(word), 2, -1))
-    found = named or next((it for it in begun if it in known), "")
-    names = [it.name for it in rules.values()]
-    return found or nearest(word.upper(), sorted(known)) or nearest(word, names)
+    found = next((it for it in begun if it in known), "")
+    return found or nearest(word.upper(), sorted(known)) or near_name(word, rules)
+
+
+def near_name(word: str, rules: Mapping[str, Rule]) -> str:
+    """Return the rule's name that is most like the word; "" if none is."""
+    return nearest(word, [it.name for it in rules.values()])
 
 
 def explained(rule: Rule) -> str:

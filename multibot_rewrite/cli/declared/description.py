@@ -40,7 +40,7 @@ POSTFIX = Command(
     "urdf-postfix",
     "rewrite",
     "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
-    "Rewrite a robot description for one robot or many, and prove nothing was missed.",
+    "Put a robot's name into all names that robots must not share, and verify it.",
     (
         Example("urdf-postfix rover.urdf robot1", "to standard output"),
         Example("urdf-postfix rover.urdf robot1 -o robot1.urdf"),
@@ -54,9 +54,7 @@ POSTFIX = Command(
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
         Example("urdf-postfix nav2_params.yaml robot1 --urdf rover.urdf", "or RViz, MoveIt"),
-        Example(
-            "urdf-postfix robot1.urdf robot1 --undo", "undo it, with the options it was made with"
-        ),
+        Example("urdf-postfix robot1.urdf robot1 --undo", "undo it, with the same options"),
         Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
     ),
@@ -67,7 +65,7 @@ POSTFIX = Command(
                 argument(
                     "input",
                     "INPUT",
-                    "URDF, SDF model, SRDF, xacro of one, a file beside one (with --urdf), or -",
+                    "URDF, SDF, SRDF or xacro; a related file (with --urdf); or - for standard input",
                     "?",
                 ),
                 argument(
@@ -93,8 +91,9 @@ POSTFIX = Command(
                     "--world-systems",
                     "HOW",
                     WORLD_SYSTEMS,
-                    "systems of the whole world, such as Sensors; keep (default for one robot), or"
-                    " leave them to the world, which has to load each once (for several)",
+                    "Gazebo systems of the whole world, such as Sensors: keep them (default for one"
+                    " robot); or leave them out, so that the world loads each once (default for"
+                    " several)",
                 ),
                 switch("--diff", about="print a unified diff instead of the result"),
                 form(POSTFIX_FORMS, "the result, or every change for every robot as JSON"),
@@ -103,13 +102,16 @@ POSTFIX = Command(
         OptionGroup(
             "other jobs",
             (
-                switch("--undo", about="take a rewrite back; give the options it was made with"),
+                switch(
+                    "--undo",
+                    about="remove the robot's name again; give the options that put it there",
+                ),
                 path_option(
                     "--xacro",
                     "with --undo: the xacro whose arguments (NAME:=VALUE) put the robot's name"
                     " into names; these stay",
                 ),
-                switch("--force", about="rewrite although it was rewritten for this robot"),
+                switch("--force", about="rewrite again a file that has this robot's name"),
                 value(
                     "--why",
                     metavar="FILE:LINE",
@@ -132,7 +134,7 @@ LINT = Command(
     "urdf-lint",
     "lint",
     "%(prog)s PATH... [NAME:=VALUE...] [options]",
-    "Find what is wrong with robot descriptions, alone and among other robots.",
+    "Find faults of robot descriptions, and what several robots would share.",
     (
         Example("urdf-lint urdf/", "descriptions, SRDF, parameters, RViz, MoveIt"),
         Example("urdf-lint rover.urdf --select MB2,MB5", "references and structure only"),
@@ -147,14 +149,21 @@ LINT = Command(
         OptionGroup(
             "input",
             (
-                argument("words", "PATH", "files, folders, or -; NAME:=VALUE is for xacro", "*"),
+                argument(
+                    "words",
+                    "PATH",
+                    "files, folders, or - for standard input; NAME:=VALUE is for xacro",
+                    "*",
+                ),
                 value(
                     "--config",
                     metavar="FILE",
                     about="urdf-lint.toml or pyproject.toml; default: the nearest one above",
                 ),
                 value(
-                    "--changed-since", metavar="REV", about="only files that git shows as changed"
+                    "--changed-since",
+                    metavar="REV",
+                    about="only files that changed since a git revision",
                 ),
                 EVERYTHING,
                 ROOTS._replace(keywords={**ROOTS.keywords, "default": None}),
@@ -176,9 +185,9 @@ LINT = Command(
             "checks",
             (
                 ROBOTS,
-                several("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
+                several("--target", "A,B", "also check names for these formats: usd, mjcf"),
                 value("--baseline", metavar="FILE", about="report only findings not in FILE"),
-                path_option("--write-baseline", "write today's findings, for --baseline"),
+                path_option("--write-baseline", "write the current findings, for --baseline"),
             ),
         ),
         NAMING,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
     COUNT,
@@ -82,15 +83,17 @@ A fleet file, as multibot init writes it; only robots is required (docs/fleet-fi
     - {name: robot1, pose: {x: 0.0, y: 0.0}}
     - {name: robot2, pose: {x: 0.0, y: 2.0}}
 
-A build makes them for every robot, of RViz configs one for all robots where it can. Then\
- ros2 launch out/fleet.launch.py starts the robots, and multibot check out/plan.yaml tells\
- whether they run as planned."""
+A build writes these files for every robot. It writes one RViz config for all robots if their\
+ frames differ. Then ros2 launch out/fleet.launch.py starts the robots, and multibot check\
+ out/plan.yaml checks whether they run as planned."""
 _FLEET = Option(
     ("fleet",),
     "the fleet file; default: fleet.yaml",
     {"metavar": "FLEET", "nargs": "?", "default": "fleet.yaml"},
 )
-_FIRST = "the first robots of the file, or more like the last one; default: as the file has them"
+_FIRST = (
+    "number of robots: the first ones of the file, or more like the last one; default: all of them"
+)
 _TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
 _BESIDE = (
     " Findings go to standard error; with a --format other than text they go to standard output, and"
@@ -100,10 +103,10 @@ INIT = Command(
     "init",
     "init",
     "%(prog)s [PATH...] [-n COUNT] [-o FLEET] [options]",
-    "Write a first fleet file, of descriptions or whole packages.",
+    "Write a first fleet file from robot descriptions or packages.",
     (
         Example("multibot init rover.urdf", "two robots of one description"),
-        Example("multibot init -n 3 my_robot_ws/src", "the robot and all files found there"),
+        Example("multibot init -n 3 my_robot_ws/src", "search packages; three robots"),
         Example("multibot init arm.urdf.xacro rover.urdf --yes", "no questions"),
         Example("multibot init ur.urdf.xacro name:=ur ur_type:=ur5e", "arguments of the xacro"),
     ),
@@ -122,13 +125,21 @@ INIT = Command(
             ),
         ),
         OptionGroup(
-            "answers, which are asked for on a terminal where they are not given",
+            "answers, asked for on a terminal if not given",
             (
-                COUNT._replace(help="robots of each description (default: 2)"),
+                COUNT._replace(help="number of robots of each description (default: 2)"),
                 ROBOTS,
-                choice("--layout", "NAME", LAYOUT_NAMES, "default: what the files are made for"),
                 choice(
-                    "--simulator", "NAME", ("none", "gazebo"), "default: what the plugins are for"
+                    "--layout",
+                    "NAME",
+                    LAYOUT_NAMES,
+                    f"{', '.join(it.name for it in LAYOUTS)}; default: what the files fit",
+                ),
+                choice(
+                    "--simulator",
+                    "NAME",
+                    ("none", "gazebo"),
+                    "none or gazebo; default: the simulator of the plugins",
                 ),
                 DISTRO,
                 switch("-y", "--yes", about="ask nothing, take the defaults"),
@@ -141,18 +152,18 @@ INIT = Command(
         GENERAL,
     ),
     "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use, unreadable input, or "
-    "several robots and nothing that says which is meant",
-    more="Every key comes with its reason. The fleet is built once in memory; where a layout does not"
-    " work, the first one that does is taken.",
+    "no way to tell which of several robots is meant",
+    more="The fleet file gives a reason for each key. Each choice is tried with a build in memory: if"
+    " a layout does not work, the first one that works is taken.",
 )
 BUILD = Command(
     "build",
     "build",
     "%(prog)s [FLEET] [-o FOLDER] [options]",
-    "Make everything a fleet needs from its fleet file.",
+    "Write all files that the robots of a fleet file need.",
     (
-        Example("multibot build fleet.yaml", "everything, into out/, one folder a robot"),
-        Example("multibot build fleet.yaml --check", "in CI: what is stale?"),
+        Example("multibot build fleet.yaml", "into out/, with a folder for each robot"),
+        Example("multibot build fleet.yaml --check", "for CI: report outdated files"),
         Example("multibot build --undo", "remove what a build wrote into out/"),
     ),
     (
@@ -163,14 +174,14 @@ BUILD = Command(
                 "--undo",
                 about="remove the files that the last build wrote; those that were edited need --force",
             ),
-            switch("--check", about="list what is stale, write nothing"),
+            switch("--check", about="list files that are out of date, write nothing"),
             switch("--force", about="overwrite files that no build made"),
         ),
         FINDINGS,
         GENERAL,
     ),
-    "0 done; 1 findings at the level of --fail-on, nothing was written, or with --check something is"
-    " stale; 2 wrong use or unreadable input",
+    "0 done; 1 findings at the level of --fail-on, nothing was written, or with --check a file is"
+    " out of date; 2 wrong use or unreadable input",
     more=_FLEET_TEXT,
     fail_on=ERROR,
 )
@@ -178,10 +189,10 @@ PLAN = Command(
     "plan",
     "plan",
     "%(prog)s INPUT [ROBOT...] [NAME:=VALUE...] [options]",
-    "Write the ROS graph that a fleet should have, or its rules.",
+    "Write the ROS graph that a fleet should have, or remap rules.",
     (
         Example("multibot plan fleet.yaml -o plan.yaml", "for multibot check"),
-        Example("multibot plan fleet.yaml --form table | grep amcl", "the rules of a node"),
+        Example("multibot plan fleet.yaml --form table | grep amcl", "the remap rules of a node"),
         Example("multibot plan rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
         Example("multibot plan fleet.yaml --form sros2 -o policy.xml", "docs/security.md"),
         Example("multibot plan my_bringup two.launch.py -o plan.yaml", "what a launch file starts"),
@@ -207,7 +218,7 @@ PLAN = Command(
     ),
     _TABLE_CODES,
     more=_FLEET_FILE
-    + " A launch file is read as ros2 launch takes it, and nothing is started."
+    + " A launch file is read with its arguments, as ros2 launch does; nothing is started."
     + _BESIDE,
     fail_on=ERROR,
 )

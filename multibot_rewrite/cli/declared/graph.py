@@ -61,7 +61,7 @@ CHECK = Command(
     "check",
     "check",
     "%(prog)s [PLAN] [options]",
-    "Is the running system as planned? No plan: what is wrong?",
+    "Compare the running system with a plan, or find common faults.",
     (
         Example("multibot check", "what is wrong with the robots that run now?"),
         Example("multibot check plan.yaml", "are they as planned?"),
@@ -99,7 +99,7 @@ CHECK = Command(
         GENERAL,
     ),
     f"{LIVE_CODES.replace('as planned', 'as planned, or nothing wrong seen')}. With --watch it is the"
-    " worst that was seen; what was missing before everything was there once does not count",
+    " worst of the run; what is missing during startup does not count",
     fail_on=ERROR,
     findings_first=True,
 )
@@ -107,11 +107,11 @@ CHECK_LAUNCH = Command(
     "check-launch",
     "check_launch",
     "%(prog)s [PACKAGE] FILE [NAME:=VALUE...] [options]",
-    "Say what would be wrong with what a launch file starts.",
+    "Check what a launch file would start, without starting it.",
     (
         Example("multibot check-launch fleet.launch.py", "as ros2 launch takes it"),
         Example("multibot check-launch my_bringup two.launch.py sim:=false"),
-        Example("multibot check-launch two.launch.py --plan fleet.yaml", "is it what is planned?"),
+        Example("multibot check-launch two.launch.py --plan fleet.yaml", "compare with a plan"),
     ),
     (
         OptionGroup(

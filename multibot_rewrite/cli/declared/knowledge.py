@@ -51,8 +51,8 @@ INSPECT = Command(
                 ),
                 path_option(
                     "--suggest",
-                    "write a vocabulary file for what this description loads and nothing"
-                    " knows; NAME:=VALUE is for xacro",
+                    "write a file of plugin definitions, for the plugins of this description that"
+                    " are not known; NAME:=VALUE is for xacro",
                 ),
                 EVERYTHING,
                 VOCABULARY,
@@ -64,5 +64,5 @@ INSPECT = Command(
         GENERAL,
     ),
     "0 done; 2 wrong use, an unknown name, or nothing could be read",
-    more="A xacro is expanded once for each argument, with another word as its value.",
+    more="To find what an argument affects, the xacro is expanded again with another value for it.",
 )

@@ -32,7 +32,7 @@ NAMING = OptionGroup(
             "--affix",
             "SIDE",
             ("postfix", "prefix"),
-            "the robot's name goes behind names (postfix, the default) or in front (prefix)",
+            "put the robot's name after each name (postfix, the default) or before it (prefix)",
         ),
         choice(
             "--topics",
@@ -43,16 +43,16 @@ NAMING = OptionGroup(
         several(
             "--separator",
             "KIND=SEP",
-            "what stands between a name and the robot's; SEP alone is for all names of the"
-            " description, not for ROS nodes and topics; group=SEP renames the groups of an SRDF,"
-            f" too; defaults: {_SEPARATORS}",
+            "separator between a name and the robot's name; without KIND it is for all names of the"
+            " description, not for ROS nodes and topics; group=SEP also renames the groups of an"
+            f" SRDF; defaults: {_SEPARATORS}",
             [],
         ),
         several(
             "--shared",
             "FRAME,/TOPIC",
-            "frames, and topics with a slash in front, that all robots share; default:"
-            f" {','.join((*WORLD_FRAMES, *SHARED_TOPICS))}",
+            "frames, and topics (with a slash in front), that all robots share; default:"
+            f" {', '.join((*WORLD_FRAMES, *SHARED_TOPICS))}",
             [],
         ),
     ),
@@ -61,59 +61,74 @@ ROBOTS = several("--robots", "A,B", "names of robots", [])
 COUNT = value(
     *("-n", "--count"),
     metavar="COUNT",
-    about="as many robots: robot1, robot2 and so on; of a fleet file the first ones, or more like them",
+    about="number of robots, called robot1, robot2 and so on; of a fleet file the first ones, or more"
+    " like the last one",
     type=values.count,
 )
 VOCABULARY = several(
-    "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
+    "--vocabulary",
+    "FILE",
+    "file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)",
+    [],
 )
 EVERYTHING = switch(
     "--no-default-excludes",
-    about="in folders, read build/, install/, log/ and what has a COLCON_IGNORE or AMENT_IGNORE or is"
-    " ignored by git, too",
+    about="in folders, also read build/, install/, log/, folders with COLCON_IGNORE or AMENT_IGNORE,"
+    " and files that git ignores",
 )
-URDF = path_option("--urdf", "the URDF of an SRDF or of another file")
+URDF = path_option("--urdf", "the URDF that an SRDF or another related file is for")
 DISTRO = choice(
     "--distro",
     "NAME",
     RELEASES,
-    f"the ROS 2 release that the robots run: {', '.join(RELEASES)}; default: the fleet file's or"
-    f" configuration's, else {VARIABLE}, else {NEWEST_LTS}",
+    f"the ROS 2 release that the robots run: {', '.join(RELEASES)}; default: that of the fleet file"
+    f" or configuration, then {VARIABLE}, then {NEWEST_LTS}",
 )
 TRUST = switch(
     "--trust",
-    about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
+    about="run xacro files without the sandbox; in it they can only evaluate expressions and read files"
+    " of their own package or repository (SECURITY.md)",
 )
 KNOWN_NODES = (
     several(
         "--nodes",
         "PATH",
-        "your own nodes and stacks, a YAML file; NoDL files or folders of them, besides those of"
-        " installed packages (none: use no NoDL)",
+        "YAML file with your own nodes and stacks; or NoDL files, or folders of them, in addition to"
+        " those of installed packages (none: use no NoDL)",
         [],
     ),
 )
 ROOTS = several(
-    *("--roots", "A,B", "folders to look for packages in, beside those that are installed", []),
+    *("--roots", "A,B", "folders to search for packages, in addition to the installed ones", []),
     read=values.folders,
 )
 FINDINGS = OptionGroup(
     "findings",
     (
-        several("--select", "CODES", "only these codes, or codes that begin so: MB2,MG102", []),
-        several("--ignore", "CODES", "not these; the longer of two that match wins", []),
+        several(
+            "--select",
+            "CODES",
+            "report only these rules: codes, beginnings of codes, or names; for example MB2,MG102",
+            [],
+        ),
+        several(
+            "--ignore",
+            "CODES",
+            "do not report these; if --select has the rule, too, the longer entry wins",
+            [],
+        ),
         choice(
             "--fail-on",
             "LEVEL",
             LEVELS,
-            "the lowest level that makes the exit code 1: error (default; urdf-lint: warning),"
-            " warning (what is not proved fails) or note",
+            "exit with 1 if a finding has this level or a worse one: error (default; urdf-lint:"
+            " warning), warning (also if something could not be verified) or note",
         ),
         choice(
             "--format",
             "FORMAT",
             tuple(FORMATS),
-            f"how findings are written: {', '.join(FORMATS)}; default: text",
+            f"output format of findings: {', '.join(FORMATS)}; default: text",
             default="text",
         ),
     ),
@@ -121,11 +136,11 @@ FINDINGS = OptionGroup(
 GENERAL = OptionGroup(
     "general",
     (
-        switch("-q", "--quiet", about="findings and errors only: no summary, no notes"),
+        switch("-q", "--quiet", about="print errors and warnings only: no notes, no summary"),
         switch(
             "-v",
             "--verbose",
-            about="each robot's findings by themselves, the files written, the time it took",
+            about="list the findings of each robot, the files written and the time taken",
         ),
         choice(
             "--color",
@@ -139,11 +154,16 @@ GENERAL = OptionGroup(
 LIVE = OptionGroup(
     "live graph",
     (
-        value("--timeout", metavar="S", about="look S seconds (default: 15)", type=values.seconds),
+        value(
+            "--timeout",
+            metavar="S",
+            about="watch the graph for up to S seconds (default: 15)",
+            type=values.seconds,
+        ),
         value(
             "--domain",
             metavar="N",
-            about=f"instead of ROS_DOMAIN_ID, 0 to {values.MAX_DOMAIN}",
+            about=f"ROS domain ID, instead of ROS_DOMAIN_ID: 0 to {values.MAX_DOMAIN}",
             type=values.domain,
         ),
     ),
@@ -151,9 +171,9 @@ LIVE = OptionGroup(
 # Where a graph comes from; read by ``cli/live.py``.
 FROM = Option(
     ("--from",),
-    "read the graph there, without ROS: what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML"
-    " (again for each machine that was looked from); a recording of rosbag2 (a folder, .mcap or .db3);"
-    " a Zenoh router (tcp/localhost:7447, or a session configuration .json5)",
+    "read the graph from there, without ROS: a file of multibot snapshot, or a rosgraph_msgs/Graph in"
+    " YAML (repeat the option for snapshots from several machines); a recording of rosbag2 (a folder,"
+    " .mcap or .db3); a Zenoh router (tcp/localhost:7447, or a session configuration .json5)",
     {
         "metavar": "SOURCE",
         "dest": "sources",
@@ -174,7 +194,7 @@ LIVE_CODES = (
 )
 PICTURES = OptionGroup(
     "report",
-    (path_option("--report", "write a page to look at, one HTML file"),),
+    (path_option("--report", "write a report, one HTML file"),),
 )
 
 

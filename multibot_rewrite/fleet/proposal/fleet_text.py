@@ -137,7 +137,7 @@ def _of_member(
         return os.path.relpath(path, folder)
 
     looked, beside = member.looked, member.companions
-    yield "description", (here(looked.path), (f"It has {looked.links} links",))
+    yield "description", (here(looked.path), (f"The description has {looked.links} links",))
     if looked.model:
         yield "simulated", (here(looked.model), ("The same robot as the simulator gets it",))
     if looked.arguments:
@@ -152,7 +152,7 @@ def _of_member(
         kind: here(its[0]) if kind == "rviz" else [here(path) for path in its]
         for kind, its in beside.files.items()
     }
-    whys = ("Files written for one robot; each robot gets its own of them",)
+    whys = ("Files for one robot; the build writes one of each for every robot",)
     if launched:
         files["params"] = [*files.get("params", ()), dict(launched)]
         whys = (*whys, "{NODE: {PARAMETER: value}} is what launch files give a node")

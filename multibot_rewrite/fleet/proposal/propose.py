@@ -99,7 +99,7 @@ def affix_of(layout: str) -> Choice | None:
     return (
         None
         if layout == PER_ROBOT
-        else Choice("prefix", "frames are called robot1/base_link, as ROS users write it")
+        else Choice("prefix", "frames are called robot1/base_link, the usual form in ROS")
     )
 
 

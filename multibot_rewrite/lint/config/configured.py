@@ -24,8 +24,8 @@ from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
     Given,
-    check_lint_codes,
     checked_robots,
+    find_lint_codes,
     targets,
 )
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings, matches
@@ -158,7 +158,8 @@ def with_options(it: Configured, **given: Any) -> Configured:
     if "fail_on" in options:
         options["fail_on"] = READERS["fail-on"](Given("--fail-on", "", options["fail_on"]))
     for name in ("select", "ignore"):
-        check_lint_codes(options.get(name, ()), f"--{name}")
+        if name in options:
+            options[name] = find_lint_codes(options[name], f"--{name}")
     own = {
         name: options.pop(name) for name in ("exclude", "baseline", "fail_on") if name in options
     }

@@ -12,6 +12,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 
+from multibot_rewrite.base.findings.codes import names_to_codes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
 from multibot_rewrite.base.nearest import nearest
@@ -178,6 +179,8 @@ def _fault(text: str, start: int) -> DirectiveFault | None:
         return DirectiveFault(start, f"no comment can suppress {text}", "remove it")
     if text in RULES:
         return None
+    if code := names_to_codes(RULES).get(text):
+        return DirectiveFault(start, f"{text!r} is a rule's name, not its code", f"write {code}")
     if not _LIKE_A_CODE.fullmatch(text):
         return DirectiveFault(
             start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason"

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.config import listed_files, type_name
-from multibot_rewrite.base.findings.codes import check_codes
+from multibot_rewrite.base.findings.codes import find_codes
 from multibot_rewrite.base.findings.finding import LEVELS
 from multibot_rewrite.base.findings.selection import OFF
 from multibot_rewrite.base.model import UsageError
@@ -52,23 +52,22 @@ def _table_of(given: Given) -> Iterator[tuple[str, Given]]:
 
 
 def _codes(given: Given) -> tuple[str, ...]:
-    codes = _texts(given)
-    check_lint_codes(codes, given.where)
-    return codes
+    return find_lint_codes(_texts(given), given.where)
 
 
-def check_lint_codes(codes: Sequence[str], where: str) -> None:
-    """As ``check_codes``, with the rules of the lint."""
-    if codes:
-        from multibot_rewrite.lint.registry import RULES  # most lints name none, and it imports all
+def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
+    """Return what ``find_codes`` returns for the rules of the lint."""
+    if not words:
+        return ()
+    from multibot_rewrite.lint.registry import RULES  # most lints name none, and it imports all
 
-        check_codes(codes, where, RULES)
+    return find_codes(words, where, RULES)
 
 
 def _levels(given: Given) -> dict[str, str]:
     levels = {}
-    for code, it in _table_of(given):
-        check_lint_codes((code,), given.where)
+    for word, it in _table_of(given):
+        (code,) = find_lint_codes((word,), given.where)
         levels[code] = _one_of(it, (*LEVELS, OFF))
     return levels
 

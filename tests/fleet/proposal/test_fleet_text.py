@@ -62,7 +62,7 @@ TEXT = f"""\
 # The newest
 distro: jazzy
 
-# It has 2 links
+# The description has 2 links
 description: r.urdf.xacro
 
 # The same robot as the simulator gets it
@@ -83,7 +83,7 @@ srdf: r.srdf
 # moveit: there is r.srdf
 stack: [nav2, moveit]
 
-# Files written for one robot; each robot gets its own of them
+# Files for one robot; the build writes one of each for every robot
 # {{NODE: {{PARAMETER: value}}}} is what launch files give a node
 companions:
   params: [p.yaml, q.yaml, {{amcl: {{a: 1}}}}]
