@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -55,7 +55,7 @@ class RvizConfig(NamedTuple):
 @lru_cache(maxsize=1)
 def rviz_data() -> Mapping[str, Any]:
     """The data of ``rviz.yaml``."""
-    data: Mapping[str, Any] = load_yaml(own_text(__file__, "rviz.yaml"))
+    data: Mapping[str, Any] = load_own_yaml(__file__, "rviz.yaml")
     return data
 
 
