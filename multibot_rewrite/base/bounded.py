@@ -3,7 +3,8 @@
 
 The parsers themselves have none: PyYAML's in C ends the process where lists are nested deeply, an alias
 of aliases stands for more nodes than memory holds, Python refuses to convert very long numbers.
-Faults are the parsers' own exceptions, so that a reader reports them like any other.
+A fault in YAML is an InputError with its place, so that no reader forgets one of the kinds that PyYAML
+raises: an unknown tag, a list as a key, a date that is none. Faults of JSON are the parser's own.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from itertools import accumulate
 from math import radians
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import outside
 
 if TYPE_CHECKING:
@@ -31,6 +33,11 @@ MAX_DEPTH = 100
 # What aliases may stand for, together: MoveIt's files repeat some hundred values.
 MAX_REPEATED = 100_000
 MAX_DIGITS = 100
+# What to do about a text that is no YAML.
+CORRECT = "correct the YAML"
+# Where a text is from that is no file, such as an argument of a launch.
+A_VALUE = "the value"
+_SEVERAL = ("there is more than one document", "delete everything from the second --- on")
 # What YAML 1.1 takes for something else where no quotes are around it, however it is capitalized.
 QUOTED = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 # Where `<(xacro ...)` and standard input are.
@@ -81,12 +88,14 @@ def own_text(module: str, name: str) -> str:
     return read_text(os.path.join(os.path.dirname(module), name))
 
 
-def compose_yaml(text: str) -> yaml.Node | None:
-    """PyYAML's node of the one document; raises yaml.YAMLError."""
+def compose_yaml(text: str, file: str, remedy: str = CORRECT) -> yaml.Node | None:
+    """Return PyYAML's node of the one document; raises InputError with the place in ``file``."""
     import yaml
 
-    _check_bounds(text)
-    return yaml.compose(text, Loader=_loader())
+    node: yaml.Node | None = _within_bounds(
+        partial(yaml.compose, Loader=_loader()), text, file, remedy
+    )
+    return node
 
 
 def compose_own_yaml(text: str) -> yaml.Node | None:
@@ -97,12 +106,43 @@ def compose_own_yaml(text: str) -> yaml.Node | None:
     return yaml.compose(text, Loader=_plain_loader())
 
 
-def load_yaml(text: str) -> Any:
-    """The value of the one document; raises yaml.YAMLError, for values that are none as well."""
+def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
+    """Return the value of the one document; raises InputError with the place in ``file``, also for an
+    unknown tag and for a value that Python does not have."""
     import yaml
 
-    _check_bounds(text)
-    return yaml.load(text, Loader=_loader())
+    return _within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
+
+
+def load_own_yaml(module: str, name: str) -> Any:
+    """Return the value of a YAML file of this package; ``module`` is the ``__file__`` beside it."""
+    return load_yaml(own_text(module, name), name)
+
+
+def _within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
+    import yaml
+
+    try:
+        _check_bounds(text)
+        return parse(text)
+    except (yaml.YAMLError, UnicodeEncodeError) as error:
+        raise InputError(_yaml_fault(error, text, file, remedy)) from None
+
+
+def _yaml_fault(error: Exception, text: str, file: str, remedy: str) -> str:
+    """Return place, cause and remedy in one line."""
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    if mark is None:
+        return f"{file}: not valid YAML: {' '.join(str(error).split())}; {remedy}"
+    line, column = mark.line + 1, mark.column + 1
+    if line > text.count("\n") + 1:  # behind the end of a document that is not complete
+        line, column = text.count("\n") + 1, len(text) - text.rfind("\n")
+    problem = " ".join(str(error.problem or error.context).split())  # type: ignore[attr-defined]
+    if "expected a single document" in str(getattr(error, "context", "")):
+        problem, remedy = _SEVERAL
+    elif text[mark.index : mark.index + 1] == "\t":
+        problem, remedy = "a tab", "indent with spaces; YAML does not allow tabs"
+    return f"{file}:{line}:{column}: not valid YAML: {problem}; {remedy}"
 
 
 def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import COMMENT, without_comments
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import TEMPLATE, InputError
 from multibot_rewrite.base.record import NamedTuple
 
 PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
@@ -179,5 +179,6 @@ def refuse_templates(data: bytes, file: str) -> None:
     if found:
         line, words = data.count(b"\n", 0, found.start(1)) + 1, found[1].decode(errors="replace")
         raise InputError(
-            f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes"
+            f"{file}:{line}: a template, in which another program fills in {words}; lint what it makes",
+            TEMPLATE,
         )

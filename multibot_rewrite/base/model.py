@@ -96,8 +96,23 @@ class UsageError(MultibotError):
     """An option or a name is wrong; the message proposes a right one."""
 
 
+# Why an input cannot be read, where somebody decides by it (``InputError.cause``).
+UNREADABLE, TEMPLATE, FOR_ROS_1, FOR_OLD_GAZEBO = "unreadable", "template", "ros 1", "old gazebo"
+REFUSED, NOT_UTF8 = "refused", "not utf-8"
+XACRO_FAILED, NO_PACKAGE, NO_ARGUMENT = "xacro", "xacro: package", "xacro: argument"
+NOT_DEFINED = "xacro: name"
+
+
 class InputError(MultibotError):
-    """The input cannot be read as a robot description."""
+    """The input cannot be read; the message says where, why and what to do.
+
+    ``cause`` is one of the constants above, or empty where nobody asks. ``name`` is what is not
+    defined.
+    """
+
+    def __init__(self, message: str, cause: str = "", name: str = "") -> None:
+        super().__init__(message)
+        self.cause, self.name = cause, name
 
 
 class VocabularyError(MultibotError):

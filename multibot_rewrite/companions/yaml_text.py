@@ -55,28 +55,7 @@ def read_yaml(data: bytes, file: str) -> YamlText:
         raise InputError(f"{file}:{line}: it is not UTF-8; save it as UTF-8") from None
     bom = text[:1] if text.startswith("\ufeff") else ""
     text = text[len(bom) :]
-    try:
-        root = compose_yaml(text)
-    except yaml.MarkedYAMLError as error:
-        raise InputError(_broken(error, file, text)) from None
-    except yaml.YAMLError as error:
-        raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; correct it") from None
-    return YamlText(file, text, root, bom)
-
-
-def _broken(error: yaml.MarkedYAMLError, file: str, text: str) -> str:
-    mark = error.problem_mark or error.context_mark
-    place = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
-    problem = " ".join(str(error.problem or error.context).split())
-    hint = "correct the YAML"
-    if "expected a single document" in str(error.context):
-        problem, hint = (
-            "there is more than one document",
-            "delete everything from the second --- on",
-        )
-    elif mark and text[mark.index : mark.index + 1] == "\t":
-        problem, hint = "a tab", "indent with spaces; YAML does not allow tabs"
-    return f"{file}{place}: not YAML: {problem}; {hint}"
+    return YamlText(file, text, compose_yaml(text, file), bom)
 
 
 def anchors(document: YamlText) -> Iterator[tuple[int, str]]:

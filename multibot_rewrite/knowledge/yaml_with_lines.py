@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
-_LINE = "\n"
 Known = TypeVar("Known")
 Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
 
@@ -33,17 +32,11 @@ def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
 
     ``own`` says that it is of this package, so that it needs no bounds.
     """
-    import yaml  # slow to import; only stacks need it
-
     try:
-        node = compose_own_yaml(text) if own else compose_yaml(text)
+        node = compose_own_yaml(text) if own else compose_yaml(text, file)
         return YamlItem(f"{file}:1", None) if node is None else _item(node, f"{file}:1", file)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        # If a document ends too early, the error is after its last line.
-        place = f"{file}:{min(mark.line, text.count(_LINE)) + 1}" if mark else file
-        reason = getattr(error, "problem", None) or str(error).partition("\n")[0]
-        raise UsageError(f"{place}: not valid YAML: {reason}") from None
+    except InputError as error:
+        raise UsageError(str(error)) from None
 
 
 def _item(node: yaml.Node, where: str, file: str) -> YamlItem:

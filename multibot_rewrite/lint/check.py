@@ -64,7 +64,7 @@ def _linted(
                 return sorted(_beside(path, data, settings), key=by_place)
             _look(path, data, settings, wanted, found, sources)
     except InputError as error:
-        found.append(failure(path, str(error), settings))
+        found.append(failure(path, error, settings))
     except _TooLongError:
         found.append(too_long(path, settings.seconds))
     except VocabularyError:
@@ -86,7 +86,7 @@ def _look(
     collector is back, which would look through all of them."""
     for subject in read_subjects(path, data, settings):
         if isinstance(subject, Failed):
-            it = failure(path, subject.message, settings)
+            it = failure(path, subject.error, settings)
             found.append(it._replace(arguments=subject.arguments))
             continue
         found += lint_subject(subject, wanted)

@@ -11,7 +11,19 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import (
+    FOR_OLD_GAZEBO,
+    FOR_ROS_1,
+    NO_ARGUMENT,
+    NO_PACKAGE,
+    NOT_DEFINED,
+    NOT_UTF8,
+    REFUSED,
+    TEMPLATE,
+    UNREADABLE,
+    XACRO_FAILED,
+    InputError,
+)
 from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.description.sources.packages import is_for_ros_1, package_of
 from multibot_rewrite.description.sources.read import XACRO, read_file
@@ -22,38 +34,26 @@ from multibot_rewrite.rules.subject import Subject
 _PLACE = lazy_compile(
     r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?: (?P<text>.*)", re.DOTALL
 )
-_TEMPLATE = lazy_compile("a template, in which another program")
-# What a reader's message says -> the rule that reports it.
-_CODES = (
-    (lazy_compile("No such file|cannot be read|Is a directory|Permission denied"), "MB102"),
-    (lazy_compile("xacro failed(?:(?!xacro failed)[^:])*: package '[^']*' is not found"), "MB119"),
-    (
-        lazy_compile("xacro failed(?:(?!xacro failed)[^:])*: Undefined substitution argument"),
-        "MB145",
-    ),
-    (lazy_compile("xacro failed"), "MB103"),
-    (_TEMPLATE, "MB105"),
-)
+# Why a file cannot be read -> the rule that reports it.
+_CODES = {
+    UNREADABLE: "MB102", TEMPLATE: "MB105",
+    XACRO_FAILED: "MB103", NOT_DEFINED: "MB103", NO_PACKAGE: "MB119", NO_ARGUMENT: "MB145",
+}  # fmt: skip
 # CMake's configure_file, Jinja, Ruby and empy make files of such files, and of parts of files.
 _TEMPLATES = (".in", ".jinja", ".jinja2", ".j2", ".erb", ".em")
 _MADE = "a template, in which another program fills in what is missing; lint what it makes"
-# What another file may make: a macro or property of the file that includes this one, or what an
-# argument names.
-_REFUSED = lazy_compile("DOCTYPE and entities|the encoding is")
 _OF_GAZEBO = (".sdf", ".world")
-_LACKING = lazy_compile(
-    r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
-)
 
 
-def failure(path: str, message: str, settings: Settings) -> Finding:
-    """The finding for a file that cannot be read; ``message`` is that of its InputError."""
+def failure(path: str, error: InputError, settings: Settings) -> Finding:
+    """Return the finding for a file that cannot be read."""
     from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
 
-    code = next((code for said, code in _CODES if said.search(message)), "MB101")
-    if code == "MB101" and path.endswith(_TEMPLATES):
-        code, message = "MB105", f"{path}: {_MADE}"
-    level = level_of(settings, code, _level(code, path, message) or RULES[code].level)
+    message, cause = str(error), error.cause
+    if cause not in _CODES and path.endswith(_TEMPLATES):
+        message, cause = f"{path}: {_MADE}", TEMPLATE
+    code = _CODES.get(cause, "MB101")
+    level = level_of(settings, code, _level(path, cause, error.name) or RULES[code].level)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)
@@ -62,28 +62,22 @@ def failure(path: str, message: str, settings: Settings) -> Finding:
     return Finding(code, level, what or hint, hint if what else "", file, line, column)
 
 
-def _level(code: str, path: str, message: str) -> str:
-    """How bad a failure is that is no fault for certain; empty for that of its rule."""
-    if "ROS 1" in message:  # as it should be in a package of ROS 1; elsewhere it may be left over
+def _level(path: str, cause: str, name: str) -> str:
+    """Return how bad a failure is that is no fault for certain; empty for the level of its rule."""
+    if cause == FOR_ROS_1:  # as it should be in a package of ROS 1; elsewhere it may be left over
         return NOTE if is_for_ros_1(path) else WARNING
     # SDF of before 1.3 is converted by libsdformat; a template may be fine when it is filled in.
-    if "root element is <gazebo>" in message or _TEMPLATE.search(message):
+    if cause in (FOR_OLD_GAZEBO, TEMPLATE):
         return NOTE
-    if _REFUSED.search(message):  # here alone: xacro and urdfdom read some of these
+    if cause == REFUSED:  # here alone: xacro and urdfdom read some of these
         return WARNING
     # TinyXML-2 looks at no encoding, and Gazebo reads its files itself; launch files stop at others.
-    if "the text is not UTF-8" in message and path.endswith(_OF_GAZEBO):
+    if cause == NOT_UTF8 and path.endswith(_OF_GAZEBO):
         return WARNING
-    return _level_of_failed(path, message) if code == "MB103" else ""
-
-
-def _level_of_failed(path: str, message: str) -> str:
-    """How bad it is that xacro stops: a file may be a part of a robot, or not meant for xacro."""
-    found = _LACKING.search(message)
-    if found is None:
-        return "" if path.endswith(XACRO) else WARNING
-    name = found[1] or found[2]
-    return NOTE if name and _is_made_beside(path, name) else WARNING
+    if cause == NOT_DEFINED:  # a file may be a part of a robot
+        return NOTE if name and _is_made_beside(path, name) else WARNING
+    # It may not be meant for xacro.
+    return WARNING if cause == XACRO_FAILED and not path.endswith(XACRO) else ""
 
 
 def _is_made_beside(path: str, name: str) -> bool:

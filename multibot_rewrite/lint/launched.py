@@ -135,7 +135,7 @@ def _given(it: LaunchedNode) -> dict[str, object]:
     found: dict[str, object] = {}
     for text in (one.text for one in it.parameters if not one.file):
         if text.startswith(_FOR_ALL) and not _TEXT.search(text):
-            found |= load_yaml(text)[_FOR_ALL.rstrip(":")]["ros__parameters"]
+            found |= load_yaml(text, it.place.file)[_FOR_ALL.rstrip(":")]["ros__parameters"]
     return found
 
 

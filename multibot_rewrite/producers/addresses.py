@@ -9,7 +9,7 @@ from ipaddress import IPv4Address
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
@@ -86,5 +86,5 @@ def _known() -> Mapping[str, str]:
 
 @lru_cache
 def _data() -> Mapping[str, list[str]]:
-    data: Mapping[str, list[str]] = load_yaml(own_text(evidence.__file__, "devices.yaml"))
+    data: Mapping[str, list[str]] = load_own_yaml(evidence.__file__, "devices.yaml")
     return data

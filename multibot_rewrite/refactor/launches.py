@@ -13,8 +13,6 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from tempfile import TemporaryDirectory
 
-import yaml
-
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -193,7 +191,9 @@ def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
     name = os.path.basename(path)
     given = [it for node in graph.nodes for it in node.parameters]
     texts = [it.text for it in given if name == os.path.basename(it.source or it.file)]
-    return bool(texts) and all(load_yaml(it) == load_yaml(wanted.decode()) for it in texts)
+    return bool(texts) and all(
+        load_yaml(it, path) == load_yaml(wanted.decode(), path) for it in texts
+    )
 
 
 def _links(graph: LaunchGraph) -> list[str]:
@@ -210,8 +210,8 @@ def _links(graph: LaunchGraph) -> list[str]:
 def _descriptions(text: str) -> Iterator[str]:
     """The values of ``robot_description`` in a parameter file."""
     try:
-        todo = [load_yaml(text)] if _DESCRIPTION in text else []
-    except (yaml.YAMLError, ValueError):
+        todo = [load_yaml(text, "")] if _DESCRIPTION in text else []
+    except InputError:
         return
     for it in todo:  # grows
         for key, value in it.items() if isinstance(it, dict) else ():

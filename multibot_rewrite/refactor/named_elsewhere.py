@@ -12,8 +12,6 @@ from collections.abc import Collection, Iterator
 from contextlib import suppress
 from itertools import chain
 
-import yaml
-
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.left_out import source_folders
@@ -65,8 +63,8 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
 
 def _controllers(data: bytes) -> Iterator[str]:
     """The controllers that a parameter file gives its manager."""
-    with suppress(yaml.YAMLError, ValueError):
-        sections = load_yaml(data.decode())
+    with suppress(InputError, UnicodeDecodeError):
+        sections = load_yaml(data.decode(), "")
         manager = sections.get(MANAGER) if isinstance(sections, dict) else None
         given = manager.get("ros__parameters") if isinstance(manager, dict) else None
         for name, value in given.items() if isinstance(given, dict) else ():

@@ -15,7 +15,7 @@ from typing import Any
 from lxml.etree import _Element
 
 from multibot_rewrite import knowledge
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
@@ -56,7 +56,7 @@ class BridgeRow(NamedTuple):
 @lru_cache(maxsize=1)
 def bridge_data() -> Mapping[str, Any]:
     """Return the data of ``bridge.yaml``."""
-    data: Mapping[str, Any] = load_yaml(own_text(knowledge.__file__, "bridge.yaml"))
+    data: Mapping[str, Any] = load_own_yaml(knowledge.__file__, "bridge.yaml")
     return data
 
 

@@ -128,15 +128,8 @@ def from_json(data: bytes, file: str) -> System:
 
 def from_yaml(data: bytes, file: str) -> System:
     """Read what ``to_yaml`` wrote; raises InputError."""
-    import yaml
-
     try:
-        return from_value(load_yaml(data.decode("utf-8-sig")), file)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
-        reason = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise InputError(f"{place}: not valid YAML: {reason}; {REMEDY}") from None
+        return from_value(load_yaml(data.decode("utf-8-sig"), file, REMEDY), file)
     except UnicodeDecodeError:
         raise InputError(f"{file}: not valid YAML: it is not UTF-8; {REMEDY}") from None
 

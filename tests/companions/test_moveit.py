@@ -137,8 +137,8 @@ def test_where_the_builder_puts_a_file(file: str, text: str, above: str) -> None
         ("speed: fast\nheight: 1\n", "not a known kind of MoveIt file: it starts with speed"),
         ("{}\n", "it starts with nothing"),
         ("arm: {kinematics_solver: multibotTagSlot}\n", "reserved for this tool"),
-        ("joint_limits: {? |\n  j1\n : 1}\n", "not YAML"),
-        ("controller_list:\n  - joints: [*a]\n", "not YAML"),
+        ("joint_limits: {? |\n  j1\n : 1}\n", "not valid YAML"),
+        ("controller_list:\n  - joints: [*a]\n", "not valid YAML"),
     ],
 )
 def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:
@@ -437,7 +437,7 @@ def test_an_alias_that_needs_two_new_names_is_refused() -> None:
 
 
 def test_a_circle_of_aliases_is_refused() -> None:
-    with pytest.raises(InputError, match=r":2:15: not YAML: the alias is inside the value"):
+    with pytest.raises(InputError, match=r":2:15: not valid YAML: the alias is inside the value"):
         run("joint_limits: &a\n  j1: {again: *a}\n", context())
 
 

@@ -614,7 +614,7 @@ def test_what_is_no_name_stays(path: str, value: str) -> None:
     [
         ("Panels: []\n", "it has no 'Visualization Manager'"),
         ("", "it has no 'Visualization Manager'"),
-        ("[General]\nkey=1\n", "not YAML"),
+        ("[General]\nkey=1\n", "not valid YAML"),
         ("Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n", "a ROS 1 config"),
         (
             "Visualization Manager:\n  Displays: [{Class: rviz_default_plugins/Grid}]\n",

@@ -105,10 +105,11 @@ def test_parts_of_a_document() -> None:
     ("data", "said"),
     [
         (b"a: 1\n\xff", "a.yaml:2: it is not UTF-8; save it as UTF-8"),
-        (b"a: 1\n---\nb: 2\n", "a.yaml:2:1: not YAML: there is more than one document;"
+        (b"a: 1\n---\nb: 2\n", "a.yaml:2:1: not valid YAML: there is more than one document;"
          " delete everything from the second --- on"),
-        (b"a:\n\t- b\n", "a.yaml:2:1: not YAML: a tab; indent with spaces; YAML does not allow tabs"),
-        (b"a: [\n", "a.yaml:2:1: not YAML: "),
+        (b"a:\n\t- b\n", "a.yaml:2:1: not valid YAML: a tab; indent with spaces; YAML does not allow"
+         " tabs"),
+        (b"a: [\n", "a.yaml:2:1: not valid YAML: "),
     ],
 )  # fmt: skip
 def test_what_is_no_yaml_is_said_with_its_place(data: bytes, said: str) -> None:

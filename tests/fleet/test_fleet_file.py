@@ -217,7 +217,10 @@ BAD: dict[str, tuple[str, ...]] = {
         "1: unknown key 'shared'; did you mean one of shared_frames, shared_topics, shared_nodes?",
     ),
     "key-that-is-a-number": (f"1: 2\n{ONE}", "1: unknown key 1; known are include, layout"),
-    "key-that-is-a-list": (f"[1]: 2\n{ONE}", "1: found unhashable key; write plain keys"),
+    "key-that-is-a-list": (
+        f"[1]: 2\n{ONE}",
+        "1:1: not valid YAML: found unhashable key; write plain keys",
+    ),
     "two-of-a-name": (
         f"{ONE}  - {{name: a, description: rover.urdf}}\n",
         "3: robot 'a' is repeated",
@@ -263,14 +266,14 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: a, name: b, description: rover.urdf}\n",
         "2: the key 'name' is repeated",
     ),
-    "tab": ("robots:\n\t- {name: a}\n", "2:1: not YAML: a tab; indent with spaces"),
+    "tab": ("robots:\n\t- {name: a}\n", "2:1: not valid YAML: a tab; indent with spaces"),
     "anchor": (
         "robots:\n  - &x {name: a, description: rover.urdf}\n  - *x\n",
         "2: anchors and aliases are not allowed: &x; write the value out",
     ),
     "ring-of-aliases": (
         "robots: &a [*a]\n",
-        "1:13: not YAML: the alias is inside",
+        "1:13: not valid YAML: the alias is inside",
     ),
     "merge": (
         "x: &d {a: 1}\nrobots:\n  - {<<: *d, name: a}\n",
@@ -278,7 +281,7 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "python-tag": (
         "robots: !!python/object:os.system []\n",
-        "1: could not determine a constructor for the tag",
+        "1:9: not valid YAML: could not determine a constructor for the tag",
     ),
     "empty": ("", " the file is empty; write robots: [{name: robot1}, {name: robot2}]"),
     "only-comments": ("# later\n", " the file is empty; write robots:"),
@@ -352,14 +355,14 @@ BAD: dict[str, tuple[str, ...]] = {
     "companions-none": (f"{ONE}companions:\n", "3: companions: the value is missing"),
     "broken": (
         "robots: [\n",
-        "2:1: not YAML: did not find expected node content; correct the YAML",
+        "2:1: not valid YAML: did not find expected node content; correct the YAML",
     ),
-    "two-documents": (f"{ONE}---\n{ONE}", "3:1: not YAML: there is more than one document"),
+    "two-documents": (f"{ONE}---\n{ONE}", "3:1: not valid YAML: there is more than one document"),
     "too-deep": (
         f"robots: {'[' * 600}{']' * 600}\n",
-        "1:108: not YAML: it is nested deeper",
+        "1:108: not valid YAML: it is nested deeper",
     ),
-    "nul": ("robots:\n  - {name: a\0}\n", " not YAML: unacceptable character #x0000"),
+    "nul": ("robots:\n  - {name: a\0}\n", " not valid YAML: unacceptable character #x0000"),
     "params-of-rviz": (
         f"{ONE}companions: {{params: one_robot.rviz}}\n",
         "@one_robot.rviz:1: not a ROS 2 parameter file: it is an RViz config; list it under rviz",
@@ -371,7 +374,7 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "params-tab": (
         f"{ONE}companions: {{params: bad.yaml}}\n",
-        "@bad.yaml:2:1: not YAML: a tab; indent with spaces",
+        "@bad.yaml:2:1: not valid YAML: a tab; indent with spaces",
         "amcl:\n\tros__parameters: {a: 1}\n",
     ),
     "rviz-of-ros1": (

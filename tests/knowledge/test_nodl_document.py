@@ -142,7 +142,7 @@ def test_what_is_wrong_is_one_line_with_file_and_line(text: str) -> None:
     with pytest.raises(UsageError) as caught:
         parse(text, "my.nodl.yaml")
     message = str(caught.value)
-    assert message.startswith(f"my.nodl.yaml:{line}: ")
+    assert message.startswith(f"my.nodl.yaml:{line}:")
     assert word in message
     assert "\n" not in message
 

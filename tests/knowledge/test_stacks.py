@@ -244,8 +244,8 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        pytest.param("nodes: [", "mine.yaml:1: not valid YAML: ", id="broken"),
-        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: not valid YAML", id="two-documents"),
+        pytest.param("nodes: [", "mine.yaml:1:9: not valid YAML: ", id="broken"),
+        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2:1: not valid YAML", id="two-documents"),
         pytest.param("- a", "mine.yaml:1: the file is a list; write keys and values", id="list"),
         pytest.param(
             "\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'", id="key"
@@ -258,7 +258,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
         pytest.param(
             "nodes: &a {b: *a}",
-            "mine.yaml:1: not valid YAML: the alias is inside the",
+            "mine.yaml:1:15: not valid YAML: the alias is inside the",
             id="endless",
         ),
         pytest.param(

@@ -8,48 +8,106 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.model import (
+    FOR_OLD_GAZEBO,
+    FOR_ROS_1,
+    NO_ARGUMENT,
+    NO_PACKAGE,
+    NOT_DEFINED,
+    NOT_UTF8,
+    REFUSED,
+    TEMPLATE,
+    UNREADABLE,
+    XACRO_FAILED,
+    InputError,
+)
+from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.failures import breakdown, failure, lost, too_long
 from multibot_rewrite.rules.settings import Settings
 
 MADE = "a template, in which another program fills in what is missing"
-LACKS = "a.xacro:3: xacro failed: unknown macro name: xacro:arm; is it included?"
+LACKS = InputError(
+    "a.xacro:3: xacro failed: unknown macro name: xacro:arm; is it included?", NOT_DEFINED, "arm"
+)
 
 
 @pytest.mark.parametrize(
-    ("path", "message", "expected"),
+    ("path", "error", "expected"),
     [
-        ("a.urdf", "a.urdf: No such file or directory; look",
-         Finding("MB102", ERROR, "No such file or directory", "look", "a.urdf", 1, 1)),
-        ("a.urdf", "a.urdf: it cannot be read; x", ("MB102", ERROR)),
-        ("a.urdf", "a.urdf: Is a directory",
-         Finding("MB102", ERROR, "Is a directory", "", "a.urdf", 1, 1)),
-        ("a.urdf", "a.urdf: Permission denied", ("MB102", ERROR)),
-        ("a.xacro", "a.xacro: xacro failed at 2: package 'b' is not found; x", ("MB119", NOTE)),
-        ("a.xacro", "a.xacro:4: xacro failed: Undefined substitution argument c; x",
-         ("MB145", NOTE)),
-        ("a.xacro", "b.xacro:3:7: xacro failed: no; give it; one",
-         Finding("MB103", ERROR, "xacro failed: no; give it", "one", "b.xacro", 3, 7)),
-        ("a.urdf", "a.urdf: xacro failed: no", ("MB103", WARNING)),
+        (
+            "a.urdf",
+            InputError("a.urdf: No such file or directory; look", UNREADABLE),
+            Finding("MB102", ERROR, "No such file or directory", "look", "a.urdf", 1, 1),
+        ),
+        ("a.urdf", InputError("a.urdf: it cannot be read; x", UNREADABLE), ("MB102", ERROR)),
+        (
+            "a.urdf",
+            InputError("a.urdf: Is a directory", UNREADABLE),
+            Finding("MB102", ERROR, "Is a directory", "", "a.urdf", 1, 1),
+        ),
+        ("a.urdf", InputError("a.urdf: Permission denied", UNREADABLE), ("MB102", ERROR)),
+        (
+            "a.xacro",
+            InputError("a.xacro: xacro failed at 2: package 'b' is not found; x", NO_PACKAGE),
+            ("MB119", NOTE),
+        ),
+        (
+            "a.xacro",
+            InputError(
+                "a.xacro:4: xacro failed: Undefined substitution argument c; x", NO_ARGUMENT
+            ),
+            ("MB145", NOTE),
+        ),
+        (
+            "a.xacro",
+            InputError("b.xacro:3:7: xacro failed: no; give it; one", XACRO_FAILED),
+            Finding("MB103", ERROR, "xacro failed: no; give it", "one", "b.xacro", 3, 7),
+        ),
+        ("a.urdf", InputError("a.urdf: xacro failed: no", XACRO_FAILED), ("MB103", WARNING)),
         ("a.xacro", LACKS, ("MB103", WARNING)),
-        ("a.xacro", "a.xacro: xacro failed: name 'b' is not defined", ("MB103", WARNING)),
-        ("a.xacro", "a.xacro: xacro failed: has no key", ("MB103", WARNING)),
-        ("a.urdf", "a.urdf:2: a template, in which another program fills in {{ a }}; lint",
-         ("MB105", NOTE)),
-        ("a.urdf", "a.urdf (expanded):2:5: it is not well-formed; see",
-         Finding("MB101", ERROR, "it is not well-formed", "see", "a.urdf", 2, 5)),
-        ("a.urdf", "a.urdf: elements of ROS 1", ("MB101", WARNING)),
-        ("a.sdf", "a.sdf: the root element is <gazebo>", ("MB101", NOTE)),
-        ("a.urdf", "a.urdf: DOCTYPE and entities are refused", ("MB101", WARNING)),
-        ("a.urdf", "a.urdf: the encoding is latin1", ("MB101", WARNING)),
-        ("a.sdf", "a.sdf: the text is not UTF-8", ("MB101", WARNING)),
-        ("a.world", "a.world: the text is not UTF-8", ("MB101", WARNING)),
-        ("a.urdf", "a.urdf: the text is not UTF-8", ("MB101", ERROR)),
+        (
+            "a.xacro",
+            InputError("a.xacro: xacro failed: name 'b' is not defined", NOT_DEFINED, "b"),
+            ("MB103", WARNING),
+        ),
+        (
+            "a.xacro",
+            InputError("a.xacro: xacro failed: has no key", NOT_DEFINED),
+            ("MB103", WARNING),
+        ),
+        (
+            "a.urdf",
+            InputError(
+                "a.urdf:2: a template, in which another program fills in {{ a }}; lint", TEMPLATE
+            ),
+            ("MB105", NOTE),
+        ),
+        (
+            "a.urdf",
+            InputError("a.urdf (expanded):2:5: it is not well-formed; see"),
+            Finding("MB101", ERROR, "it is not well-formed", "see", "a.urdf", 2, 5),
+        ),
+        ("a.urdf", InputError("a.urdf: elements of ROS 1", FOR_ROS_1), ("MB101", WARNING)),
+        (
+            "a.sdf",
+            InputError("a.sdf: the root element is <gazebo>", FOR_OLD_GAZEBO),
+            ("MB101", NOTE),
+        ),
+        (
+            "a.urdf",
+            InputError("a.urdf: DOCTYPE and entities are refused", REFUSED),
+            ("MB101", WARNING),
+        ),
+        ("a.urdf", InputError("a.urdf: the encoding is latin1", REFUSED), ("MB101", WARNING)),
+        ("a.sdf", InputError("a.sdf: the text is not UTF-8", NOT_UTF8), ("MB101", WARNING)),
+        ("a.world", InputError("a.world: the text is not UTF-8", NOT_UTF8), ("MB101", WARNING)),
+        ("a.urdf", InputError("a.urdf: the text is not UTF-8", NOT_UTF8), ("MB101", ERROR)),
     ],
-)  # fmt: skip
+)
 def test_the_finding_of_a_file_that_cannot_be_read(
-    path: str, message: str, expected: Finding | tuple[str, str]
+    path: str, error: InputError, expected: Finding | tuple[str, str]
 ) -> None:
-    found = failure(path, message, Settings())
+    found = failure(path, error, Settings())
     assert (found if isinstance(expected, Finding) else (found.code, found.level)) == expected
 
 
@@ -62,7 +120,7 @@ def test_a_file_that_another_program_fills_in_is_told_by_its_name(
 ) -> None:
     """CMake, Jinja, Ruby and empy."""
     path = f"a.urdf.{ending}"
-    found = failure(path, f"{path}:2: it is not well-formed; see", Settings())
+    found = failure(path, InputError(f"{path}:2: it is not well-formed; see"), Settings())
     hint = "lint what it makes"
     wrong = Finding("MB101", ERROR, "it is not well-formed", "see", path, 2, 1)
     assert found == (Finding("MB105", NOTE, MADE, hint, path, 1, 1) if is_template else wrong)
@@ -108,3 +166,42 @@ def test_a_lint_that_stops_says_why() -> None:
     said = "it took more than 1.5 s, the rest was not checked"
     assert too_long("a.xacro", 1.5) == stopped("MB004", said, endless)
     assert too_long("a.urdf", 1.5) == stopped("MB004", said, "", "a.urdf")
+
+
+XACRO = '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "expected"),
+    [
+        ("a.xacro", XACRO.format("<xacro:include filename='no.xacro'/>"), ("MB102", ERROR)),
+        ("a.xacro", XACRO.format("<xacro:arm/>"), ("MB103", WARNING)),
+        ("a.xacro", XACRO.format("<link name='${b}'/>"), ("MB103", WARNING)),
+        ("a.xacro", XACRO.format("<link name='${1/0}'/>"), ("MB103", ERROR)),
+        ("a.xacro", XACRO.format("<link name='$(arg c)'/>"), ("MB145", NOTE)),
+        ("a.xacro", XACRO.format("<link name='$(find own_thing)'/>"), ("MB119", NOTE)),
+        ("a.urdf", '<robot name="{{ a }}"/>', ("MB105", NOTE)),
+        ("a.sdf", '<gazebo version="1.0"/>', ("MB101", NOTE)),
+        ("a.urdf", '<!DOCTYPE a><robot name="a"/>', ("MB101", WARNING)),
+        (
+            "a.urdf",
+            '<?xml version="1.0" encoding="latin1"?><robot name="\xe9"/>',
+            ("MB101", WARNING),
+        ),
+        (
+            "a.rviz",
+            "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n",
+            ("MB101", WARNING),
+        ),
+        ("a.yaml", "a: &b {ros__parameters: {c: 1}}\n", ("MB101", ERROR)),
+        ("a.urdf", "<robot", ("MB101", ERROR)),
+    ],
+)
+def test_a_reader_gives_the_cause_that_decides(
+    path: str, text: str, expected: tuple[str, str], tmp_path: Path
+) -> None:
+    """The levels are those of xacro and Gazebo: what they read all the same is no error."""
+    found = lint_data(str(tmp_path / path), text.encode("latin1"), Settings())
+    assert [(it.code, it.level) for it in found if it.code[:4] in ("MB10", "MB11", "MB14")][:1] == [
+        expected
+    ]

@@ -6,8 +6,8 @@ from __future__ import annotations
 import ast
 import json
 import os
+import re
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from threading import Thread
 
@@ -100,10 +100,10 @@ def test_the_last_value_within_a_bound_is_allowed(
 ) -> None:
     """A list that is repeated counts with its values."""
     monkeypatch.setattr(bounded, name, least)
-    assert bounded.load_yaml(text)
+    assert bounded.load_yaml(text, "f")
     monkeypatch.setattr(bounded, name, least - 1)
-    with pytest.raises(yaml.YAMLError):
-        bounded.load_yaml(text)
+    with pytest.raises(InputError):
+        bounded.load_yaml(text, "f")
 
 
 @pytest.mark.parametrize("size", [8, 9])
@@ -131,13 +131,37 @@ def test_the_last_byte_within_the_bound_is_read(tmp_path: Path, size: int) -> No
     ],
 )
 def test_what_is_within_the_bounds_is_read_as_before(text: str) -> None:
-    def read(load: Callable[[str], object]) -> object:
-        try:
-            return load(text)
-        except yaml.YAMLError as error:
-            return str(error)
+    try:
+        wanted = yaml.load(text, Loader=yaml.CSafeLoader)
+    except yaml.MarkedYAMLError as error:
+        with pytest.raises(InputError, match=f": {re.escape(str(error.problem))}; "):
+            bounded.load_yaml(text, "f")
+        return
+    assert bounded.load_yaml(text, "f") == wanted
 
-    assert read(bounded.load_yaml) == read(partial(yaml.load, Loader=yaml.CSafeLoader))
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: 1\nb: !own 2\n", "f:2:4: .*'!own'"),
+        ("a: !!python/name:os.system x\n", "f:1:4: .*python/name"),
+        ("a: =\n", "f:1:4: .*value"),
+        ("a: *b\n", "f:1:4: .*undefined alias"),
+        ("? [a]\n: 1\n", "f:1:3: .*unhashable key"),
+        ("? {a: b}\n: 1\n", "f:1:3: .*unhashable key"),
+        ("<<: 3\n", "f:1:5: .*expected a mapping"),
+        ("!!set [a]\n", "f:1:1: .*expected a mapping"),
+        ("a: !!binary 'a'\n", "f:1:4: .*base64"),
+        ("a: !degrees x\n", "f:1:4: .*!degrees"),
+        ("a: [b\n", "f:2:1: .*did not find"),
+        ("a: [b", "f:1:6: .*did not find"),
+        ("a: \0\n", "f: .*#x0000"),
+        ("a: \ud800\n", "f: .*surrogates"),
+    ],
+)
+def test_what_is_no_yaml_is_an_input_error_with_its_place(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=f"^{message}.*; do this$"):
+        bounded.load_yaml(text, "f", "do this")
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from counted_steps import growth
 from growing import GROWING, description
 
-from multibot_rewrite import MultibotError, rewrite
+from multibot_rewrite import MultibotError, load_fleet, rewrite, rewrite_file
 from multibot_rewrite.base import nearest
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.nearest import HINTED, Guesses
@@ -60,7 +61,73 @@ def test_cost_grows_with_the_number_of_sections() -> None:
         data = "".join(nodes).encode()
         return lambda: lint_data("params.yaml", data, Settings()) and None
 
+    assert growth(prepared, SMALL, 2 * LARGE) < SLACK
+
+
+RELATED = {
+    "bridge.yaml": (
+        "",
+        "- {ros_topic_name: s#, gz_topic_name: s#, ros_type_name: sensor_msgs/msg/LaserScan,"
+        " gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}\n",
+        "",
+    ),
+    "params.yaml": ("", "n#:\n  ros__parameters:\n    topic: s#\n", ""),
+    "a.rviz": (
+        "Visualization Manager:\n  Displays:\n",
+        "    - {Class: rviz_default_plugins/LaserScan, Name: d#, Topic: {Value: /s#}}\n",
+        "",
+    ),
+    "tree.xml": (
+        '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>',
+        '<Spin spin_dist="1.57" server_name="spin#"/>\n',
+        "</Sequence></BehaviorTree></root>",
+    ),
+    "arm.srdf": (
+        '<robot name="a">',
+        '<disable_collisions link1="l#" link2="m#" reason="Never"/>\n',
+        "</robot>",
+    ),
+}
+
+
+def related(name: str, count: int) -> str:
+    before, each, after = RELATED[name]
+    return before + "".join(each.replace("#", str(at)) for at in range(count)) + after
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", RELATED)
+def test_linting_a_related_file_costs_what_is_in_it(name: str) -> None:
+    def prepared(count: int) -> Callable[[], None]:
+        data = related(name, count).encode()
+        return lambda: lint_data(name, data, Settings()) and None
+
     assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [it for it in RELATED if it != "arm.srdf"])
+def test_rewriting_a_related_file_costs_what_is_in_it(name: str, tmp_path: Path) -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        path = tmp_path / str(count) / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(related(name, count))
+        return lambda: rewrite_file(str(path), "robot1")
+
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.slow
+def test_a_fleet_costs_what_its_robots_do(tmp_path: Path) -> None:
+    (tmp_path / "rover.urdf").write_bytes(description("links in a chain", 5))
+
+    def prepared(count: int) -> Callable[[], object]:
+        path = tmp_path / f"{count}.yaml"
+        robots = (f"  - {{name: robot{at}, description: rover.urdf}}\n" for at in range(count))
+        path.write_text(f"stack: nav2\nrobots:\n{''.join(robots)}")
+        return lambda: load_fleet(str(path))
+
+    assert growth(prepared, 10, 40) < SLACK
 
 
 def test_the_format_of_a_root_is_asked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:

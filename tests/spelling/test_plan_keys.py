@@ -327,7 +327,7 @@ def test_a_parameter_that_a_file_sets_is_not_the_plans_own() -> None:
     ("data", "message"),
     [
         (b"{\n x", "p:2:2: not valid JSON: "),
-        (b"layout: [", "p:2:1: not valid YAML: "),
+        (b"layout: [", "p:1:10: not valid YAML: "),
         (b'{"a": "\xff"}', "p: not valid JSON: "),
         (b"layout: \xff", "p: not valid YAML: "),
     ],

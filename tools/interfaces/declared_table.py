@@ -63,7 +63,9 @@ class Row(NamedTuple):
 @lru_cache
 def plugin_owners() -> PluginOwners:
     """The data of the folder."""
-    found = load_yaml(files(__package__).joinpath("plugin_owners.yaml").read_text("utf-8"))
+    found = load_yaml(
+        files(__package__).joinpath("plugin_owners.yaml").read_text("utf-8"), "plugin_owners.yaml"
+    )
     owners: dict[tuple[str, str], list[str]] = {}
     packages: dict[str, str] = {}
     for package, plugins in found["plugins"].items():
@@ -101,7 +103,7 @@ def _is_needed(fact: ParameterFact) -> bool:
     """Does generate_parameter_library refuse what the parameter is where nobody sets it?"""
     if fact.how != YAML or fact.type == "none" or "<" in fact.path:
         return False
-    value = load_yaml(fact.default)
+    value = load_yaml(fact.default, fact.path)
     said = (beyond(*check, value) for check in checks_in(fact.bounds))
     return fact.default == NO_DEFAULT or any(said)
 

@@ -42,13 +42,13 @@ class LaunchDifference(NamedTuple):
 def launch_files() -> Mapping[str, Sequence[str]]:
     """Stack -> its launch files, as ``launch_stacks.yaml`` has them."""
     text = files("tools.interfaces").joinpath("launch_stacks.yaml").read_text("utf-8")
-    found: Mapping[str, Sequence[str]] = load_yaml(text)
+    found: Mapping[str, Sequence[str]] = load_yaml(text, "launch_stacks.yaml")
     return found
 
 
 def stack_nodes(stacks: str, stack: str, release: str) -> tuple[StackNode, ...]:
     """The nodes of a stack in a release, from the text of stacks.yaml; not those it includes."""
-    entries = load_yaml(stacks)["stacks"][stack].get("nodes", ())
+    entries = load_yaml(stacks, "stacks.yaml")["stacks"][stack].get("nodes", ())
     rows = [it if isinstance(it, dict) else {"node": it} for it in entries]
     return tuple(_node(it) for it in rows if has_release(it.get("releases", ""), release))
 

@@ -14,6 +14,7 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite.base.bounded import compose_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 
 NODE, LIFECYCLE, CONTAINER, COMPONENT = "node", "lifecycle_node", "container", "component"
@@ -50,8 +51,8 @@ def launched_nodes(file: str, text: str) -> tuple[LaunchedNode, ...]:
             return tuple(_of_python(ast.parse(text)))
         if file.endswith((".xml", ".launch")):
             return tuple(_of_xml(text))
-        return tuple(_of_yaml(compose_yaml(text)))
-    except (SyntaxError, ValueError, etree.XMLSyntaxError, yaml.YAMLError):
+        return tuple(_of_yaml(compose_yaml(text, file)))
+    except (SyntaxError, ValueError, etree.XMLSyntaxError, InputError):
         return ()
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -36,7 +36,7 @@ class _Trees(NamedTuple):
 @cache
 def port_data() -> Mapping[str, Any]:
     """The data of ``behavior_tree.yaml``."""
-    return dict(load_yaml(own_text(__file__, "behavior_tree.yaml")))
+    return dict(load_own_yaml(__file__, "behavior_tree.yaml"))
 
 
 def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:

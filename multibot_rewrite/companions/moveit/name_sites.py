@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
@@ -50,7 +50,7 @@ _Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 @cache
 def kinds() -> tuple[FileKind, ...]:
     """All kinds of files, in the order in which they are tried."""
-    data = load_yaml(own_text(__file__, "moveit.yaml"))
+    data = load_own_yaml(__file__, "moveit.yaml")
     return tuple(
         FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()

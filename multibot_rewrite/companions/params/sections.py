@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context, full_name
@@ -81,7 +81,7 @@ def raw_sections(document: YamlText) -> list[RawSection]:
     _check_file(document)
     found = list(_below(document, document.root, ()))
     if not found:
-        raise InputError(f"{document.file}:1: not a ROS 2 parameter file: {_looks_like(document)}")
+        raise _other_kind(document)
     return found
 
 
@@ -97,20 +97,31 @@ def _without(path: str, own: Collection[str]) -> str:
 
 def _check_file(document: YamlText) -> None:
     if document.root is not None and PARAMETERS not in document.text:
-        raise InputError(f"{document.file}:1: not a ROS 2 parameter file: {_looks_like(document)}")
+        raise _other_kind(document)
     # Hardly any file has one, and this search is far quicker.
     for line, text in anchors(document) if _MARK.search(document.text) else ():
         place = f"{document.file}:{line}"
         raise InputError(f"{place}: rcl takes no anchors or aliases ({text}); write the value out")
     if isinstance(document.root, yaml.MappingNode):
         return
-    what = f"it is empty; {_TO_DO}" if document.root is None else _looks_like(document)
-    raise InputError(f"{document.file}:1: not a ROS 2 parameter file: {what}")
+    raise _other_kind(document)
 
 
-def _looks_like(document: YamlText) -> str:
-    """What a file without parameters seems to be."""
-    root = document.root
+def _other_kind(document: YamlText) -> InputError:
+    """Return the error for a file without parameters."""
+    what, cause = _looks_like(document.root), ""
+    if not what:
+        what = (
+            f"it has no {PARAMETERS} key, so it is for ROS 1 or a node reads it directly; for ROS 2"
+        )
+        what, cause = f"{what} {_TO_DO}", FOR_ROS_1
+    return InputError(f"{document.file}:1: not a ROS 2 parameter file: {what}", cause)
+
+
+def _looks_like(root: yaml.Node | None) -> str:
+    """Return what a file without parameters seems to be; empty where nothing says it."""
+    if root is None:
+        return f"it is empty; {_TO_DO}"
     if isinstance(root, yaml.SequenceNode):
         keys = {key.value for item in root.value for key, _ in pairs(item)}
         bridge = keys & {"topic_name", "ros_topic_name", "gz_topic_name"}
@@ -125,9 +136,8 @@ def _looks_like(document: YamlText) -> str:
     found = next((what for key, what in _OTHER_FILES.items() if key in keys), "")
     inner = {key.value for _, value in pairs(root) for key, _ in pairs(value)}
     if not found and "kinematics_solver" in inner:
-        found = "it holds MoveIt kinematics; list it under moveit"
-    other = f"it has no {PARAMETERS} key, so it is for ROS 1 or a node reads it directly; for ROS 2"
-    return found or f"{other} {_TO_DO}"
+        return "it holds MoveIt kinematics; list it under moveit"
+    return found
 
 
 def _below(

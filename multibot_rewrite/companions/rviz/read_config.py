@@ -9,8 +9,8 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.bounded import load_own_yaml
+from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import Site, site_at
@@ -55,7 +55,7 @@ class RvizConfig(NamedTuple):
 @lru_cache(maxsize=1)
 def rviz_data() -> Mapping[str, Any]:
     """The data of ``rviz.yaml``."""
-    data: Mapping[str, Any] = load_yaml(own_text(__file__, "rviz.yaml"))
+    data: Mapping[str, Any] = load_own_yaml(__file__, "rviz.yaml")
     return data
 
 
@@ -83,7 +83,8 @@ def _refuse(document: YamlText) -> None:
         if cls.startswith(ROS1):
             place = f"{document.file}:{line_of(node)}"
             raise InputError(
-                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
+                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2",
+                FOR_ROS_1,
             )
     refuse_anchors(document)
 

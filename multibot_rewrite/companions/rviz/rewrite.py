@@ -10,7 +10,7 @@ import yaml
 from multibot_rewrite.base.bounded import compose_yaml
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import ProofError, UsageError
+from multibot_rewrite.base.model import InputError, ProofError, UsageError
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
@@ -138,9 +138,9 @@ def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
 
 def _prove(text: str, file: str) -> None:
     try:
-        compose_yaml(text)
-    except yaml.YAMLError as error:
-        raise ProofError(f"{file}: the rewritten config is not valid YAML: {error}") from None
+        compose_yaml(text, file)
+    except InputError as error:
+        raise ProofError(f"the rewritten config is broken: {error}") from None
 
 
 def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:

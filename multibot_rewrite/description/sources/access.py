@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.model import UNREADABLE, InputError, MultibotError
 from multibot_rewrite.base.outside import outside, real_path, variable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.frames import FENCES
@@ -146,7 +146,7 @@ def check_file(path: str) -> None:
         with open(path, "rb") as file:
             size = os.fstat(file.fileno()).st_size
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"{path}: cannot be read: {error.strerror}", UNREADABLE) from None
     if size > MAX_BYTES:
         limit = f"{MAX_BYTES // 2**20} MB"
         raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")

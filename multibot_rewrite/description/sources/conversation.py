@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.bounded import MAX_BYTES, load_json
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import XACRO_FAILED, InputError
 from multibot_rewrite.base.outside import real_path, unrepeatable
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import Access, NotAllowedError
@@ -129,12 +129,14 @@ def converse(
             it.send(framed(REQUEST, json.dumps(request).encode()))
             return _result(it, _answered(it, sources))
         except TimeoutError:
-            raise InputError(_ended(access.path, signal.SIGALRM, seconds)) from None
+            raise InputError(_ended(access.path, signal.SIGALRM, seconds), XACRO_FAILED) from None
         except (EOFError, ConnectionError):
-            raise InputError(_ended(access.path, it.end(ended=True), seconds)) from None
+            raise InputError(
+                _ended(access.path, it.end(ended=True), seconds), XACRO_FAILED
+            ) from None
         except _GARBAGE:
             said = "its process gave a wrong answer; a file that tampers with it is not expanded"
-            raise InputError(f"{access.path}: xacro failed: {said}") from None
+            raise InputError(f"{access.path}: xacro failed: {said}", XACRO_FAILED) from None
 
 
 def _answered(it: XacroChild, sources: Sources) -> bytes:

@@ -14,7 +14,15 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import (
+    NO_ARGUMENT,
+    NO_PACKAGE,
+    NOT_DEFINED,
+    UNREADABLE,
+    XACRO_FAILED,
+    InputError,
+)
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.description.sources.child.frames import KERNEL
@@ -28,6 +36,10 @@ _T = TypeVar("_T")
 _KEPT: ContextVar[dict[object, Any] | None] = ContextVar("expansions", default=None)
 # Of a longer message no repetition is looked for.
 LONG = 1000
+_UNREADABLE = lazy_compile("No such file|cannot be read|Is a directory|Permission denied")
+_NOT_DEFINED = lazy_compile(
+    r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
+)
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
 _HINTS = (
     ("xacro may", "give --trust if you trust the file, or urdf-lint the folder: --roots"),
@@ -156,7 +168,7 @@ def expand_traced(
         text = _text(path, result, trace)
         if len(result.origins) != 3 * len(start_offsets(text)):
             what = "the places that its process reported are wrong"
-            raise InputError(f"{path}: xacro failed: {what}")
+            raise InputError(f"{path}: xacro failed: {what}", XACRO_FAILED)
         return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 
     given = frozenset(arguments.items()), frozenset(changed.items())
@@ -166,7 +178,9 @@ def expand_traced(
 def _text(path: str, result: Result, trace: Trace) -> bytes:
     _print(result.notes)
     if result.failure:
-        raise InputError(_message(path, result.failure, trace))
+        reason = " ".join(_reason(result.failure.reason).split())
+        message = _message(path, result.failure, reason, trace)
+        raise InputError(message, *_cause(reason))
     _check_root(path, *result.root)
     return result.text
 
@@ -198,10 +212,21 @@ def _check_root(path: str, prefix: str, tag: str) -> None:
         )
 
 
-def _message(path: str, failure: Failure, trace: Trace) -> str:
+def _cause(reason: str) -> tuple[str, str]:
+    """Return the cause in what xacro said, and the name that is not defined."""
+    if _UNREADABLE.search(reason):
+        return UNREADABLE, ""
+    if reason.startswith("package '") and "is not found" in reason:
+        return NO_PACKAGE, ""
+    if reason.startswith("Undefined substitution argument"):
+        return NO_ARGUMENT, ""
+    found = _NOT_DEFINED.search(reason)
+    return (NOT_DEFINED, found[1] or found[2] or "") if found else (XACRO_FAILED, "")
+
+
+def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
     inner = alike(failure.file, path)
     inner = path if inner == os.path.normpath(path) else inner
-    reason = " ".join(_reason(failure.reason).split())
     if not os.path.isabs(path):
         reason = reason.replace(os.path.join(os.getcwd(), ""), "")
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import without_comments
-from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.model import UNREADABLE, InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
@@ -113,4 +113,4 @@ def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         more = "; name a file in it" if isinstance(error, IsADirectoryError) else ""
-        raise InputError(f"{path}: cannot be read: {reason}{more}") from None
+        raise InputError(f"{path}: cannot be read: {reason}{more}", UNREADABLE) from None

@@ -8,7 +8,7 @@ from lxml import etree
 
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import Claim, InputError, Site
+from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, Site
 from multibot_rewrite.base.naming import (
     DECLARED_KINDS,
     DEFAULT_LAYOUT,
@@ -144,7 +144,8 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
         hint = "take out its xmlns" if where else "give a robot description"
         raise InputError(
             f"{document.file}:{line}:{column}: the root element is <{tag.localname}>{where}, "
-            f"expected {known}; {hint}"
+            f"expected {known}; {hint}",
+            FOR_OLD_GAZEBO if tag.localname == "gazebo" else "",
         )
     return found
 

@@ -21,7 +21,7 @@ from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
 from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
-from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.base.model import NOT_UTF8, REFUSED, Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 
 # No element of a robot has fifty.
@@ -42,6 +42,8 @@ _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=Fal
 # How far the common spelling of an attribute is looked for.
 _NEAR = 4096
 CORRECT = "correct the XML and try again"
+# What libxml2 says -> the cause.
+_CAUSES = {"entity amplification": REFUSED, "Invalid bytes in character encoding": NOT_UTF8}
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
@@ -97,7 +99,9 @@ def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
         return etree.fromstring(mended.text, _PARSER), True
     except etree.XMLSyntaxError as error:
         _refuse_other_kinds(source, file)
-        raise InputError(_syntax_message(error, file, mended)) from None
+        message = _syntax_message(error, file, mended)
+        cause = next((_CAUSES[said] for said in _CAUSES if said in str(error.msg)), "")
+        raise InputError(message, cause) from None
 
 
 def _refuse_bytes(source: bytes, file: str) -> None:
@@ -139,11 +143,14 @@ def _refuse_tree(document: Document) -> None:
     source, file, root, *_ = document
     info = root.getroottree().docinfo
     if info.internalDTD is not None:
-        raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")
+        raise InputError(
+            f"{file}: DOCTYPE and entities are not accepted; expand them first", REFUSED
+        )
     encoding = (info.encoding or "UTF-8").upper()
     if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
         raise InputError(
-            f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8"
+            f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8",
+            REFUSED,
         )
 
 

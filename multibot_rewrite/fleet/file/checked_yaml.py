@@ -49,13 +49,8 @@ def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -
     refuse_anchors(document)
     if not isinstance(document.root, yaml.MappingNode):
         raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
-    try:
-        lines = dict(_lines(document.root, path, ()))
-        data = load_yaml(document.text)
-    except yaml.MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        problem = " ".join(str(error.problem).split())
-        raise InputError(f"{path}:{line}: {problem}; write plain keys and values") from None
+    lines = dict(_lines(document.root, path, ()))
+    data = load_yaml(document.text, path, "write plain keys and values")
     _validate(data, schema, path, lines)
     return CheckedYaml(data, lines)
 

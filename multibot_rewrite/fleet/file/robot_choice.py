@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import yaml
-
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
@@ -155,8 +153,8 @@ def parse_robots(text: str) -> Iterator[tuple[str, dict[str, float]]]:
 def _pose(name: str, text: str) -> dict[str, float]:
     try:
         # As Nav2 reads it: {x:1.0} without a space is no number.
-        value = load_yaml(text) if text else {}
-    except (yaml.YAMLError, ValueError):
+        value = load_yaml(text, "") if text else {}
+    except InputError:
         value = None
     wrong = f"robots: {name}: {text!r} is no pose"
     if not isinstance(value, dict):

@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from multibot_rewrite import fleet
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
@@ -54,8 +54,8 @@ class Shape(NamedTuple):
 @cache
 def shapes() -> Mapping[str, Shape]:
     """All shapes by name."""
-    text = own_text(fleet.__file__, "shapes.yaml")
-    return {name: _shape(it) for name, it in load_yaml(text).items()}
+    rows = load_own_yaml(fleet.__file__, "shapes.yaml")
+    return {name: _shape(row) for name, row in rows.items()}
 
 
 def _shape(it: dict[str, Any]) -> Shape:

@@ -187,7 +187,7 @@ def _files_of(node: LaunchedNode) -> Iterator[str]:
         if it.source:
             yield it.source
             continue
-        sections = load_yaml(it.text)
+        sections = load_yaml(it.text, it.file or node.place.file)
         for section in sections.values() if isinstance(sections, dict) else ():
             value = section.get("ros__parameters", {}).get(_FILE, "")
             yield from [value] if isinstance(value, str) and value else ()

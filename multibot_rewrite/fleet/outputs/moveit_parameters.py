@@ -18,7 +18,6 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,
@@ -130,7 +129,7 @@ def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mappin
     }
     pipelines: list[str] = []
     for path, text in texts.items():
-        kind, data = file_kind(read_yaml(text.encode(), path)), _plain(_read(path, text)) or {}
+        kind, data = file_kind(read_yaml(text.encode(), path)), _plain(load_yaml(text, path)) or {}
         if kind == PLANNING and (name := pipeline_of(path)):
             pipelines.append(name)
             found.setdefault(name, {}).update(_with_plugins(name, data, release))
@@ -156,7 +155,7 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
     if srdf:
         found[SEMANTIC] = srdf
     for path, text in texts.items():
-        kind, data = file_kind(read_yaml(text.encode(), path)), _read(path, text)
+        kind, data = file_kind(read_yaml(text.encode(), path)), load_yaml(text, path)
         if kind in _OF_OTHERS:
             continue
         # Planners are below the first word of their file: ompl_planning.yaml.
@@ -164,16 +163,6 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
         below = found.setdefault(name, {}) if name else found
         below.update(data)
     return found
-
-
-def _read(path: str, text: str) -> Any:
-    """Return the data of a MoveIt file as a launch file has it; raises InputError for a value with a
-    tag that it does not know."""
-    try:
-        return load_yaml(text)
-    except yaml.MarkedYAMLError as error:
-        line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InputError(f"{path}{line}: {error.problem}") from None
 
 
 def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[str, Any]:

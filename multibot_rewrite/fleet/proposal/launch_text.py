@@ -16,9 +16,8 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-import yaml
-
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.fleet.proposal.searching import text_of
@@ -60,7 +59,7 @@ def launch_text(path: str) -> LaunchText:
     try:
         text = text_of(path) if path.endswith(".py") else _in_python(path)
         every = _used(ast.parse(text))
-    except (SyntaxError, ValueError, TypeError, RuntimeError, yaml.YAMLError):
+    except (SyntaxError, ValueError, TypeError, RuntimeError, InputError):
         every = []
     calls = [it for it in every if isinstance(it, ast.Call)]
     declared = ((word_of(argument(it, "name", 0)), it) for it in _called(calls, _DECLARE))
@@ -192,8 +191,8 @@ def _configured(reading: Reading, name: str, depth: int) -> Any:
     default = reading.text.declared.get(name)
     found = reading.given[name] if name in reading.given else reading.value(default, depth)
     try:
-        return load_yaml(found) if isinstance(found, str) and found else found
-    except yaml.YAMLError:
+        return load_yaml(found, "") if isinstance(found, str) and found else found
+    except InputError:
         return found
 
 
@@ -252,8 +251,8 @@ def _made_value(it: Any) -> str:
     if not isinstance(it, str):
         return repr(it)
     try:
-        return _made_text(it) if "$" in it else repr(load_yaml(it))
-    except yaml.YAMLError:
+        return _made_text(it) if "$" in it else repr(load_yaml(it, ""))
+    except InputError:
         return repr(it)
 
 

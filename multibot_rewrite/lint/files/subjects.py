@@ -12,7 +12,7 @@ from io import StringIO
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.rule import SRDF, XACRO
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import NO_ARGUMENT, InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
@@ -29,15 +29,14 @@ from multibot_rewrite.rules.subject import EXPANDED, Subject, subject_of
 # Makes the reader treat the root as that of an SRDF, whatever it contains.
 NO_URDF: Declared = {"link": {}}
 DEFAULT = ArgumentSet("*", ())
-MISSING = "Undefined substitution argument"
 ROOTS = ("robot", "sdf")
 DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
 
 
 class Failed(NamedTuple):
-    """An expansion that failed: xacro's message, and the arguments that it was made with."""
+    """An expansion that failed: why, and the arguments that it was made with."""
 
-    message: str
+    error: InputError
     arguments: str
 
 
@@ -85,8 +84,8 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
             yield _expanded(path, data, given, settings)
         except InputError as error:
             # With arguments that have no default there is no default expansion.
-            if given is not DEFAULT or not sets or MISSING not in str(error):
-                yield Failed(str(error), str(given))
+            if given is not DEFAULT or not sets or error.cause != NO_ARGUMENT:
+                yield Failed(error, str(given))
 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 METADATA = "metadata.yaml"
+_REINDEX = "is the recording complete? ros2 bag reindex may mend it"
 # Of a topic with a header, and of tf: a robot that runs for an hour sends no new frames.
 HEADERS, TRANSFORMS = 5, 50_000
 # The first field of a type that has a header, in the definition that the bag holds.
@@ -104,18 +105,18 @@ def _read(folder: str, most: int, path: str) -> Recording | InputError:
         if isinstance(error, MemoryError) or getattr(error, "errno", 0) == errno.EFBIG:
             return InputError(f"{path}: it unpacks to more than a bag may hold; leave it out")
         reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
-        hint = "is the recording complete? ros2 bag reindex may mend it"
-    return InputError(f"{path}: not a readable bag: {reason}; {hint}")
+    return InputError(f"{path}: not a readable bag: {reason}; {_REINDEX}")
 
 
 def _check_metadata(path: str) -> None:
-    """Raises yaml.YAMLError for a file that the reader's own parser might not survive."""
+    """Raise InputError for a file that the reader's own parser might not survive."""
     if not os.path.isdir(path):
         with open(path, "rb") as file:
             refuse_others(file.read(_PART), path, BAG)
         return
     if os.path.exists(os.path.join(path, METADATA)):
-        load_yaml(read_text(os.path.join(path, METADATA)))
+        metadata = os.path.join(path, METADATA)
+        load_yaml(read_text(metadata), metadata, _REINDEX)
 
 
 def _recording(reader: Reader) -> Recording:

@@ -17,6 +17,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
@@ -134,8 +135,8 @@ def _of_text(text: str) -> tuple[Row, ...]:
 
 def _written(text: str) -> Iterator[Row]:
     try:
-        entries = load_yaml(text)
-    except (yaml.YAMLError, ValueError):
+        entries = load_yaml(text, "")
+    except InputError:
         return
     for entry in entries if isinstance(entries, list) else ():
         if isinstance(entry, Mapping):

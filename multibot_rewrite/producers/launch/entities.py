@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 from lxml import etree
 
-from multibot_rewrite.base.bounded import compose_yaml, load_yaml
+from multibot_rewrite.base.bounded import A_VALUE, compose_yaml, load_yaml
 from multibot_rewrite.companions.yaml_text import line_of
 
 _SEPARATOR, _CHILDREN = "-sep", "children"
@@ -58,7 +58,7 @@ def root_of(data: bytes) -> Entity:
     if data.lstrip().startswith(b"<"):
         root = _of_xml(etree.fromstring(data, etree.XMLParser(resolve_entities=False)))
     else:
-        root = _of_document(compose_yaml(data.decode()))
+        root = _of_document(compose_yaml(data.decode(), "the launch file"))
     if root.tag != "launch":
         raise RuntimeError("Expected 'launch' as root tag")
     return root
@@ -117,4 +117,4 @@ def _plain(node: yaml.Node) -> Any:
         return [_plain(it) for it in node.value]
     if isinstance(node, yaml.MappingNode):
         return {str(key.value): _plain(it) for key, it in node.value}
-    return node.value if node.tag == _TEXT else load_yaml(node.value)
+    return node.value if node.tag == _TEXT else load_yaml(node.value, A_VALUE)

@@ -96,7 +96,7 @@ def models_of(
 def _of_parameters(it: LaunchedNode) -> Iterator[str]:
     """The words of a spawner that are parameters (ros_gz jazzy ros_gz_sim/src/create.cpp)."""
     for given in it.parameters:
-        found = load_yaml(given.text)
+        found = load_yaml(given.text, given.file or it.place.file)
         own = found.get("/**", {}) if isinstance(found, dict) else {}
         for name, value in (own.get("ros__parameters") or {}).items():
             if value != "":

@@ -10,9 +10,8 @@ from functools import lru_cache, wraps
 from types import FrameType
 from typing import Any
 
-import yaml
-
 from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.entities import root_of
 from multibot_rewrite.system.records import Place
@@ -71,7 +70,7 @@ def _lines(file: str) -> dict[tuple[str, str], int]:
         return {}
     try:
         every = [*root_of(read_bytes(file)).every()]
-    except (ValueError, TypeError, RuntimeError, SyntaxError, yaml.YAMLError):
+    except (ValueError, TypeError, RuntimeError, SyntaxError, InputError):
         return {}
     return {_started(it.values): it.line for it in reversed(every) if it.tag in _ELEMENTS}
 

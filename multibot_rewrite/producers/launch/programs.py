@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cache
 
-from multibot_rewrite.base.bounded import load_yaml, own_text
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.record import NamedTuple
 
 
@@ -25,6 +25,6 @@ class Programs(NamedTuple):
 @cache
 def programs() -> Programs:
     """Those of ``programs.yaml``."""
-    data = load_yaml(own_text(__file__, "programs.yaml"))
+    data = load_own_yaml(__file__, "programs.yaml")
     sets = {it: frozenset(data[it]) for it in ("passing", "spawners", "simulators")}
     return Programs(**{**data, **sets})

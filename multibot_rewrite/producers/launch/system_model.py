@@ -43,7 +43,7 @@ def read_system_model(path: str) -> LaunchGraph:
     """The nodes of a system model; raises InputError for one that has none."""
     document = read_yaml(read_file(path), path)
     lines = _lines(document.root)
-    data = load_yaml(document.text)
+    data = load_yaml(document.text, path)
     structure = data.get("structure") if isinstance(data, dict) else None
     nodes = structure.get("nodes") if isinstance(structure, dict) else None
     if not isinstance(nodes, dict) or not nodes:

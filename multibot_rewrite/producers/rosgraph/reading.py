@@ -82,19 +82,11 @@ def from_message(value: dict[str, Any], file: str) -> System:
 
 def from_yaml(text: str, file: str) -> System:
     """Read what ``ros2 topic echo --once --full-length`` printed; raises InputError."""
-    import yaml
-
     if _CUT_SHORT.search(text):
         hint = "print it with ros2 topic echo --once --full-length"
         raise InputError(f"{file}: the message is cut short by '...'; {hint}")
     last = [part for part in re.split(r"^---\s*$", text, flags=re.MULTILINE) if part.strip()][-1]
-    try:
-        value = load_yaml(last)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f"{file}:{mark.line + 1}" if mark else file
-        reason = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise InputError(f"{place}: not valid YAML: {reason}") from None
+    value = load_yaml(last, file, "print it with ros2 topic echo --once --full-length")
     if not is_message(value):
         raise InputError(f"{file}: not a rosgraph_msgs/Graph; it has no list of nodes")
     return from_message(value, file)

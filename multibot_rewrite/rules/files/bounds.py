@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
 
 _Number = Callable[[float, float], bool]
 # Check -> whether a number holds it, and its words.
@@ -32,9 +33,12 @@ _OR_NAN = "_or_nan"
 
 
 def beyond(check: str, arguments: str, value: Any) -> str:
-    """What a value has to be and is not; empty if it is, or the check is not known."""
+    """Return what a value has to be and is not; empty if it is, or if nobody can read the check."""
     name = check.rpartition("::")[2]
-    given = load_yaml(arguments) if arguments else []
+    try:
+        given = load_yaml(arguments, "") if arguments else []
+    except InputError:
+        return ""
     given = given if isinstance(given, list) else [given]
     if name.endswith(_OR_NAN):
         name = name.removesuffix(_OR_NAN)
@@ -108,8 +112,8 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
     if not (inner.startswith("[") and inner.endswith("]") and inner.count("[") == inner.count("]")):
         return None
     try:
-        read = load_yaml(inner)
-    except ValueError:
+        read = load_yaml(inner, "")
+    except InputError:
         return None
     points = read if isinstance(read, list) else []
     pairs = all(isinstance(it, list) and len(it) == 2 for it in points)

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.base.bounded import compose_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import pairs
 
@@ -36,8 +37,8 @@ class FileParameter(NamedTuple):
 def file_parameters(text: str) -> tuple[FileParameter, ...]:
     """The parameters of a file; none if it is another kind of YAML."""
     try:
-        root = compose_yaml(text)
-    except yaml.YAMLError:
+        root = compose_yaml(text, "")
+    except InputError:
         return ()
     found = [
         found

@@ -13,7 +13,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_yaml, read_bytes
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml, read_bytes
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.entities import Entity, root_of
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
@@ -164,7 +164,7 @@ def _typed(value: Any, kind: str) -> Any:
         return value
     if "$(" in value or kind == "str":
         return _parts(value)
-    return load_yaml(value) if value else value
+    return load_yaml(value, A_VALUE) if value else value
 
 
 def _components(entities: list[Entity]) -> list[Any]:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from copy import deepcopy
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml
 from multibot_rewrite.producers.launch.stand_in.actions import Action, OpaqueFunction
 from multibot_rewrite.producers.launch.stand_in.values import (
     ITERATED,
@@ -29,7 +29,7 @@ class ForEach(Action):
 
     def execute(self, context: LaunchContext) -> list[Any]:
         texts = text_of(context, self.input_values).strip().split(";")
-        values = (load_yaml(it.strip()) for it in texts if it)
+        values = (load_yaml(it.strip(), A_VALUE) for it in texts if it)
         return [made for it in values if it is not None for made in self.function(**it) or ()]
 
 

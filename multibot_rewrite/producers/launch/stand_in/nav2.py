@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchConfiguration,
@@ -125,12 +125,12 @@ class ParseMultiRobotPose:
     def value(self) -> dict[str, dict[str, float]]:
         pairs = (it.split("=") for it in self._text.split(";"))
         none = dict.fromkeys(_POSE, 0.0)
-        return {it[0].strip(): none | load_yaml(it[1]) for it in pairs if len(it) == 2}
+        return {it[0].strip(): none | load_yaml(it[1], A_VALUE) for it in pairs if len(it) == 2}
 
 
 def _read(path: str) -> Any:
     with open(path, encoding="utf-8") as file:
-        return load_yaml(file.read()) or {}
+        return load_yaml(file.read(), path) or {}
 
 
 def _written(text: str) -> str:

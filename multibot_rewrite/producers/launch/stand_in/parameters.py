@@ -12,9 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import (
     LaunchContext,
@@ -60,7 +59,7 @@ class ParameterValue:
             return self.value_type(text)
         if self.value_type is bool:
             return typed_truth(text)
-        return load_yaml(text) if text else text
+        return load_yaml(text, A_VALUE) if text else text
 
 
 class Parameter:
@@ -148,7 +147,9 @@ def _listed(context: LaunchContext, values: list[Any] | tuple[Any, ...], name: T
     kinds = {type(it) for it in values}
     if kinds == {int, float}:
         return [float(it) for it in values]
-    texts = [it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it)) for it in values]
+    texts = [
+        it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it), A_VALUE) for it in values
+    ]
     if not _are_alike(texts):
         raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
     return texts
@@ -169,8 +170,8 @@ def _read(text: str, name: str) -> Any:
     """The text of a substitution as YAML has it."""
     wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
     try:
-        found = load_yaml(text) if text else ""
-    except yaml.YAMLError:
+        found = load_yaml(text, A_VALUE) if text else ""
+    except InputError:
         what = f"Unable to parse the value of parameter {name} as yaml."
         raise TypeError(
             f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml
 
 Text = Any
 SomeEntitiesType = SomeSubstitutionsType = Any
@@ -337,7 +337,7 @@ def truth_of(context: LaunchContext, value: Text) -> bool:
 @lru_cache(maxsize=64)
 def typed_truth(text: str) -> bool:
     """The truth of a text as YAML has it, or 1 and 0; raises ValueError for one that is none."""
-    found = load_yaml({"1": "true", "0": "false"}.get(text, text)) if text else text
+    found = load_yaml({"1": "true", "0": "false"}.get(text, text), A_VALUE) if text else text
     if not isinstance(found, bool):
         raise ValueError(f"Cannot convert value '{text}' to '{bool}'")
     return found
