@@ -23,7 +23,8 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 )
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
-    not called tf, such as that of a simulator's ground truth, is no robot's tree."""
+    not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one on which
+    only nodes send that send to the robot's tree as well."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
@@ -37,7 +38,12 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
         planned = robot in seen.known.home
-        odd = [it for it in topics if it != home and (planned or it not in mixed)]
+        at_home = {*topics.get(home, ())}
+        odd = [
+            it
+            for it, nodes in topics.items()
+            if not at_home.issuperset(nodes) and (planned or it not in mixed)
+        ]
         yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
@@ -133,7 +139,7 @@ def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
     if robot in seen.known.home:
         return seen.known.home[robot]
-    own = [it for it in topics if seen.robot(it) == robot]
+    own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
 
