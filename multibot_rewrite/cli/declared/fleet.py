@@ -143,7 +143,8 @@ INIT = Command(
     "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use, unreadable input, or "
     "several robots and nothing that says which is meant",
     more="Every key comes with its reason. The fleet is built once in memory; where a layout does not"
-    " work, the first one that does is taken.",
+    " work, the first one that does is taken. Editors complete and check the keys by"
+    " .fleet.schema.json, which is written beside the fleet file.",
 )
 BUILD = Command(
     "build",

@@ -62,7 +62,6 @@ def _disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) 
 def wrong_tf_topic(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in tf_trees(plan, seen)}
-    senders = {tree.topic: tree.senders for tree in tf_trees(plan, seen)}
     for tree in tf_trees(plan, seen):
         misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
@@ -73,10 +72,8 @@ def wrong_tf_topic(plan: Index, seen: Index) -> Iterator[Finding]:
             home = tree_topic(plan.declared[robot].tf_topic)
             # A copy that a relay or another node makes, for RViz for example: the robot is as planned.
             copied = all(edge.child in children.get(home, ()) for edge in edges)
-            # What sends at home as well, as a bridge does that has a row for the poses of a simulator.
-            at_home = {*tree.senders.get(robot, ())} <= {*senders.get(home, {}).get(robot, ())}
             if not (
-                (copied or at_home)
+                copied
                 and not tree.home
                 and tree.senders
                 and _only_planned(plan, tree, robot, edges)

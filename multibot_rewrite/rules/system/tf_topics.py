@@ -23,8 +23,8 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 )
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
-    not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one on which
-    only nodes send that send to the robot's tree as well."""
+    not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one in its
+    namespace on which only nodes send that send to the robot's tree as well."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
@@ -38,11 +38,12 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
         planned = robot in seen.known.home
-        at_home = {*topics.get(home, ())}
         odd = [
             it
-            for it, nodes in topics.items()
-            if not at_home.issuperset(nodes) and (planned or it not in mixed)
+            for it in topics
+            if it != home
+            and (planned or it not in mixed)
+            and not _is_beside(seen, robot, topics, it)
         ]
         yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
@@ -129,6 +130,13 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
     named = edge.child in children or (whole and seen.plain_frame(edge.child) in children)
     return hears or named
+
+
+def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
+    """Is it in the robot's namespace, and do only nodes send there that send to its tree as well? So
+    does a bridge that has a row for the poses of a simulator."""
+    at_home = topics.get(_home(seen, robot, topics), ())
+    return seen.robot(topic) == robot and {*at_home}.issuperset(topics[topic])
 
 
 def _looks(seen: Index, node: str) -> bool:
