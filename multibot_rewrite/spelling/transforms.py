@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -99,27 +100,18 @@ def tree_joints(root: _Element) -> Iterator[tuple[_Element, Edge]]:
     """The joints of the tree, each with its transform. A frame of an SDF is the link that it is
     attached to; a joint below ``<gazebo>`` is for the simulator alone. Of two with one child the last
     by name counts (urdfdom_headers model.h initTree)."""
-    frames = root.iter("frame")
-    attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
+    frames = ((it.get("name", ""), it.get("attached_to", "")) for it in root.iter("frame"))
+    attached = chain_ends({name: attached_to for name, attached_to in frames if attached_to})
     found: list[tuple[_Element, Edge]] = []
     for joint in root.iterfind("joint") if root.tag == "robot" else root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
-            parent, child = (_attached_to(name, attached) for name in names)
+            parent, child = (attached.get(name) or name for name in names)
             found.append((joint, edge_of(parent, child, joint.get("type") == "fixed")))
     by_name = sorted(found, key=lambda it: it[0].get("name", ""))
     last = {it.child: joint for joint, it in by_name}
     yield from ((joint, it) for joint, it in found if last[it.child] is joint)
-
-
-def _attached_to(name: str, attached: Mapping[str, str]) -> str:
-    """What a chain of frames ends at; a frame that is attached to nothing known stays itself."""
-    for _ in attached:
-        if not attached.get(name):
-            return name
-        name = attached[name]
-    return name
 
 
 def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:

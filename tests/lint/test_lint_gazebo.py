@@ -332,6 +332,15 @@ HEALTHY = {
     "coefficients whose names are put together": system(
         "hydrodynamics", "Hydrodynamics", "<link_name>a</link_name><xDotU>-4</xDotU><yVabsV>-9</yVabsV>"
     ),
+    # srmainwaring/asv_wave_sim Hydrodynamics.cc: it reads <enable> and no <link_name>.
+    "a class that another library has, called as one of gz-sim": (
+        '<gazebo><plugin filename="gz-waves1-hydrodynamics-system"'
+        ' name="gz::sim::systems::Hydrodynamics"><enable>m::a</enable></plugin></gazebo>'
+    ),
+    # Nobody knows it; its name does not make it that of gz-sim, which needs a link.
+    "a class of a library that is not known, called as one of gz-sim": (
+        '<gazebo><plugin filename="own_water" name="gz::sim::systems::Hydrodynamics"/></gazebo>'
+    ),
     "limits of tracks": system(
         "tracked-vehicle", "TrackedVehicle",
         "<linear_velocity><max_velocity>1</max_velocity></linear_velocity>",

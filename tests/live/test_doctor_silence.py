@@ -39,6 +39,10 @@ SILENT: dict[str, Callable[[System], System]] = {
     "the ground truth of a simulator is no tree of the robot": added(
         "/robot1/gz_bridge", (PUBLISHES, "/tf_ground_truth", TF)
     ),
+    "the poses of a simulator, sent beside the robot's tree": both(
+        added("/robot1/gz_bridge", (PUBLISHES, "/robot1/tf", TF)),
+        added("/robot1/gz_bridge", (PUBLISHES, "/robot1/gz/tf", TF)),
+    ),
     "hidden topics are nobody's business": both(
         added("/robot1/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
         added("/robot2/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),

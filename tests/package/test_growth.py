@@ -8,12 +8,15 @@ from pathlib import Path
 
 import pytest
 from counted_steps import growth
+from fleet_folder import fleet_folder
 from growing import GROWING, description
 
 from multibot_rewrite import MultibotError, load_fleet, rewrite, rewrite_file
 from multibot_rewrite.base import nearest
+from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.nearest import HINTED, Guesses
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.checks import audit, references
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.lint.check import lint_data
@@ -23,6 +26,13 @@ SMALL, LARGE = 100, 400
 REMEMBERED = (nearest._nearest,)
 # As much may be made once, and found again by halving.
 SLACK = 1.15
+ONE_LAYOUT = """
+layout: frames-per-robot
+distro: jazzy
+simulator: none
+description: robot.urdf
+robots: [{name: robot1}, {name: robot2}]
+"""
 
 
 def rewritten(data: bytes) -> None:
@@ -50,6 +60,38 @@ def test_cost_grows_with_the_number(what: str, work: Callable[[bytes], None]) ->
         return lambda: work(data)
 
     assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.slow
+def test_cost_of_a_fleet_grows_with_the_links_in_a_chain(tmp_path: Path) -> None:
+    """The tree of each robot was looked through once for each of its joints."""
+
+    def prepared(count: int) -> Callable[[], object]:
+        urdf = description("links in a chain", count).decode()
+        path = fleet_folder(tmp_path, ONE_LAYOUT, robot__urdf=urdf)
+        command = ["build", str(path), "-o", str(tmp_path / "out"), "--quiet"]
+        return lambda: main(command)
+
+    assert prepared(SMALL)() == 0
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_chains_end_at_costs_a_step_for_each_name(turned: bool) -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        pairs = [(f"l{at}", f"l{at + 1}") for at in range(count)]
+        chain = dict(pairs[::-1] if turned else pairs)
+        return lambda: chain_ends(chain)
+
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+def test_what_chains_end_at() -> None:
+    tree = {"b": "a", "d": "c", "c": "b", "x": "y"}
+    assert chain_ends(tree) == {"b": "a", "c": "a", "d": "a", "x": "y"}
+    circle = {"a": "b", "b": "c", "c": "b", "d": "a", "e": "f"}
+    assert chain_ends(circle) == {"a": "", "b": "", "c": "", "d": "", "e": "f"}
+    assert chain_ends({"a": "a"}) == {"a": ""}
 
 
 @pytest.mark.slow

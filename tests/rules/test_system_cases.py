@@ -438,6 +438,19 @@ ELSEWHERE = (
              "transform robot1/odom -> robot1/base on /tf by /robot1/driver"),
             [f"MG405 /robot1/driver sends tf on /tf, {ELSEWHERE}"],
         ),
+        # A bridge's topic below the robot's is not its tree, where all others send on /tf.
+        (
+            ("/robot1/bridge publishes /robot1/gz/tf " + TF, "/robot1/bridge publishes /tf " + TF,
+             "/robot1/driver publishes /tf " + TF),
+            [],
+        ),
+        # To send on another robot's tree as well is no excuse.
+        (
+            (*TREE, f"/robot1/driver publishes /robot2/tf {TF}",
+             f"/robot1/driver publishes /robot1/tf {TF}"),
+            ["MG405 /robot1/driver sends tf on /robot2/tf, but the tf of robot1 is on /robot1/tf; a"
+             " namespace or remap rule of robot1 names robot2"],
+        ),
         (
             (*TREE, f"/robot1/amcl subscribes /tf {TF}"),
             [f"MG405 /robot1/amcl hears tf on /tf, {ELSEWHERE}"],

@@ -154,7 +154,8 @@ INIT = Command(
     "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use, unreadable input, or "
     "no way to tell which of several robots is meant",
     more="The fleet file gives a reason for each key. Each choice is tried with a build in memory: if"
-    " a layout does not work, the first one that works is taken.",
+    " a layout does not work, the first one that works is taken. Editors complete and check the keys by"
+    " .fleet.schema.json, which is written beside the fleet file.",
 )
 BUILD = Command(
     "build",

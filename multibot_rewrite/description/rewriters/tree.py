@@ -28,6 +28,9 @@ from multibot_rewrite.description.rewriters.vocabulary import (
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
+# How the libraries of gz-sim begin, and its classes in them.
+_GZ_SIM, _GZ_CLASSES = "gz-sim", "gz::sim::systems::"
+
 
 def qualified(name: str) -> str:
     """A tag or attribute of the vocabulary as lxml writes it."""
@@ -259,17 +262,23 @@ def library_and_class(filename: str, name: str) -> list[str]:
 def values_of_plugin(
     element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
 ) -> Values | None:
-    """What is known of a plugin, by its library, else by its class."""
-    found = (vocabulary.values(it, of_ros_1) for it in plugin_keys(element))
-    return next(filter(None, found), None)
+    """What is known of a plugin, by its library, else by its class.
+
+    A class of gz-sim in a library of another name is another class: asv_wave_sim has a Hydrodynamics
+    of its own.
+    """
+    library, *others = plugin_keys(element)
+    forked = library and not library.startswith(_GZ_SIM)
+    keys = [library, *(it for it in others if not (forked and it.startswith(_GZ_CLASSES)))]
+    return next(filter(None, (vocabulary.values(it, of_ros_1) for it in keys)), None)
 
 
 def library_key(library: str) -> str:
     """``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
     key = library.removesuffix(".so").removesuffix(".dylib").removeprefix("lib")
-    for family in ("ignition-gazebo", "gz-sim"):
+    for family in ("ignition-gazebo", _GZ_SIM):
         if key.startswith(family):
-            return "gz-sim" + key[len(family) :].lstrip("0123456789")
+            return _GZ_SIM + key[len(family) :].lstrip("0123456789")
     return key
 
 

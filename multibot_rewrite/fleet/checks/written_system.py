@@ -13,7 +13,6 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
-from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.producers.ends import (
@@ -29,7 +28,7 @@ from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.spelling.plan import tf_topic
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.records import (
     MAY,
@@ -199,14 +198,11 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
     topic = tf_topic(name, fleet.naming)
     full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
     root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
-    children: set[str] = set()
     tree = robot.tree
-    for number, it in enumerate(tree):
-        place = Place(robot.spec.description, line_of(robot.member.source, "joint", number))
-        # Two joints have one child in a closed loop of an SDF, which is no tree.
-        if it.child not in children or robot.member.source.root.tag == "robot":
-            children.add(it.child)
-            yield edge(it, root, place, topic)
+    joints = (joint for joint, _ in tree_joints(robot.member.sent.root))
+    for it, joint in zip(tree, joints, strict=True):
+        place = Place(robot.spec.description, joint.sourceline or 1)  # type: ignore[arg-type]
+        yield edge(it, root, place, topic)
     for it in _simulated(robot):
         yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
     in_tree = {*tree}

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The release that parameter files were written for, by the parameters that only some releases have.
+"""The release that parameter files were written for, by the parameters and the classes of plugins that
+only some releases have.
 
-Source: what the packages declare in each release (``knowledge/declared.schema``).
+Sources: what the packages declare in each release (``knowledge/declared.schema``), and the classes that
+they register (``knowledge/plugin_classes.schema``).
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease
+from multibot_rewrite.rules.files.plugin_names import classes_of_other_releases
 from multibot_rewrite.rules.files.releases import elsewhere
 
 # The newest that people run first; nobody writes files for the one that changes each day.
@@ -35,11 +38,13 @@ def release_of_files(paths: Sequence[str]) -> SaidRelease:
     if most - len(lacking[best]) < _ENOUGH:
         return SaidRelease(NEWEST_LTS)
     files = dict.fromkeys(map(os.path.basename, lacking[NEWEST_LTS]))
-    return SaidRelease(best, f"{NEWEST_LTS} lacks {most} parameters of {shorten([*files])}")
+    return SaidRelease(
+        best, f"{NEWEST_LTS} lacks {most} parameters or plugins of {shorten([*files])}"
+    )
 
 
 def _lacking(paths: Sequence[str], release: str) -> list[str]:
-    """The file of each parameter that a release does not have."""
+    """The file of each parameter, and of each class of a plugin, that a release does not have."""
     context = make_context({}, make_naming("tf-per-robot"), (), release)
     found = []
     for path in paths:
@@ -47,5 +52,5 @@ def _lacking(paths: Sequence[str], release: str) -> list[str]:
             file = read_named(PARAMS, read_file(path), path, context)
         except InputError:  # it is told where it is taken
             continue
-        found += [path for _ in elsewhere(file)]
+        found += [path for _ in (*elsewhere(file), *classes_of_other_releases(file))]
     return found

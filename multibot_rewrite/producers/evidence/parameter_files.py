@@ -26,6 +26,7 @@ from multibot_rewrite.companions.params.sections import (
     ANY,
     INNER,
     MANAGER,
+    PARAMETERS,
     RawSection,
     identify_node,
     is_for,
@@ -85,9 +86,14 @@ def given_nodes(
 def _check_name(name: str, place: Place) -> None:
     fault = check_node_name(name)
     # Launch files fill in placeholders.
-    if fault and not PLACEHOLDER.search(name):
-        hint = "write letters, digits and underscores, a letter first"
-        raise InputError(f"{place}: controller {name!r}: {fault.reason}; {hint}")
+    if not fault or PLACEHOLDER.search(name):
+        return
+    owner, _, last = name.rpartition(".")
+    if last == PARAMETERS:
+        message = f"the type of {owner!r} is below a second {PARAMETERS}, where nothing reads it"
+        raise InputError(f"{place}: {message}; write type: directly below {owner}:")
+    hint = "write letters, digits and underscores, a letter first"
+    raise InputError(f"{place}: controller {name!r}: {fault.reason}; {hint}")
 
 
 def named_values(

@@ -51,12 +51,10 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
     release = file.context.distro
     known = file.known.nodes.values() if file.known else ()
     told = {type_ for node in known for type_ in node.facts.deprecated_types}  # MB869
-    for it in demands(file, "class", "classes"):
-        for given in [it.given] if it.check == "class" else _plugins(it):
-            for name in words_of(given):
-                where = f"{it.section.title}: {given.name}"
-                if name not in told:
-                    yield from _of_class(given.node, where, name, it.words[0], release)
+    for it, given, name in _named_classes(file):
+        if name not in told:
+            where = f"{it.section.title}: {given.name}"
+            yield from _of_class(given.node, where, name, it.words[0], release)
     for it in demands(file, "critics"):
         yield from _critics(it)
     for section in sections(file):
@@ -66,6 +64,21 @@ def unknown_classes(file: NamedFile) -> Iterator[Remark]:
         if own and _package(class_) in _controller_packages():
             where = f"{section.title}: {TYPE}"
             yield from _of_class(own.node, where, class_, _CONTROLLER, release)
+
+
+def classes_of_other_releases(file: NamedFile) -> list[str]:
+    """Return the classes that only other releases than the file's register by exactly this name."""
+    release = file.context.distro
+    found = ((plugin_bases()[it.words[0]], name) for it, _, name in _named_classes(file))
+    words = ((name, base.classes.get(name, "")) for base, name in found)
+    return [name for name, releases in words if releases and not has_release(releases, release)]
+
+
+def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Given, str]]:
+    """The classes that a file names for pluginlib, each with its place and what asks for it."""
+    for it in demands(file, "class", "classes"):
+        for given in [it.given] if it.check == "class" else _plugins(it):
+            yield from ((it, given, name) for name in words_of(given))
 
 
 @cache

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 
+from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import found_by_plan
@@ -25,24 +26,16 @@ def disconnected_tf_tree(plan: Index, seen: Index) -> Iterator[Finding]:
     for tree in tf_trees(plan, seen):
         # A chain may go through frames that are nobody's, as a relay names them.
         above = {edge.child: edge.parent for edge in tree.edges}
+        roots_above = chain_ends(above)
         roots_of: dict[str, set[str]] = defaultdict(set)
         # Of a frame with two parents, which is another finding, one counts.
         for edge in (it for it in tree.edges if above[it.child] == it.parent):
             for robot in _robots_at_home(plan, tree, edge):
-                roots_of[robot].add(_root(above, edge.parent))
+                roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
         for robot, found in roots_of.items():
             roots = sorted(found - {""})
             if len(roots) > 1:
                 yield _disconnected(plan, seen, plan.declared[robot], roots)
-
-
-def _root(above: Mapping[str, str], frame: str) -> str:
-    """What a frame hangs from in the end; empty for a circle, which has no root."""
-    for _ in above:
-        if frame not in above:
-            return frame
-        frame = above[frame]
-    return "" if frame in above else frame
 
 
 def _robots_at_home(plan: Index, tree: TfTree, edge: Edge) -> Set[str]:

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.transforms import collide
-from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, incomplete
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
@@ -23,7 +23,8 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 )
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
-    not called tf, such as that of a simulator's ground truth, is no robot's tree."""
+    not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one in its
+    namespace on which only nodes send that send to the robot's tree as well."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
@@ -37,7 +38,13 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
         planned = robot in seen.known.home
-        odd = [it for it in topics if it != home and (planned or it not in mixed)]
+        odd = [
+            it
+            for it in topics
+            if it != home
+            and (planned or it not in mixed)
+            and not _is_beside(seen, robot, topics, it)
+        ]
         yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
@@ -91,6 +98,8 @@ def _frames_beside(
     hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest.
     Where it is known which topic is the robot's, its plan is asked (rules/pair/transforms.py)."""
     level = WARNING if incomplete(seen.system) else ERROR
+    trees = {it.topic: it for it in seen.trees}
+    children = {it.topic: {edge.child for edge in it.edges} for it in seen.trees}
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
@@ -100,7 +109,11 @@ def _frames_beside(
         for robot in (it for it in found if it in senders and it not in seen.known.home):
             home = _home(seen, robot, senders[robot])
             whole = len(found[robot]) > 1
-            odd = [it for it in found[robot] if not _is_copy(seen, home, it, whole)]
+            odd = [
+                it
+                for it in found[robot]
+                if not _is_copy(seen, trees[home], children[home], it, whole)
+            ]
             if not odd or tree.topic in senders[robot]:
                 continue
             node, frames = odd[0].publishers[0], unique(it.child for it in odd)
@@ -111,13 +124,19 @@ def _frames_beside(
             )  # fmt: skip
 
 
-def _is_copy(seen: Index, home: str, edge: Edge, whole: bool) -> bool:
+def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whole: bool) -> bool:
     """Is it in the tree as well, without the robot's name if it is not the only one, or sent by a node
-    of a robot, or by one that hears the tree?"""
-    tree = next(it for it in seen.trees if it.topic == home)
-    there = {it.child for it in tree.edges}
+    of a robot, or by one that hears the tree? ``children`` are those of the tree."""
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
-    return hears or edge.child in there or (whole and seen.plain_frame(edge.child) in there)
+    named = edge.child in children or (whole and seen.plain_frame(edge.child) in children)
+    return hears or named
+
+
+def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
+    """Is it in the robot's namespace, and do only nodes send there that send to its tree as well? So
+    does a bridge that has a row for the poses of a simulator."""
+    at_home = topics.get(_home(seen, robot, topics), ())
+    return seen.robot(topic) == robot and {*at_home}.issuperset(topics[topic])
 
 
 def _looks(seen: Index, node: str) -> bool:
@@ -128,7 +147,7 @@ def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
     if robot in seen.known.home:
         return seen.known.home[robot]
-    own = [it for it in topics if seen.robot(it) == robot]
+    own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
 

@@ -74,7 +74,7 @@ def _misspelt_library(
     """Yield a library that is not known, of a class that is: that of another one, nearly spelt so. A
     library that is not called as those of Gazebo may be anybody's."""
     vocabulary = subject.tree.vocabulary
-    if "::" not in name or vocabulary.values(library) is not None:
+    if "::" not in name or vocabulary.values(library) or vocabulary.find("plugin", library):
         return
     section = vocabulary.values(name)
     near = nearest(library, [it for it in section.names if "::" not in it] if section else [])
