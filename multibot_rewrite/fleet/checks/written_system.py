@@ -207,7 +207,7 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
         if it.child not in children or robot.member.source.root.tag == "robot":
             children.add(it.child)
             yield edge(it, root, place, topic)
-    for it in _simulated(robot):
+    for it in () if name in fleet.placed else _simulated(robot):
         yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
     in_tree = {*tree}
     for (owner, node), sent in fleet.edges.items():
