@@ -63,6 +63,11 @@ def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
     return (*found, *(it for node in nodes for it in sent_by(node, "")))
 
 
+def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
+    """The transforms of the controllers that surely run."""
+    yield from (it for node in _controllers(nodes) for it in sent_by(node, ""))
+
+
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
     """Return the usual frames that nothing of the robot has, each with the frame that its drive has in
     that place."""
@@ -203,10 +208,13 @@ def _with_controllers(
     return {**offered, ODOMETRY: found} if ends else offered
 
 
+def _controllers(nodes: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
+    yield from (it for it in nodes if it.host == MANAGER and not it.when)
+
+
 def _of_controllers(nodes: Iterable[NodeFacts], role: str, types: Collection[str]) -> Sequence[str]:
     """The topics of these types that controllers surely have."""
-    mounted = (it for it in nodes if it.host == MANAGER and not it.when)
-    ends = ((node, it) for node in mounted for it in node.endpoints)
+    ends = ((node, it) for node in _controllers(nodes) for it in node.endpoints)
     return [
         _topic(*it) for it in ends if it[1].role == role and it[1].type in types and not it[1].when
     ]

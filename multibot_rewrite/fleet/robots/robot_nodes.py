@@ -34,6 +34,7 @@ from multibot_rewrite.fleet.robots.fitting import (
     fitting_frames,
     free_nodes,
     sends_too,
+    sent_by_controllers,
     with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
@@ -124,7 +125,7 @@ def robot_nodes(
     of_srdf = () if whole else tuple(_of_srdf(spec, nodes, known))
     nodes = (*nodes, *of_srdf)
     has, started = described(member, spec), launched.started if launched else {}
-    fits = fitting_frames(member, nodes, has.sent)
+    fits = fitting_frames(member, nodes, (*has.sent, *sent_by_controllers(nodes)))
     known = {name: with_frames(it, fits) for name, it in known.items()}
     own_fits = [with_frames(it, fits) for it in nodes]
     mine = frozenset(it.name for it in (*stack, *of_srdf)) - started.keys()
