@@ -14,17 +14,18 @@ from multibot_rewrite.cli.multibot import main
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"
+MASS = """<inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
 WHEEL = """
-<link name="{0}_wheel"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
-</inertial></link>
-<joint name="{0}_wheel_joint" type="continuous"><parent link="chassis"/><child link="{0}_wheel"/></joint>
+<link name="{0}_wheel">{1}</link>
+<joint name="{0}_wheel_joint" type="continuous"><parent link="chassis"/>
+<child link="{0}_wheel"/></joint>
 """
 STATE = """<joint name="{}_wheel_joint"><command_interface name="velocity"/>
 <state_interface name="position"/><state_interface name="velocity"/></joint>"""
 DRIVEN = f"""<robot name="driven">
-<link name="chassis"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
-</inertial></link>
-{WHEEL.format("left")}{WHEEL.format("right")}
+<link name="chassis">{MASS}</link>
+{WHEEL.format("left", MASS)}{WHEEL.format("right", MASS)}
 <ros2_control name="wheels" type="system">
 <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
 {STATE.format("left")}{STATE.format("right")}
@@ -54,7 +55,10 @@ ekf_filter_node:
   ros__parameters:
     {odom_frame: odom, base_link_frame: base_link, world_frame: odom, odom0: odom, publish_tf: true}
 """
-ROW = "- {{ros_topic_name: {0}, gz_topic_name: {0}, direction: {1}, ros_type_name: {2}, gz_type_name: {3}}}\n"
+ROW = """\
+- {{ros_topic_name: {0}, gz_topic_name: {0}, direction: {1},
+   ros_type_name: {2}, gz_type_name: {3}}}
+"""
 PLAIN = ROW.format("cmd_vel", "ROS_TO_GZ", "geometry_msgs/msg/Twist", "gz.msgs.Twist")
 TF = ROW.format("tf", "GZ_TO_ROS", "tf2_msgs/msg/TFMessage", "gz.msgs.Pose_V")
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"

@@ -154,7 +154,7 @@ def fitted(
         else it._replace(usual=())
         for it in nodes
     ]
-    settled = _driving(settled, own)
+    settled = list(_driving(settled, own))
     choices = {it.node.name: it for it in _choices(settled, own, free, given, known)}
     wanted = _wanted(tuple(choices.values()), free, settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
