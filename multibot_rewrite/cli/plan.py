@@ -121,7 +121,9 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
-    carried, left = bridged_topics(made.inventories, made.naming, made.models, made.table.names)
+    carried, left = bridged_topics(
+        made.inventories, made.naming, made.models, made.table.names, made.placed
+    )
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"
         note(options, f"{item.robot}: warning: {message} ({item.hint})")

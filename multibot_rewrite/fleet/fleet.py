@@ -60,7 +60,8 @@ class Fleet(NamedTuple):
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
-    ``models`` what each robot's model is spawned as, if not as the robot is called."""
+    ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
+    robots whose files have a node that sends the transform which their drive sends, too."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -78,6 +79,7 @@ class Fleet(NamedTuple):
     described: Mapping[str, Inventory] = ALIKE
     apart: Apart = TOGETHER
     models: Models = AS_ROBOTS
+    placed: frozenset[str] = frozenset()
 
     @property
     def words(self) -> dict[str, str]:

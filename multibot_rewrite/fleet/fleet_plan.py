@@ -115,7 +115,11 @@ def plan_fleet(
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
         models = {it.spec.namespace: it.spec.model for it in robots}
-        fleet = with_relays(fleet._replace(clocks=clocks, apart=file.apart, models=models), file)
+        by_nodes = frozenset(
+            it.spec.namespace for it in robots if evidence[node_sources(it.spec)].is_placed
+        )
+        fleet = fleet._replace(clocks=clocks, apart=file.apart, models=models, placed=by_nodes)
+        fleet = with_relays(fleet, file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 

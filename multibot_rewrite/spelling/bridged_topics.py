@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import cast
 
@@ -98,12 +98,14 @@ def bridged_topics(
     naming: Naming,
     models: Models = AS_ROBOTS,
     names: Sequence[EndpointName] = (),
+    placed: Collection[str] = (),
 ) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
     """Return the bridged topics of a fleet, and those that cannot be bridged.
 
     ``inventories`` are those of the rewritten descriptions, ``models`` what they are spawned as,
     ``names`` the ends of the robots' nodes: a topic has the type and, where the description does not
-    say it, the name that these have.
+    say it, the name that these have. Robots that are ``placed`` by nodes do without the transforms of
+    their drives.
     """
     bridged = [
         BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
@@ -111,7 +113,10 @@ def bridged_topics(
     ]
     left: list[UnbridgedTopic] = []
     for robot, inventory in inventories.items():
+        tf = _tf_name(robot, naming) if robot in placed else ""
         for item in _robot_topics(inventory, robot, models.get(robot, robot), naming):
+            if isinstance(item, BridgedTopic) and item.ros == tf:
+                continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
     return [_fitting(it, names) for it in dict.fromkeys(bridged)], list(dict.fromkeys(left))
 

@@ -203,7 +203,7 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
     for it, joint in zip(tree, joints, strict=True):
         place = Place(robot.spec.description, joint.sourceline or 1)  # type: ignore[arg-type]
         yield edge(it, root, place, topic)
-    for it in _simulated(robot):
+    for it in () if name in fleet.placed else _simulated(robot):
         yield edge(it, f"/{name}/{BRIDGE_NODE}", topic=topic)
     in_tree = {*tree}
     for (owner, node), sent in fleet.edges.items():

@@ -123,6 +123,9 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
     companions = {**data.get("companions", {}), **own.get("companions", {})}
+    simulator = own.get("simulator", data.get("simulator", ""))
+    if simulator == REAL:
+        companions.pop("bridge", None)
     texts = texts_of(listed(companions.get(PARAMS, [])), file)
     stacks = tuple(listed(own.get("stack", data.get("stack", []))))
     _check_stacks(read, at, stacks, release)
@@ -142,9 +145,9 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         line,
         tuple(_launch(data, own, place)),
         tuple(texts.items()),
-        simulator=own.get("simulator", data.get("simulator", "")),
+        simulator=simulator,
         use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
-        simulated=_simulated(data, own),
+        simulated="" if simulator == REAL else own.get("simulated", data.get("simulated", "")),
         bridge_namespace=own.get("bridge_namespace", data.get("bridge_namespace", "")).strip("/"),
         fills=own.get("fill_arguments", data.get("fill_arguments", True)),
         parts=parts,
@@ -155,12 +158,6 @@ def _files(values: Sequence[Any], texts: Iterable[str]) -> Iterator[str]:
     """The paths of companions: of parameters in the fleet file itself that of their text."""
     made = iter(texts)
     yield from (it if isinstance(it, str) else next(made) for it in values)
-
-
-def _simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> str:
-    """What the simulator gets instead of the description; a real robot has none."""
-    given = own.get("simulator", data.get("simulator", ""))
-    return "" if given == REAL else str(own.get("simulated", data.get("simulated", "")))
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:

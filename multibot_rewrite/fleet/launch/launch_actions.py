@@ -195,7 +195,7 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
     robot, facts = given.robot, given.facts[name]
     found: list[File | Mapping[str, Any]] = [File(it) for it in params_paths(robot, given.files)]
     known = facts.kind
-    if facts.usual and all(it.known != known for it in given.plan.evidence_of(robot).given):
+    if facts.usual:
         found.append(dict(facts.usual))
     if known == MANAGER and (types := dict(_types(given, name))):
         found.append(types)

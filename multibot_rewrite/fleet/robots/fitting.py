@@ -21,15 +21,15 @@ from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
-from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, bridged_topics
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_in, sent_by
 from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES, Edge, edge_of
-from multibot_rewrite.system.words import PLAIN, STAMPED
+from multibot_rewrite.system.words import ODOMETRY, PLAIN, STAMPED
 
 ODOM = "odom"
 Frames = Mapping[str, str]
@@ -38,8 +38,10 @@ _BY_FILE = "open: file"
 # What a robot has one of, mostly: a reader of it has no other one in mind.
 SENSED = (
     *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/NavSatFix"),
-    *("sensor_msgs/msg/PointCloud2",),
+    *("sensor_msgs/msg/PointCloud2", ODOMETRY),
 )
+COMMANDS = (PLAIN, STAMPED)
+RVIZ = "rviz2"
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
 
@@ -59,6 +61,11 @@ def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
     reading = read(source.source, source.file, member.vocabulary)
     nodes = (node for node, _ in plugin_nodes(reading, ""))
     return (*found, *(it for node in nodes for it in sent_by(node, "")))
+
+
+def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
+    """The transforms of the controllers that surely run."""
+    yield from (it for node in _controllers(nodes) for it in sent_by(node, ""))
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
@@ -98,10 +105,11 @@ def changed_frames(
 
 
 class _Choice(NamedTuple):
-    """A node whose commands are stamped or not as a parameter says: the type that it has now, whether
-    a file sets the parameter, and whether the build may."""
+    """A node whose commands are stamped or not as a parameter says: its ends that are, as its code has
+    them, the type that it has now, whether a file sets the parameter, and whether the build may."""
 
     node: NodeFacts
+    ends: Sequence[Endpoint]
     type: str
     is_set: bool
     is_free: bool
@@ -121,33 +129,34 @@ def described(member: Member, spec: RobotSpec) -> Described:
     return Described(_driven(member, spec), _offered(member, spec), _root(member))
 
 
-def free_nodes(
-    stack: Iterable[NodeFacts], given: Iterable[GivenNode], started: Collection[str]
-) -> frozenset[str]:
-    """Return the nodes of a stack that no parameter file has a section for and no launch file of the
-    robot starts: what they are set to is the build's to choose."""
+def free_nodes(own: Iterable[str], given: Iterable[GivenNode]) -> frozenset[str]:
+    """Return those of the nodes that no parameter file has a section for: what they are set to is the
+    build's to choose."""
     filed = [f"/{it.name}" for it in given]
-    names = {it.name for it in stack} - {*started}
-    return frozenset(it for it in names if not any(one.endswith(f"/{it}") for one in filed))
+    return frozenset(it for it in own if not any(one.endswith(f"/{it}") for one in filed))
 
 
 def fitted(
     nodes: Sequence[NodeFacts],
+    own: Collection[str],
     free: Collection[str],
     given: Sequence[GivenNode],
     known: Mapping[str, NodeFacts],
     has: Described,
     spec: RobotSpec,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes, those that are ``free`` with the settings that fit the others."""
+    """Return the nodes, those that are ``free`` with the settings that fit the others. ``own`` are
+    those that the build starts: what no file sets of them is the build's to set, too."""
+    offered = _with_controllers(has.offered, nodes)
     settled = [
-        _settled(_rooted(_as_listed(_hearing(it, nodes, has.offered), spec), has.root))
+        _settled(_rooted(_as_listed(_hearing(it, nodes, offered), spec), has.root))
         if it.name in free
-        else it
+        else it._replace(usual=())
         for it in nodes
     ]
-    choices = {it.node.name: it for it in _choices(settled, free, given, known)}
-    wanted = _wanted(tuple(choices.values()), settled, spec)
+    settled = list(_driving(settled, own))
+    choices = {it.node.name: it for it in _choices(settled, own, free, given, known)}
+    wanted = _wanted(tuple(choices.values()), free, settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
     return tuple(_without_second_senders(typed, free, has.sent))
 
@@ -158,7 +167,8 @@ def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
     if spec.simulator != REAL:
         topics, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
         for it in topics:
-            if it.ros_type in SENSED and it.direction == DIRECTIONS["in"]:
+            # One that the description does not name comes where it is read.
+            if it.ros_type in SENSED and it.direction == DIRECTIONS["in"] and not it.is_free:
                 found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
     return found
 
@@ -167,17 +177,66 @@ def _hearing(
     node: NodeFacts, nodes: Iterable[NodeFacts], offered: Mapping[str, Sequence[str]]
 ) -> NodeFacts:
     """The node with the robot's only topic of a sensor where it would hear one that nobody sends."""
-    sent = {_topic(it) for other in nodes for it in other.endpoints if it.role == PUBLISHES}
+    sent = _topics(nodes, PUBLISHES)
     ends = []
     for end in node.endpoints:
         topics = offered.get(end.type, ()) if end.role == SUBSCRIBES and not end.when else ()
-        lost = len(topics) == 1 and "<" not in end.name and _topic(end) not in {*topics, *sent}
-        ends.append(end._replace(remapped=topics[0]) if lost else end)
+        lost = (
+            len(topics) == 1 and "<" not in end.name and _topic(node, end) not in {*topics, *sent}
+        )
+        # No file says the name that its stack has.
+        named = end.named_from or end.name
+        ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)
     return node._replace(endpoints=tuple(ends)) if offered else node
 
 
-def _topic(end: Endpoint) -> str:
-    return (end.remapped or end.name).strip("/")
+def _topic(node: NodeFacts, end: Endpoint) -> str:
+    return (end.remapped or end.name).replace("~", node.name, 1).strip("/")
+
+
+def _topics(nodes: Iterable[NodeFacts], role: str) -> set[str]:
+    ends = ((node, it) for node in nodes for it in node.endpoints if it.role == role)
+    return {_topic(*it) for it in ends if not it[1].when}
+
+
+def _with_controllers(
+    offered: Mapping[str, Sequence[str]], nodes: Iterable[NodeFacts]
+) -> Mapping[str, Sequence[str]]:
+    """What a robot offers, with the odometry of its controllers."""
+    ends = _of_controllers(nodes, PUBLISHES, (ODOMETRY,))
+    found = [*offered.get(ODOMETRY, ()), *ends]
+    return {**offered, ODOMETRY: found} if ends else offered
+
+
+def _controllers(nodes: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
+    yield from (it for it in nodes if it.host == MANAGER and not it.when)
+
+
+def _of_controllers(nodes: Iterable[NodeFacts], role: str, types: Collection[str]) -> Sequence[str]:
+    """The topics of these types that controllers surely have."""
+    ends = ((node, it) for node in _controllers(nodes) for it in node.endpoints)
+    return [
+        _topic(*it) for it in ends if it[1].role == role and it[1].type in types and not it[1].when
+    ]
+
+
+def _driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
+    """The nodes; commands of ``own`` ones that nothing hears go to the one controller that drives."""
+    drives = _of_controllers(nodes, SUBSCRIBES, COMMANDS)
+    if len(drives) != 1:
+        return nodes
+    heard = _topics(nodes, SUBSCRIBES)
+    return [_sending(it, heard, drives[0]) if it.name in own else it for it in nodes]
+
+
+def _sending(node: NodeFacts, heard: Collection[str], drive: str) -> NodeFacts:
+    ends = (
+        it._replace(remapped=drive)
+        if it.role == PUBLISHES and it.type in COMMANDS and _topic(node, it) not in heard
+        else it
+        for it in node.endpoints
+    )
+    return node if node.host else node._replace(endpoints=tuple(ends))
 
 
 def _root(member: Member) -> str:
@@ -204,11 +263,15 @@ def _rooted(node: NodeFacts, root: str) -> NodeFacts:
 
 def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     """The node without the names that it makes of a list which no file gives it: they may come, if a
-    file is added."""
+    file is added. So may those of the panels and displays that RViz has in its usual file, where the
+    robot has another one."""
     if node.kind == MOVE_GROUP and spec.companions.get("moveit"):
         return node
+    shows = node.kind == RVIZ and bool(spec.companions.get("rviz"))
     ends = (
-        it._replace(when=_BY_FILE) if "<" in it.name and not it.when else it
+        it._replace(when=_BY_FILE)
+        if not it.when and ("<" in it.name or (shows and it.type != TF_TYPE))
+        else it
         for it in node.endpoints
     )
     return node._replace(endpoints=tuple(ends))
@@ -235,6 +298,7 @@ def _values(node: NodeFacts) -> dict[str, Given]:
 
 def _choices(
     nodes: Iterable[NodeFacts],
+    own: Collection[str],
     free: Collection[str],
     given: Sequence[GivenNode],
     known: Mapping[str, NodeFacts],
@@ -247,7 +311,8 @@ def _choices(
             values = next(sections, _values(node))
             chosen = chosen_type(ends[0].types, lookup(node, values)) or ends[0].type
             is_set = not _switches(ends).isdisjoint(values)
-            yield _Choice(node, chosen, is_set, node.name in free)
+            is_free = node.name in free or (node.name in own and not is_set)
+            yield _Choice(node, ends, chosen, is_set, is_free)
 
 
 def _either(node: NodeFacts) -> Iterator[Endpoint]:
@@ -263,10 +328,15 @@ def _switches(ends: Iterable[Endpoint]) -> set[str]:
     return {it.parameter for one in conditions for terms in parse_condition(one) for it in terms}
 
 
-def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotSpec) -> str:
+def _wanted(
+    choices: Sequence[_Choice],
+    free: Collection[str],
+    nodes: Iterable[NodeFacts],
+    spec: RobotSpec,
+) -> str:
     """The type of the robot's commands: what a file sets, what its bridge or driver takes, what the
     nodes of its files have, and what all nodes have; else the plain one."""
-    topics = {end.remapped or end.name for it in choices for end in _either(it.node)}
+    topics = {_topic(it.node, end) for it in choices for end in _either(it.node)}
     said = [it.type for it in choices if it.is_set]
     rows = [
         end.type
@@ -278,12 +348,10 @@ def _wanted(choices: Sequence[_Choice], nodes: Iterable[NodeFacts], spec: RobotS
         end.type
         for node in nodes
         for end in node.endpoints
-        if end.role == SUBSCRIBES
-        and not (end.when or end.also)
-        and (end.remapped or end.name) in topics
+        if end.role == SUBSCRIBES and not (end.when or end.also) and _topic(node, end) in topics
     ]
     fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
-    of_files = [it.type for it in choices if not it.is_free]
+    of_files = [it.type for it in choices if it.node.name not in free]
     usual = {it.type for it in choices}
     return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
 
@@ -301,18 +369,17 @@ def _typed(node: NodeFacts, choice: _Choice | None, wanted: str) -> NodeFacts:
 
 def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     """The parameter that gives all of the node's ends the wanted type; None where there is none."""
-    ends = [*_either(choice.node)]
-    for name in sorted(_switches(ends)):
+    for name in sorted(_switches(choice.ends)):
         for value in (True, False):
             value_of = {name: value}.get
-            if all((chosen_type(it.types, value_of) or it.type) == wanted for it in ends):
+            if all((chosen_type(it.types, value_of) or it.type) == wanted for it in choice.ends):
                 return ((name, value),)
     return None
 
 
 def _of_type(end: Endpoint, wanted: str) -> Endpoint:
-    either = end.types and {end.type, *end.also} >= {PLAIN, STAMPED}
-    return end._replace(type=wanted, also=(), types=()) if either else end
+    is_command = end.type in COMMANDS and not end.when
+    return end._replace(type=wanted, also=(), types=()) if is_command else end
 
 
 def _without_second_senders(
@@ -321,13 +388,23 @@ def _without_second_senders(
     """The nodes, free ones with their transforms off where another one sends them: two would take the
     frame from each other."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
-    in_files = (it for node in nodes if node.name not in free for it in sent_by(node, ""))
-    taken = {_place(it, bodies) for it in (*sent, *in_files)}
+    taken = {_place(it, bodies) for it in (*sent, *_in_files(nodes, free))}
     for node in nodes:
         own = {_place(it, bodies) for it in sent_by(node, "")}
         switch = _switch_of(node) if node.name in free and not own.isdisjoint(taken) else ""
         yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
         taken |= set() if switch else own
+
+
+def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edge]:
+    yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
+
+
+def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
+    """Does a node that is not ``free`` send one of the transforms that plugins have ``sent``?"""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    own = {_place(it, bodies) for it in _in_files(nodes, free)}
+    return any(_place(it, bodies) in own for it in sent)
 
 
 def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:

@@ -33,6 +33,8 @@ from multibot_rewrite.fleet.robots.fitting import (
     fitted,
     fitting_frames,
     free_nodes,
+    sends_too,
+    sent_by_controllers,
     with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
@@ -62,20 +64,24 @@ WORLD, BRIDGE = "world", "ros_gz_bridge"
 PROGRAM = "ros2_control"
 BY_ARGUMENT = "an argument of the xacro makes it"
 # What decides the nodes of a robot.
-NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
+NodeSources = tuple[
+    tuple[str, ...], tuple[tuple[str, ...], ...], tuple[LaunchOrder, ...], str, str, Sources
+]
+_DECIDING = ("params", "bridge", "rviz", "moveit")
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
-    params = spec.companions.get("params", ())
-    return spec.stacks, params, spec.launch, spec.srdf, spec.simulator, spec.sources
+    files = tuple(spec.companions.get(it, ()) for it in _DECIDING)
+    return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
-    has in the place of defaults, and the transforms that a simulator sends."""
+    has in the place of defaults, the transforms that a simulator sends, and whether a node of its files
+    sends one of these, which no bridge file of its own has."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
@@ -86,6 +92,7 @@ class RobotEvidence(NamedTuple):
     arguments: tuple[str, ...] = ()
     frames: Frames = NO_FRAMES
     simulated: tuple[Edge, ...] = ()
+    is_placed: bool = False
 
 
 def robot_nodes(
@@ -118,13 +125,15 @@ def robot_nodes(
     of_srdf = () if whole else tuple(_of_srdf(spec, nodes, known))
     nodes = (*nodes, *of_srdf)
     has, started = described(member, spec), launched.started if launched else {}
-    fits = fitting_frames(member, nodes, has.sent)
+    fits = fitting_frames(member, nodes, (*has.sent, *sent_by_controllers(nodes)))
     known = {name: with_frames(it, fits) for name, it in known.items()}
     own_fits = [with_frames(it, fits) for it in nodes]
-    free = free_nodes((*stack, *of_srdf), given, started)
-    # A stack of the user's own says what its nodes hear.
+    mine = frozenset(it.name for it in (*stack, *of_srdf)) - started.keys()
+    free = free_nodes(mine, given)
+    # A stack of the user's own says what its nodes hear and send.
     has = has._replace(offered={}) if file.nodes else has
-    fitting = fitted(own_fits, free, given, known, has, spec)
+    mine = frozenset() if file.nodes else mine
+    fitting = fitted(own_fits, mine, free, given, known, has, spec)
     frames, nodes = changed_frames(fitting, nodes), fitting
     written = _as_written(nodes, own, parameters, file.distro)
     named = _made_by_arguments(written, given, topics) if topics else written
@@ -134,7 +143,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    more = unsimulated, arguments, frames, has.sent
+    is_placed = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    more = unsimulated, arguments, frames, has.sent, is_placed
     return RobotEvidence(given, known, marked, said, spawned, *more)
 
 
@@ -242,12 +252,9 @@ def _manager_in_plugin(
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
     names = {name for it in wide for name in it.names}
     library = built_in(release)
-    if any(it.host == MANAGER for it in nodes):
+    if any(it.host == MANAGER for it in nodes) or any(it.known == MANAGER for it in own):
         made = (it for name in library.stacks for it in stack_of(library, name) if it.plugin)
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
-    elif any(it.known == MANAGER for it in own):
-        for name in names & library.stacks.keys():
-            yield from (it for it in stack_of(library, name) if it.name == MANAGER)
 
 
 def _started_here(release: str) -> dict[str, NodeFacts]:

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a stack adds finds the drive that a robot's own files have: a controller of ros2_control, a
+filter that places the robot, a bridge file of one type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from paths import ROOT
+
+from multibot_rewrite.cli.multibot import main
+
+ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
+RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"
+MASS = """<inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
+WHEEL = """
+<link name="{0}_wheel">{1}</link>
+<joint name="{0}_wheel_joint" type="continuous"><parent link="chassis"/>
+<child link="{0}_wheel"/></joint>
+"""
+STATE = """<joint name="{}_wheel_joint"><command_interface name="velocity"/>
+<state_interface name="position"/><state_interface name="velocity"/></joint>"""
+DRIVEN = f"""<robot name="driven">
+<link name="chassis">{MASS}</link>
+{WHEEL.format("left", MASS)}{WHEEL.format("right", MASS)}
+<ros2_control name="wheels" type="system">
+<hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+{STATE.format("left")}{STATE.format("right")}
+</ros2_control>
+<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+<parameters>controllers.yaml</parameters></plugin></gazebo>
+</robot>
+"""
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+    base_frame_id: chassis
+"""
+# A file of Nav2 as people shorten it: nothing says the type of commands.
+NAV2 = """\
+controller_server: {ros__parameters: {controller_frequency: 20.0}}
+behavior_server: {ros__parameters: {robot_base_frame: base_link}}
+velocity_smoother: {ros__parameters: {smoothing_frequency: 20.0}}
+"""
+EKF = """\
+ekf_filter_node:
+  ros__parameters:
+    {odom_frame: odom, base_link_frame: base_link, world_frame: odom, odom0: odom, publish_tf: true}
+"""
+ROW = """\
+- {{ros_topic_name: {0}, gz_topic_name: {0}, direction: {1},
+   ros_type_name: {2}, gz_type_name: {3}}}
+"""
+PLAIN = ROW.format("cmd_vel", "ROS_TO_GZ", "geometry_msgs/msg/Twist", "gz.msgs.Twist")
+TF = ROW.format("tf", "GZ_TO_ROS", "tf2_msgs/msg/TFMessage", "gz.msgs.Pose_V")
+ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"
+
+
+def build(folder: Path, text: str, **files: str) -> int:
+    """The exit code of a build of a fleet file of these lines, beside these files, into ``out``."""
+    for name, data in files.items():
+        (folder / name.replace("_", ".")).write_text(data)
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(text + ROBOTS)
+    return main(["build", str(fleet), "-o", str(folder / "out"), "-q"])
+
+
+def ends(folder: Path, node: str) -> set[tuple[str, str]]:
+    """What the plan says that a node does with topics."""
+    plan = yaml.safe_load((folder / "out" / "plan.yaml").read_text())
+    return {(it[0], it[2]) for it in plan["robots"]["robot1"]["nodes"][node]}
+
+
+def is_as_planned(folder: Path) -> bool:
+    """Whether what the launch file starts has no error against the plan."""
+    out = folder / "out"
+    return (
+        main(["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]) != 1
+    )
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize("layout", ["both", "frames-per-robot"])
+def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> None:
+    """diff_drive_controller.cpp: commands at ~/cmd_vel, odometry at ~/odom; no launch file of the robot
+    has a rule for them. In Humble nothing but the plugin hands the description over."""
+    text = f"layout: {layout}\naffix: prefix\ndistro: {release}\nstack: nav2\n"
+    more = "description: driven.urdf\ncompanions: {params: controllers.yaml}\n"
+    assert build(tmp_path, text + more, driven_urdf=DRIVEN, controllers_yaml=CONTROLLERS) == 0
+    last = "velocity_smoother" if release == "humble" else "collision_monitor"
+    assert ("publishes", "/robot1/drive/cmd_vel") in ends(tmp_path, f"/robot1/{last}")
+    assert ("subscribes", "/robot1/drive/odom") in ends(tmp_path, "/robot1/bt_navigator")
+    params = (tmp_path / "out" / "robot1" / "controllers.yaml").read_text()
+    assert "robot1/chassis" in params
+    assert "base_footprint" not in params
+    assert is_as_planned(tmp_path)
+
+
+@pytest.mark.parametrize("layout", ["postfix", "both"])
+def test_a_joystick_drives_a_controller(layout: str, tmp_path: Path) -> None:
+    """twist_mux sends to cmd_vel, which no node of this robot hears."""
+    text = f"layout: {layout}\ndistro: jazzy\nstack: teleop\ndescription: driven.urdf\n"
+    more = "companions: {params: controllers.yaml}\n"
+    assert build(tmp_path, text + more, driven_urdf=DRIVEN, controllers_yaml=CONTROLLERS) == 0
+    node, topic = ("/twist_mux_robot1", "/drive_robot1/cmd_vel")
+    if layout == "both":
+        node, topic = "/robot1/twist_mux", "/robot1/drive/cmd_vel"
+    assert ("publishes", topic) in ends(tmp_path, node)
+
+
+def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> None:
+    """Kilted's Nav2 sends TwistStamped, the bridge file has Twist, and no file says otherwise."""
+    text = f"layout: both\ndistro: kilted\nstack: navigation\ndescription: {ROVER}\n"
+    more = "companions: {params: nav2.yaml, bridge: bridge.yaml}\n"
+    assert build(tmp_path, text + more, nav2_yaml=NAV2, bridge_yaml=PLAIN) == 0
+    launch = (tmp_path / "out" / "fleet.launch.py").read_text()
+    started = launch.split("Node(")
+    for node in ("controller_server", "behavior_server", "velocity_smoother", "collision_monitor"):
+        (one,) = (it for it in started if f"name='{node}'" in it)
+        assert "'enable_stamped_cmd_vel': False" in one, node
+    assert is_as_planned(tmp_path)
+
+
+def test_a_filter_of_the_files_places_the_robot(tmp_path: Path) -> None:
+    """The file says publish_tf: so the bridge of the build leaves the drive's transform out."""
+    text = f"layout: both\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
+    assert build(tmp_path, text + "companions: {params: ekf.yaml}\n", ekf_yaml=EKF) == 0
+    rows = yaml.safe_load((tmp_path / "out" / "robot1" / "bridge.yaml").read_text())
+    assert "/robot1/odom" in {it["ros_topic_name"] for it in rows}
+    assert "tf2_msgs/msg/TFMessage" not in {it["ros_type_name"] for it in rows}
+    bare = text.replace("stack: robot_localization\n", "")
+    assert build(tmp_path, bare) == 0
+    rows = yaml.safe_load((tmp_path / "out" / "robot1" / "bridge.yaml").read_text())
+    assert "tf2_msgs/msg/TFMessage" in {it["ros_type_name"] for it in rows}
+
+
+def test_a_bridge_file_with_the_transform_is_a_second_sender(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Both are the user's, and only he knows which one is meant."""
+    text = f"layout: both\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
+    more = "companions: {params: ekf.yaml, bridge: bridge.yaml}\n"
+    assert build(tmp_path, text + more, ekf_yaml=EKF, bridge_yaml=PLAIN + TF) == 1
+    assert "MG408" in capsys.readouterr().err
+
+
+def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None:
+    """The file is kept for simulated ones; a domain_bridge is none to Gazebo."""
+    text = (
+        f"layout: both\ndistro: jazzy\nstack: slam_toolbox\nsimulator: none\ndescription: {ROVER}\n"
+    )
+    more = "domains: {robot1: 11, robot2: 12}\ncrossing: [tf]\ncompanions: {bridge: bridge.yaml}\n"
+    assert build(tmp_path, text + more, bridge_yaml=PLAIN) == 0
+    assert not (tmp_path / "out" / "robot1" / "bridge.yaml").exists()
+    assert "ros_gz_bridge has to" not in (tmp_path / "out" / "plan.yaml").read_text()
+
+
+def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
+    """The panels of Nav2 are in nav2_default_view.rviz; this file has none."""
+    text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
+    assert build(tmp_path, f"{text}companions: {{rviz: {RVIZ}}}\n") == 0
+    assert is_as_planned(tmp_path)
