@@ -104,13 +104,13 @@ def _assert_meant(fleet: DrawnFleet) -> None:
 
 
 def _meaning(it: FleetFile) -> dict[str, object]:
-    """A fleet file without the places of what it says, and without what is empty."""
+    """A fleet file without the places of what it says."""
     robots = [
         row._replace(
             file="", line=0,
             companions={
                 kind: [path.replace(row.file, "FLEET") for path in paths]
-                for kind, paths in row.companions.items() if paths
+                for kind, paths in row.companions.items()
             },
             filled=tuple((path.replace(row.file, "FLEET"), text) for path, text in row.filled),
         )
@@ -138,9 +138,11 @@ def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
 
 
 def _without_paths(data: bytes) -> bytes:
-    """A file without the lines that name the folder, which a library call has not, or a fleet file."""
+    """A file without comments, and without lines that name its folder or the fleet file: a library call
+    has none."""
     named = (b"<parameters>", FILE.encode(), SITE.encode(), DICT.encode())
-    return b"".join(it for it in data.splitlines(True) if not any(one in it for one in named))
+    lines = (it for it in data.splitlines() if not it.lstrip().startswith(b"#"))
+    return b"\n".join(it for it in lines if not any(one in it for one in named))
 
 
 def _assert_as_checked(fleet: DrawnFleet, graph: LaunchGraph, out: Path) -> None:
