@@ -123,8 +123,8 @@ def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
 
 
 def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
-    """A robot with ``params: []`` has none of the fleet's files, as if nobody had any: its nodes get the
-    frames of its own all the same."""
+    """A robot with ``params: []`` has none of the fleet's files: its nodes get frames of its own, as if
+    nobody had files."""
     own: Data = {"name": "r1", "companions": {"params": []}}
     drawn = fleet(
         f"{CART}, {GZ}", own, {"name": "r2", "stack": []}, layout="both", stack="localization",

@@ -578,9 +578,12 @@ CAUSES = {
             "arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)
         ),
     ),
+    # A namespace of its own has them not, and its name is in no name of ROS then.
     "two underscores": Cause(
-        _with("name", "r__1"),
-        lambda fleet: any("__" in row["name"] for row in fleet.data["robots"]),
+        lambda data, _: (_first(data).update(name="r__1"), _first(data).pop("namespace", None)),
+        lambda fleet: any(
+            "__" in row.get("namespace", row["name"]) for row in fleet.data["robots"]
+        ),
     ),
     "a step without a count": Cause(
         _with("step", {"x": 1}), lambda fleet: any("step" in row for row in fleet.data["robots"])
