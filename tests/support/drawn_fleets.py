@@ -219,6 +219,12 @@ moveit_simple_controller_manager:
     joints: [shoulder, elbow]
 """,
 }
+BRIDGE = """\
+- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,
+   gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}
+- {ros_topic_name: cmd_vel, gz_topic_name: cmd_vel, ros_type_name: geometry_msgs/msg/Twist,
+   gz_type_name: gz.msgs.Twist, direction: ROS_TO_GZ}
+"""
 RVIZ = """\
 Visualization Manager:
   Class: ""
@@ -263,6 +269,8 @@ NAMES = (
     *("start", "sim", "params", "plan", "no", "null", "true", "off", "file", "model", "Robot1"),
     *("base", "wheel", "joint", "link", "shared_nodes", "site", "self", "None", "partial"),
 )
+# Of these layouts docs/nav2.md has a way to show all robots in one RViz.
+RELAYED = ("both", "postfix", "tf-per-robot")
 STEMS = ("robot", "r", "arm", "robot_", "scan", "base_link")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
 STACKS = {
@@ -305,6 +313,10 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
     if maybe(draw, 2):
         data["simulator"] = draw(st.sampled_from(("none", "gazebo")))
     data |= {key: True for key in ("sros2", "fill_arguments") if maybe(draw, 1)}
+    if maybe(draw, 1):
+        data["use_sim_time"] = draw(st.booleans())
+    if maybe(draw, 1) and layout in RELAYED:
+        data["relayed"] = True
     if maybe(draw, 1):
         data["zenoh"] = {"router": "tcp/10.0.0.1:7447"}
     numbered = draw(st.sampled_from(STEMS)) if maybe(draw, 2) else ""
@@ -377,6 +389,9 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
     row: Data = {"name": name}
     row |= {data["affix"] if key == "tag" else key: word for key, word in words.items()}
     row["description"] = _description(making, kind, name)
+    if kind == "gz rover" and maybe(draw, 1):
+        model = KINDS["sdf rover"].text.replace("ROBOT", "rover")
+        row["simulated"] = _written(making, "model", ".sdf", model, name)
     if its.ending.endswith("xacro") and draw(st.booleans()):
         row["arguments"] = {"mast": draw(st.sampled_from(("low", "high")))}
     if maybe(draw, 2):
@@ -435,6 +450,8 @@ def _companions(making: _Making, kind: str, name: str) -> Data:
         found["params"] = [*found.get("params", ()), given]
     if what == MANIPULATOR and draw(st.booleans()):
         found["moveit"] = [_written(making, it, ".yaml", text, name) for it, text in MOVEIT.items()]
+    if kind == "gz rover" and maybe(draw, 2):
+        found["bridge"] = [_written(making, "bridge", ".yaml", BRIDGE, name)]
     if maybe(draw, 2):
         found["rviz"] = _written(making, "one", ".rviz", RVIZ, name)
     return found
@@ -648,12 +665,15 @@ CAUSES = {
             and any(row["description"] == "world.urdf" for row, _ in simulated(fleet))
         ),
     ),
+    # A start pose is given to no robot that maps: slam_toolbox says where it is.
     "a parameter file is called as one that is written": Cause(
         lambda data, _: _first(data).update(
             companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
         ),
         lambda fleet: any(
-            "pose" in row and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            "pose" in row
+            and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
             for row in fleet.data["robots"]
         ),
     ),
