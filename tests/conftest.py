@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gc
 import os
+import random
 import re
 import signal
 import sys
@@ -88,8 +89,17 @@ def _names_tests(config: pytest.Config) -> bool:
     return bool(config.option.keyword) or any("::" in it for it in config.args)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """A number by which fleets are drawn."""
+    about = "draw fleets by this number; fresh: by one that is drawn and printed"
+    parser.addoption("--drawn-seed", metavar="N", default="", help=about)
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """A file whose mark leaves all of it out is not imported."""
+    """A file whose mark leaves all of it out is not imported; a fresh seed is drawn once, before there
+    are processes of xdist."""
+    if config.option.drawn_seed == "fresh":
+        config.option.drawn_seed = str(random.randrange(10**6))
     without = _left_out(config)
     for path in TESTS.rglob("test_*.py") if without else ():
         found = MARKED.search(path.read_text())
@@ -214,7 +224,9 @@ def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Which tests were skipped for want of the real launch."""
+    """By which seed fleets were drawn, and which tests were skipped for want of the real launch."""
+    if seed := terminalreporter.config.option.drawn_seed:
+        terminalreporter.write_line(f"fleets are drawn by --drawn-seed {seed}")
     skipped = terminalreporter.stats.get("skipped", ())
     files = Counter(it.nodeid.partition("::")[0] for it in skipped if REAL in str(it.longrepr))
     if files:

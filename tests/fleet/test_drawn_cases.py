@@ -120,3 +120,15 @@ def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
     judge(CASES["configs of one name"], tmp_path)
     names = {it.name for it in (tmp_path / "out").glob("*.rviz")}
     assert names == {"one.rviz", "arm_one.rviz"}
+
+
+def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
+    """A robot with ``params: []`` has none of the fleet's files: its nodes get frames of its own, as if
+    nobody had files."""
+    own: Data = {"name": "r1", "companions": {"params": []}}
+    drawn = fleet(
+        f"{CART}, {GZ}", own, {"name": "r2", "stack": []}, layout="both", stack="localization",
+        companions={"params": ["nav.yaml"]},
+    )  # fmt: skip
+    judge(drawn, tmp_path)
+    assert "odom_frame_id: r1/odom" in (tmp_path / "out/r1/params.yaml").read_text()

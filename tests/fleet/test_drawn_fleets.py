@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fleets drawn by chance: each builds as its file says, or ends with an error that is in its input.
 
-``python tests/support/drawn_builds.py`` draws with a fresh seed.
+``--drawn-seed fresh`` draws others, ``python tests/support/drawn_builds.py`` does without pytest.
 """
 
 from __future__ import annotations
@@ -13,16 +13,22 @@ from drawn_fleets import CAUSES, drawn, faulty
 SEED = 51
 
 
+@pytest.fixture
+def first(pytestconfig: pytest.Config) -> int:
+    """The number by which the first fleets are drawn."""
+    return int(pytestconfig.option.drawn_seed or SEED)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(3))
-def test_fleets_build_or_have_a_cause(part: int) -> None:
-    judge_many(drawn, 100, SEED + part)
+def test_fleets_build_or_have_a_cause(part: int, first: int) -> None:
+    judge_many(drawn, 100, first + part)
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("part", range(50))
-def test_many_fleets_build_or_have_a_cause(part: int) -> None:
-    judge_many(drawn, 100, 1000 * SEED + part)
+def test_many_fleets_build_or_have_a_cause(part: int, first: int) -> None:
+    judge_many(drawn, 100, 1000 * first + part)
 
 
 @pytest.mark.slow

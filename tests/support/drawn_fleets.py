@@ -7,16 +7,16 @@ What a draw may hold comes from docs/fleet-file.md and the schema, never from wh
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping
 from itertools import combinations
 from math import dist
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from drawn_spellings import Data, spelled
 from hypothesis import strategies as st
 
 from multibot_rewrite.base.releases import RELEASES
-
-Data = dict[str, Any]
 
 MASS = (
     '<inertial><mass value="1"/>'
@@ -66,6 +66,10 @@ CLASSIC_DRIVE = """\
   <odometry_frame>odom</odometry_frame><robot_base_frame>base_link</robot_base_frame>
 </plugin></gazebo>
 """
+BARROW = (
+    *(link(it) for it in ("base_link", "wheel")),
+    joint("axle", "continuous", "base_link", "wheel"),
+)
 ARM = (
     *(link(it) for it in ("base_link", "upper_arm", "forearm", "tool")),
     joint("shoulder", "revolute", "base_link", "upper_arm"),
@@ -83,6 +87,21 @@ GZ_CONTROL = """\
 <gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
   <parameters>controllers.yaml</parameters></plugin></gazebo>
 """
+SDF_LINK = (
+    '<link name="{0}"><inertial><mass>1</mass></inertial><collision name="{0}_box"><geometry>'
+    "<box><size>0.4 0.3 0.2</size></box></geometry></collision>{1}</link>\n"
+)
+SDF_JOINT = (
+    '<joint name="{}_joint" type="{}"><parent>base_link</parent><child>{}</child>{}</joint>\n'
+)
+SDF_AXIS = "<axis><xyz>0 1 0</xyz></axis>"
+SDF = (
+    *(SDF_LINK.format(it, "") for it in ("base_link", "left_wheel", "right_wheel")),
+    SDF_LINK.format("lidar_link", GZ_LIDAR.partition(">")[2].rpartition("</gazebo>")[0]),
+    *(SDF_JOINT.format(it, "revolute", it, SDF_AXIS) for it in ("left_wheel", "right_wheel")),
+    SDF_JOINT.format("lidar", "fixed", "lidar_link", ""),
+    GZ_DRIVE.removeprefix("<gazebo>").replace("</gazebo>", ""),
+)
 XACRO_HEAD = """\
   <xacro:arg name="mast" default="low"/><xacro:arg name="prefix" default=""/>
   <xacro:property name="p" value="$(arg prefix)"/>
@@ -92,6 +111,10 @@ XACRO_HEAD = """\
 def _robot(name: str, *parts: str, xacro: bool = False) -> str:
     space = ' xmlns:xacro="http://www.ros.org/wiki/xacro"' if xacro else ""
     return f'<robot name="{name}"{space}>\n{"".join(parts)}</robot>\n'
+
+
+def _model(*parts: str) -> str:
+    return f'<sdf version="1.9"><model name="ROBOT">\n{"".join(parts)}</model></sdf>\n'
 
 
 def _with_argument(text: str) -> str:
@@ -129,6 +152,12 @@ class Kind(NamedTuple):
 KINDS = {
     "gz rover": Kind(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), ".urdf", MOBILE, GZ),
     "plain cart": Kind(_robot("ROBOT", *BASE), ".urdf", MOBILE, NONE),
+    # Behind arm_left its wheel is called as the left one of others is behind arm.
+    "barrow": Kind(
+        _robot("ROBOT", *BARROW),
+        ".urdf", MOBILE, NONE,
+    ),
+    "sdf rover": Kind(_model(*SDF), ".sdf", MOBILE, GZ),
     "xacro rover": Kind(
         _with_argument(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE, xacro=True)),
         ".urdf.xacro", MOBILE, GZ,
@@ -169,6 +198,33 @@ arm_controller:
     command_interfaces: [position]
     state_interfaces: [position]
 """
+MOVEIT = {
+    "kinematics": """\
+arm:
+  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin
+  kinematics_solver_timeout: 0.05
+""",
+    "joint_limits": """\
+joint_limits:
+  shoulder: {has_acceleration_limits: true, max_acceleration: 2.0}
+""",
+    "moveit_controllers": """\
+moveit_controller_manager: moveit_simple_controller_manager/MoveItSimpleControllerManager
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller:
+    type: FollowJointTrajectory
+    action_ns: follow_joint_trajectory
+    default: true
+    joints: [shoulder, elbow]
+""",
+}
+BRIDGE = """\
+- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,
+   gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}
+- {ros_topic_name: cmd_vel, gz_topic_name: cmd_vel, ros_type_name: geometry_msgs/msg/Twist,
+   gz_type_name: gz.msgs.Twist, direction: ROS_TO_GZ}
+"""
 RVIZ = """\
 Visualization Manager:
   Class: ""
@@ -196,11 +252,26 @@ NAMES = (
         "rover",
         "scout",
     ),
-    *("burger", "waffle", "arm", "left", "right", "left_arm", "map", "base_link", "scan", "gz"),
+    *(
+        "burger",
+        "waffle",
+        "arm",
+        "left",
+        "right",
+        "left_arm",
+        "arm_left",
+        "map",
+        "base_link",
+        "scan",
+        "gz",
+    ),
     *("name", "odom", "tf", "cmd_vel", "lidar_link", "clock", "bridge", "rviz", "launch", "world"),
     *("start", "sim", "params", "plan", "no", "null", "true", "off", "file", "model", "Robot1"),
     *("base", "wheel", "joint", "link", "shared_nodes", "site", "self", "None", "partial"),
 )
+# Of these layouts docs/nav2.md has a way to show all robots in one RViz.
+RELAYED = ("both", "postfix", "tf-per-robot")
+STEMS = ("robot", "r", "arm", "robot_", "scan", "base_link")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
 STACKS = {
     MOBILE: (
@@ -213,11 +284,13 @@ OWN = ("namespace", "tag", "model")
 
 
 class DrawnFleet(NamedTuple):
-    """What a fleet file holds, the files that it names, and the kind of each of its robots."""
+    """What a fleet file says, each robot with its keys; the files that it names; the kind of each of
+    its robots; and the fleet files as they are written, by path, if not as ``data`` is."""
 
     data: Data
     files: Mapping[str, str]
     kinds: tuple[str, ...]
+    written: Mapping[str, Data] = {}
 
 
 # ---------------------------------------------------------------- fleets that build
@@ -241,14 +314,22 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
         data["simulator"] = draw(st.sampled_from(("none", "gazebo")))
     data |= {key: True for key in ("sros2", "fill_arguments") if maybe(draw, 1)}
     if maybe(draw, 1):
+        data["use_sim_time"] = draw(st.booleans())
+    if maybe(draw, 1) and layout in RELAYED:
+        data["relayed"] = True
+    if maybe(draw, 1):
         data["zenoh"] = {"router": "tcp/10.0.0.1:7447"}
+    numbered = draw(st.sampled_from(STEMS)) if maybe(draw, 2) else ""
     names = draw(st.lists(st.sampled_from(NAMES), min_size=2, max_size=4, unique=True))
+    names = [f"{numbered}{at + 1}" for at, _ in enumerate(names)] if numbered else names
     known = _kinds(draw, release, data.get("simulator", ""))
     kinds = [draw(st.sampled_from(known))] * len(names)
-    if draw(st.booleans()):
+    if draw(st.booleans()) and not numbered:
         kinds = [draw(st.sampled_from(known)) for _ in names]
     making = _Making(draw, data, {}, {})
-    own = draw(st.sampled_from(((), ("tag",), ("namespace",), ("model",), OWN)))
+    own = draw(
+        st.sampled_from(((), ("tag",), ("namespace",), ("model",), OWN) if not numbered else ((),))
+    )
     words = {key: _own_words(draw, key, names, layout) for key in own}
     posed = maybe(draw, 8)
     data["robots"] = [
@@ -256,10 +337,21 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
         | ({"pose": _pose(draw, at)} if posed else {})
         for at, name in enumerate(names)
     ]
+    if numbered:
+        data["robots"] = [*_alike(draw, data["robots"][0], names)]
     if maybe(draw, 1) and "gz arm" not in kinds:
         data["domains"] = {name: 11 + at for at, name in enumerate(names)}
         data |= {"crossing": ["robot_description"]} if draw(st.booleans()) else {}
-    return DrawnFleet(data, making.files, tuple(kinds))
+    return DrawnFleet(data, making.files, tuple(kinds), spelled(draw, data))
+
+
+def _alike(draw: st.DrawFn, row: Data, names: list[str]) -> Iterator[Data]:
+    """Robots that have what the first has, but for their names and places."""
+    step = draw(st.sampled_from(({"x": 3}, {"y": -2.5}, {"x": 1.5, "yaw": 0.5})))
+    first = row.get("pose", {})
+    for at, name in enumerate(names):
+        pose = {key: first.get(key, 0) + at * step.get(key, 0) for key in {**first, **step}}
+        yield {**row, "name": name} | ({"pose": pose} if first else {})
 
 
 class _Making(NamedTuple):
@@ -297,6 +389,9 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
     row: Data = {"name": name}
     row |= {data["affix"] if key == "tag" else key: word for key, word in words.items()}
     row["description"] = _description(making, kind, name)
+    if kind == "gz rover" and maybe(draw, 1):
+        model = KINDS["sdf rover"].text.replace("ROBOT", "rover")
+        row["simulated"] = _written(making, "model", ".sdf", model, name)
     if its.ending.endswith("xacro") and draw(st.booleans()):
         row["arguments"] = {"mast": draw(st.sampled_from(("low", "high")))}
     if maybe(draw, 2):
@@ -336,9 +431,11 @@ def _description(making: _Making, kind: str, name: str) -> str:
 
 
 def _written(making: _Making, stem: str, ending: str, text: str, name: str) -> str:
-    paths = (stem, f"config/{stem}", f"my_{name}", f"{name}/{stem}", f"{stem}_{name}")
+    paths = (stem, name, f"config/{stem}", f"my_{name}", f"{name}/{stem}", f"{stem}_{name}")
     path = f"{making.draw(st.sampled_from(paths))}{ending}"
-    making.files.setdefault(path, text)
+    if making.files.setdefault(path, text) != text:
+        path = f"{stem}_of_{name}{ending}"
+        making.files[path] = text
     return path
 
 
@@ -351,6 +448,10 @@ def _companions(making: _Making, kind: str, name: str) -> Data:
     if maybe(draw, 2) and what == MOBILE:
         given = {"amcl": {"base_frame_id": "base_link", "scan_topic": "scan"}}
         found["params"] = [*found.get("params", ()), given]
+    if what == MANIPULATOR and draw(st.booleans()):
+        found["moveit"] = [_written(making, it, ".yaml", text, name) for it, text in MOVEIT.items()]
+    if kind == "gz rover" and maybe(draw, 2):
+        found["bridge"] = [_written(making, "bridge", ".yaml", BRIDGE, name)]
     if maybe(draw, 2):
         found["rviz"] = _written(making, "one", ".rviz", RVIZ, name)
     return found
@@ -400,6 +501,24 @@ def _missing(fleet: DrawnFleet) -> bool:
     return any(it not in fleet.files for it in named)
 
 
+def _links(fleet: DrawnFleet) -> list[set[str]]:
+    """The links of each robot, as they are called in the whole fleet."""
+    data, found = fleet.data, []
+    between = data.get("separators", {}).get("link", "/")
+    for row, kind, _ in rows(fleet):
+        own = re.findall(r'<link name="(\w+)"', KINDS[kind].text.replace("${p}", ""))
+        tag = row.get(data["affix"], row["name"])
+        is_first = data["affix"] == "prefix"
+        found.append({f"{tag}{between}{it}" if is_first else f"{it}{between}{tag}" for it in own})
+    return found
+
+
+def _meet(fleet: DrawnFleet) -> bool:
+    """Two robots have a frame of one name, where all frames are in one tree or renamed."""
+    is_alone = fleet.data["layout"] == "tf-per-robot"
+    return not is_alone and any(one & other for one, other in combinations(_links(fleet), 2))
+
+
 class Cause(NamedTuple):
     """A reason for an error in the input: how it is put into a fleet, and whether a fleet has it."""
 
@@ -433,6 +552,15 @@ CAUSES = {
     "robots share a prefix or postfix": Cause(_same("tag"), _share_a_word),
     "robots share a model": Cause(_same("model"), _share_a_word),
     "robots share a pose": Cause(_same("pose"), _share_a_word),
+    "names meet: arm and left_wheel, arm_left and wheel": Cause(
+        lambda data, _: (
+            data.update(layout="both", affix="prefix", separators={"link": "_"}),
+            [row.pop("postfix", None) for row in data["robots"]],
+            data["robots"][0].update(name="arm", prefix="arm", description="plain_cart.urdf"),
+            data["robots"][1].update(name="arm_left", prefix="arm_left", description="barrow.urdf"),
+        ),
+        _meet,
+    ),
     "a word for the other side": Cause(
         lambda data, _: _first(data).update(
             {"postfix" if data["affix"] == "prefix" else "prefix": "other"}
@@ -467,9 +595,12 @@ CAUSES = {
             "arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)
         ),
     ),
+    # A namespace of its own has them not, and its name is in no name of ROS then.
     "two underscores": Cause(
-        _with("name", "r__1"),
-        lambda fleet: any("__" in row["name"] for row in fleet.data["robots"]),
+        lambda data, _: (_first(data).update(name="r__1"), _first(data).pop("namespace", None)),
+        lambda fleet: any(
+            "__" in row.get("namespace", row["name"]) for row in fleet.data["robots"]
+        ),
     ),
     "a step without a count": Cause(
         _with("step", {"x": 1}), lambda fleet: any("step" in row for row in fleet.data["robots"])
@@ -534,12 +665,15 @@ CAUSES = {
             and any(row["description"] == "world.urdf" for row, _ in simulated(fleet))
         ),
     ),
+    # A start pose is given to no robot that maps: slam_toolbox says where it is.
     "a parameter file is called as one that is written": Cause(
         lambda data, _: _first(data).update(
             companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
         ),
         lambda fleet: any(
-            "pose" in row and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            "pose" in row
+            and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
             for row in fleet.data["robots"]
         ),
     ),
@@ -568,7 +702,8 @@ def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
     fleet = draw(fleets())
     data: Data = {**fleet.data, "robots": [dict(row) for row in fleet.data["robots"]]}
     CAUSES[cause].put(data, fleet)
-    return with_kinds(fleet, data)
+    made = with_kinds(fleet, data)
+    return made._replace(written=spelled(draw, data))
 
 
 def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:

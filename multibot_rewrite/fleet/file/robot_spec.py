@@ -44,7 +44,8 @@ class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
+    ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files; a kind
+    without files is not there. ``line``
     is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
     in the fleet file itself, parameter files in which a launch replaces something, and what is made of
     ``parts``, which are joined.
@@ -140,7 +141,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         _pose(own, place),
         _colour(own, place),
         stacks,
-        {kind: tuple(_files(listed(it), texts)) for kind, it in companions.items()},
+        {kind: tuple(_files(listed(it), texts)) for kind, it in companions.items() if it},
         file,
         line,
         tuple(_launch(data, own, place)),
