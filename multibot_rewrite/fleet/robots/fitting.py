@@ -21,7 +21,7 @@ from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
-from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
@@ -121,35 +121,60 @@ def described(member: Member, spec: RobotSpec) -> Described:
     return Described(_driven(member, spec), _offered(member, spec), _root(member))
 
 
-def free_nodes(
-    stack: Iterable[NodeFacts], given: Iterable[GivenNode], started: Collection[str]
-) -> frozenset[str]:
-    """Return the nodes of a stack that no parameter file has a section for and no launch file of the
-    robot starts: what they are set to is the build's to choose."""
-    filed = [f"/{it.name}" for it in given]
-    names = {it.name for it in stack} - {*started}
-    return frozenset(it for it in names if not any(one.endswith(f"/{it}") for one in filed))
-
-
 def fitted(
     nodes: Sequence[NodeFacts],
-    free: Collection[str],
+    added: Collection[str],
     given: Sequence[GivenNode],
     known: Mapping[str, NodeFacts],
     has: Described,
     spec: RobotSpec,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes, those that are ``free`` with the settings that fit the others."""
-    settled = [
+    """Return the nodes, each with the settings that fit the others. ``added`` are the nodes that the
+    build starts: those without a section in a parameter file are free to be set."""
+    free = _without_section(added, given)
+    alone = [
         _settled(_rooted(_as_listed(_hearing(it, nodes, has.offered), spec), has.root))
         if it.name in free
         else it
         for it in nodes
     ]
+    settled = _through_a_mux(alone, added)
     choices = {it.node.name: it for it in _choices(settled, free, given, known)}
     wanted = _wanted(tuple(choices.values()), settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
     return tuple(_without_second_senders(typed, free, has.sent))
+
+
+def _without_section(names: Iterable[str], given: Iterable[GivenNode]) -> frozenset[str]:
+    """Return the nodes that no parameter file has a section for."""
+    filed = [f"/{it.name}" for it in given]
+    return frozenset(it for it in names if not any(one.endswith(f"/{it}") for one in filed))
+
+
+def _through_a_mux(nodes: Sequence[NodeFacts], added: Collection[str]) -> Sequence[NodeFacts]:
+    """Return the nodes, those that would send commands beside a twist_mux with its first free input as
+    their topic: otherwise the drive obeys both at once."""
+    mux = next((it for it in nodes if it.kind == TWIST_MUX and it.name in added), None)
+    if mux is None:
+        return nodes
+    sent = {_topic(end) for it in nodes for end in _commands(it, PUBLISHES)}
+    free = [_topic(it) for it in _commands(mux, SUBSCRIBES) if _topic(it) not in sent]
+    chosen = {_topic(it) for it in _commands(mux, PUBLISHES)} if free else ()
+    others = {it.name for it in nodes if it is not mux} & {*added}
+    return [_moved(it, chosen, free[0]) if it.name in others and chosen else it for it in nodes]
+
+
+def _moved(node: NodeFacts, topics: Collection[str], to: str) -> NodeFacts:
+    """Return the node with the commands that it sends on one of the topics on another one."""
+    beside = {it for it in _commands(node, PUBLISHES) if _topic(it) in topics}
+    ends = (it._replace(remapped=to) if it in beside else it for it in node.endpoints)
+    return node._replace(endpoints=tuple(ends)) if beside else node
+
+
+def _commands(node: NodeFacts, role: str) -> tuple[Endpoint, ...]:
+    """The ends with velocities that a node has for certain."""
+    ends = (it for it in node.endpoints if it.role == role and not it.when)
+    return tuple(it for it in ends if it.type in (PLAIN, STAMPED))
 
 
 def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:

@@ -32,7 +32,6 @@ from multibot_rewrite.fleet.robots.fitting import (
     described,
     fitted,
     fitting_frames,
-    free_nodes,
     with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
@@ -121,10 +120,10 @@ def robot_nodes(
     fits = fitting_frames(member, nodes, has.sent)
     known = {name: with_frames(it, fits) for name, it in known.items()}
     own_fits = [with_frames(it, fits) for it in nodes]
-    free = free_nodes((*stack, *of_srdf), given, started)
+    added = {it.name for it in (*stack, *of_srdf)} - {*started}
     # A stack of the user's own says what its nodes hear.
     has = has._replace(offered={}) if file.nodes else has
-    fitting = fitted(own_fits, free, given, known, has, spec)
+    fitting = fitted(own_fits, added, given, known, has, spec)
     frames, nodes = changed_frames(fitting, nodes), fitting
     written = _as_written(nodes, own, parameters, file.distro)
     named = _made_by_arguments(written, given, topics) if topics else written
