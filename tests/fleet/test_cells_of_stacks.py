@@ -30,6 +30,21 @@ def test_nothing_that_the_build_adds_refuses_a_robot(
     assert not wrong
 
 
+@pytest.mark.slow
+@pytest.mark.sample(41)
+@pytest.mark.parametrize("release", ["jazzy", "lyrical"])
+@pytest.mark.parametrize("pair", [*stack_cells.pairs()], ids="-".join)
+def test_two_stacks_fit_each_other(pair: tuple[str, str], release: str, tmp_path: Path) -> None:
+    assert not stack_cells.pair_faults(*pair, release, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "pair", [("nav2", "teleop"), ("navigation", "rtabmap"), ("static_tf", "nav2")], ids="-".join
+)
+def test_stacks_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
+    assert not stack_cells.pair_faults(*pair, "lyrical", tmp_path)
+
+
 FOUR = (
     Cell("gz", "nav2", "lyrical", "tf-per-robot", "gazebo"),
     Cell("gz", "nav2_composed", "lyrical", "postfix", "gazebo"),
