@@ -165,6 +165,7 @@ FROM_OUTSIDE = {
             "cmd_vel_unstamped",
             "cmd_vel_teleop",
             "initialpose",
+            "goal",
             "goal_pose",
             "goal_update",
         ),

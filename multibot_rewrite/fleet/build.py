@@ -132,7 +132,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
 def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """What is wrong with the robots themselves, whatever files go with them."""
     yield from plan.of_rewrites
-    yield from other_hardware(plan.robots)
+    yield from other_hardware(plan.robots, plan.file)
     yield from moved_services(plan)
     yield from named_twice(plan.robots)
     met = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from multibot_rewrite.base.record import NamedTuple
 
-MANAGER, MOVE_GROUP = "controller_manager", "move_group"
+MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 

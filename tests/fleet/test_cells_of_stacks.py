@@ -30,6 +30,21 @@ def test_nothing_that_the_build_adds_refuses_a_robot(
     assert not wrong
 
 
+@pytest.mark.slow
+@pytest.mark.sample(41)
+@pytest.mark.parametrize("release", ["jazzy", "lyrical"])
+@pytest.mark.parametrize("pair", [*stack_cells.pairs()], ids="-".join)
+def test_two_stacks_fit_each_other(pair: tuple[str, str], release: str, tmp_path: Path) -> None:
+    assert not stack_cells.pair_faults(*pair, release, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "pair", [("nav2", "teleop"), ("navigation", "rtabmap"), ("static_tf", "nav2")], ids="-".join
+)
+def test_stacks_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
+    assert not stack_cells.pair_faults(*pair, "lyrical", tmp_path)
+
+
 FOUR = (
     Cell("gz", "nav2", "lyrical", "tf-per-robot", "gazebo"),
     Cell("gz", "nav2_composed", "lyrical", "postfix", "gazebo"),
@@ -64,6 +79,25 @@ def test_what_the_input_lacks_is_one_line(cell: Cell, tmp_path: Path) -> None:
     errors = [it for it in stack_cells.findings(cell, tmp_path) if it.level == "error"]
     assert {it.code for it in errors} == stack_cells.refused(cell)
     assert len(errors) == len({it.robot or str(it) for it in errors}) <= 2
+
+
+@pytest.mark.parametrize("layout", stack_cells.LAYOUTS)
+def test_hardware_that_no_plugin_of_the_simulator_loads_is_an_error(
+    layout: str, tmp_path: Path
+) -> None:
+    """ros2_control_node cannot load a class of the simulator."""
+    cell = Cell("controlled", "ros2_control", "jazzy", layout, "gazebo")
+    source = stack_cells.ROOT / ROBOTS["controlled"]
+    text = source.read_text()
+    at = text.index('  <gazebo>\n    <plugin name="gz_ros2_control')
+    (tmp_path / "robot.urdf").write_text(f"{text[:at]}</robot>\n")
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(cell.fleet.replace(str(source), "robot.urdf"))
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
+    assert not (tmp_path / "out").exists()
+    found = [it for it in stack_cells.of_file(fleet) if it.level == "error"]
+    assert [it.code for it in found] == ["MF843"]
+    assert "no plugin of robot 'robot1' loads it" in found[0].message
 
 
 def test_a_fault_between_two_ends_of_the_build_is_seen(

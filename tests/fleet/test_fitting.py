@@ -197,3 +197,52 @@ def test_cartographer_gets_its_options(tmp_path: Path) -> None:
     assert "'-configuration_directory', file(" in text
     assert "'-configuration_basename', 'carto.lua'" in text
     assert (out / "robot1" / "carto.lua").is_file()
+
+
+def sent_on(out: Path, topic: str) -> list[str]:
+    """Who sends on a topic as the written plan has it, by the last word of its name."""
+    plan = yaml.safe_load((out / "plan.yaml").read_text())
+    sent = ["publishes", "topic", topic]
+    nodes = plan["robots"]["robot1"]["nodes"].items()
+    return sorted(
+        name.rpartition("/")[2] for name, ends in nodes if sent in [it[:3] for it in ends]
+    )
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize("is_filed", [False, True])
+def test_nav2_sends_to_an_input_of_twist_mux(
+    release: str, is_filed: bool, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """A drive obeys one sender: what Nav2 would send beside the mux is its first free input."""
+    last = "velocity_smoother" if release == "humble" else "collision_monitor"
+    text = f"distro: {release}\nsimulator: gazebo\nstack: [nav2, teleop]"
+    if is_filed:
+        section = f"{last}: {{ros__parameters: {{cmd_vel_out_topic: cmd_vel}}}}\n"
+        (tmp_path / "p.yaml").write_text(section)
+        text += "\ncompanions: {params: p.yaml}"
+    out = built(tmp_path, text)
+    assert "MG312" not in capfd.readouterr().err
+    assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
+    assert last in sent_on(out, "/robot1/nav_vel")
+
+
+def test_a_mux_without_a_free_input_moves_nobody(tmp_path: Path) -> None:
+    """Its inputs are those of the user's file, and each has its sender."""
+    (tmp_path / "p.yaml").write_text(
+        "twist_mux: {ros__parameters: {topics: {joy: {topic: joy_vel, timeout: 0.5, priority: 1}}}}\n"
+    )
+    text = "distro: jazzy\nsimulator: gazebo\nstack: [nav2, teleop]\ncompanions: {params: p.yaml}"
+    out = built(tmp_path, text)
+    assert {"collision_monitor", "twist_mux"} <= {*sent_on(out, "/robot1/cmd_vel")}
+
+
+def test_a_static_transform_without_frames_is_left_out(tmp_path: Path) -> None:
+    """Its program ends at once without them; a file that names the node has it started."""
+    text = "distro: jazzy\nsimulator: gazebo\nstack: [static_tf]"
+    launch = (built(tmp_path, text) / "fleet.launch.py").read_text()
+    assert "Not started: static_transform_publisher" in launch
+    (tmp_path / "p.yaml").write_text(
+        "static_transform_publisher: {ros__parameters: {frame_id: base_link, child_frame_id: x}}\n"
+    )
+    built(tmp_path, f"{text}\ncompanions: {{params: p.yaml}}")

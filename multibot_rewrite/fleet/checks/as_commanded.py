@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.launch.starts import File, FleetStarts, RobotStarts,
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
 from multibot_rewrite.system.records import SIM_TIME
 
-# The programs of which each process that the launch file starts has its line.
+# The programs of which each process has its line, unless it is a node of a stack.
 _TOLD = (
     ("tf2_ros", "static_transform_publisher"),
     ("controller_manager", "spawner"),
@@ -59,7 +59,8 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
 
 
 def _of_robot(robot: RobotStarts, printed: Sequence[Command]) -> Iterator[str]:
-    planned = [_planned(it) for it in (*robot.starts, *robot.bridged_tf, *robot.spawned)]
+    every = (*robot.starts, *robot.bridged_tf, *robot.spawned)
+    planned = [_planned(it) for it in every if it.full_name not in robot.nodes]
     left = {name for name, _ in robot.left}
     for program in _TOLD:
         wanted = [it for it in planned if it.program == program]

@@ -16,6 +16,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP
+from multibot_rewrite.spelling.plan import STACK
 
 CARTOGRAPHER = "cartographer_node"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
@@ -51,12 +52,13 @@ NEEDS: Mapping[str, Need] = {
 
 
 def lacking(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes that the build starts and that end at once. What a robot's own launch files start
-    gets its files from them."""
+    """Find the nodes that a stack starts and that end at once. A node that a file of the robot names
+    may get what it reads elsewhere: from the robot's driver, or from another launch file."""
     for robot in (it for it in plan.robots if not it.spec.launch):
         for node in plan.evidence_of(robot).nodes:
             need = NEEDS.get(node.kind)
-            if need is None or node.when or node.shared or need.is_there(robot):
+            is_named = not node.origin.startswith(STACK)
+            if need is None or is_named or node.when or node.shared or need.is_there(robot):
                 continue
             message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"
             yield at_robot(LACKING, robot, message, f"{need.hint}, or leave the stack out")

@@ -56,6 +56,11 @@ class Start(NamedTuple):
     components: tuple[Component, ...] = ()
     brought_up: bool = False
 
+    @property
+    def full_name(self) -> str:
+        """The full name of its node; without a name the namespace."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
 
 def shell_line(it: Start) -> str:
     """The line that starts a process without components or parameter files."""
@@ -114,7 +119,7 @@ class FleetStarts(NamedTuple):
     @property
     def nodes(self) -> frozenset[str]:
         """The full names of the planned nodes that are started."""
-        shared = (f"{it.namespace.rstrip('/')}/{it.name}" for it in self.shared if it.name)
+        shared = (it.full_name for it in self.shared if it.name)
         return frozenset((*shared, *(node for it in self.robots for node in it.nodes)))
 
     @property

@@ -21,7 +21,13 @@ from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import (
+    MANAGER,
+    MOVE_GROUP,
+    TWIST_MUX,
+    Endpoint,
+    NodeFacts,
+)
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
 from multibot_rewrite.producers.evidence.records import Given, GivenNode
@@ -154,11 +160,38 @@ def fitted(
         else it._replace(usual=())
         for it in nodes
     ]
-    settled = list(_driving(settled, own))
+    settled = list(_driving(_through_a_mux(settled, own), own))
     choices = {it.node.name: it for it in _choices(settled, own, free, given, known)}
     wanted = _wanted(tuple(choices.values()), free, settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
     return tuple(_without_second_senders(typed, free, has.sent))
+
+
+def _through_a_mux(nodes: Sequence[NodeFacts], added: Collection[str]) -> Sequence[NodeFacts]:
+    """Return the nodes, those that would send commands beside a twist_mux with its first free input as
+    their topic: otherwise the drive obeys both at once."""
+    mux = next((it for it in nodes if it.kind == TWIST_MUX and it.name in added), None)
+    if mux is None:
+        return nodes
+    sent = {_topic(it, end) for it in nodes for end in _commands(it, PUBLISHES)}
+    inputs = [_topic(mux, it) for it in _commands(mux, SUBSCRIBES)]
+    free = [it for it in inputs if it not in sent]
+    chosen = {_topic(mux, it) for it in _commands(mux, PUBLISHES)} if free else ()
+    others = {it.name for it in nodes if it is not mux} & {*added}
+    return [_moved(it, chosen, free[0]) if it.name in others and chosen else it for it in nodes]
+
+
+def _moved(node: NodeFacts, topics: Collection[str], to: str) -> NodeFacts:
+    """Return the node with the commands that it sends on one of the topics on another one."""
+    beside = {it for it in _commands(node, PUBLISHES) if _topic(node, it) in topics}
+    ends = (it._replace(remapped=to) if it in beside else it for it in node.endpoints)
+    return node._replace(endpoints=tuple(ends)) if beside else node
+
+
+def _commands(node: NodeFacts, role: str) -> tuple[Endpoint, ...]:
+    """The ends with velocities that a node has for certain."""
+    ends = (it for it in node.endpoints if it.role == role and not it.when)
+    return tuple(it for it in ends if it.type in (PLAIN, STAMPED))
 
 
 def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:

@@ -17,7 +17,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec, Sources
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
 from multibot_rewrite.fleet.launch.launched_files import set_by_launch
 from multibot_rewrite.fleet.launch.launched_robot import (
@@ -112,7 +112,8 @@ def robot_nodes(
     own = tuple(without_robot(it, spec.words) for it in read)
     known = _known(own, file)
     stack = tuple(it for it in stack_nodes(spec, file) if _is_needed(it, spec, member))
-    stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
+    if spec.simulator != REAL:
+        stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
@@ -201,8 +202,10 @@ def _is_mounted(root: _Element) -> bool:
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
-    """A plugin's node runs where the description loads the plugin, the robot's own bridge where there
-    is something to bridge."""
+    """A plugin's node runs where a simulator loads the plugin of the description, the robot's own
+    bridge where there is something to bridge."""
+    if it.plugin and spec.simulator == REAL:
+        return False
     if it.plugin:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}

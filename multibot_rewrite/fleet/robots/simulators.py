@@ -20,6 +20,7 @@ from multibot_rewrite.description.readback.active import HARDWARE, PLUGIN, Activ
 from multibot_rewrite.description.readback.nodes import PUBLISHES
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import (
     hardware_classes,
@@ -32,7 +33,8 @@ from multibot_rewrite.fleet.file.simulator_switch import (
 )
 from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.semantics import FIXED
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.words import moves
@@ -46,31 +48,34 @@ DRIVE = """\
 </robot>
 """
 SIMULATED_OR_REAL = declare("MF828", "simulated-or-real", NOTE, formats=("fleet",))
-# The stack whose ros2_control_node loads the hardware of a real robot.
-_LOADING = "ros2_control"
 OTHER_HARDWARE = declare("MF843", "hardware-of-real-robot-simulated", ERROR, formats=("fleet",))
 
 
-def other_hardware(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    """Hardware that is not of the world that the robots are in, once for each description."""
+def other_hardware(robots: Sequence[RewrittenRobot], file: FleetFile) -> Iterator[Finding]:
+    """Find hardware that is not of the world that the robots are in, once for each description."""
     told = set()
     for it in robots:
-        wrong = _of_other_world(it)
+        wrong = _of_other_world(it, stack_nodes(it.spec, file))
         if wrong and it.spec.sources not in told:
             told.add(it.spec.sources)
             yield _other(it, wrong)
 
 
-def _of_other_world(robot: RewrittenRobot) -> str:
-    """The first hardware class of a robot that is not of its world."""
+def _of_other_world(robot: RewrittenRobot, stack: Iterable[NodeFacts]) -> str:
+    """Return the first hardware class of a robot that is not of its world. What a simulator's plugin
+    does not load waits for ros2_control_node, and a real robot's controllers wait for it as well."""
     root: etree._Element = robot.member.inventory.document.root
     classes = hardware_classes(root)
-    if robot.spec.simulator == REAL:
-        loaded = _LOADING in robot.spec.stacks
-        return next(filter(of_simulator, classes), "") if loaded else ""
-    if robot.spec.simulator and loads_hardware(root):
+    simulator = robot.spec.simulator
+    if not simulator:
+        return ""
+    if simulator != REAL and loads_hardware(root):
         return next((it for it in classes if not may_be_simulated(it)), "")
-    return ""
+    waiting = any(
+        MANAGER in (it.kind, it.host) if simulator == REAL else it.kind == MANAGER and not it.plugin
+        for it in stack
+    )
+    return next(filter(of_simulator, classes), "") if waiting else ""
 
 
 def _other(robot: RewrittenRobot, wrong: str) -> Finding:
@@ -80,6 +85,10 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
     given = filled(spec.arguments, spec.name)
     switch = switch_for(spec.simulated or spec.description, given, suits, BOUNDED)
     message = f"{wrong} is a simulator's, and robot {spec.name!r} is real"
+    if not real and of_simulator(wrong):
+        message = f"{wrong} is a simulator's, and no plugin of robot {spec.name!r} loads it"
+        hint = "add the simulator's plugin of ros2_control to the description"
+        return at_robot(OTHER_HARDWARE, robot, message, f"{hint}, or switch it on")
     if not real:
         message = f"{wrong} is no simulator's, and robot {spec.name!r} is simulated"
     other = "gazebo" if real else "none"
