@@ -130,17 +130,14 @@ def test_a_filter_leaves_the_odometry_to_the_drive(release: str, tmp_path: Path)
     assert given(out, "publish_tf") == {"ekf_filter_node": "False"}
 
 
-def test_a_filter_of_a_file_stays_as_the_file_has_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_filter_of_a_file_stays_as_the_file_has_it(tmp_path: Path) -> None:
+    """It sends the transform, so that the bridge, which is the build's own, does not."""
     (tmp_path / "ekf.yaml").write_text("ekf_filter_node:\n  ros__parameters: {publish_tf: true}\n")
-    fleet = tmp_path / "fleet.yaml"
-    fleet.write_text(
-        f"layout: tf-per-robot\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
-        f"companions: {{params: ekf.yaml}}\n{ROBOTS}\n"
+    out = built(
+        tmp_path, "distro: jazzy\nstack: robot_localization\ncompanions: {params: ekf.yaml}"
     )
-    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
-    assert "MG408" in capsys.readouterr().err
+    assert not given(out, "publish_tf")
+    assert "tf2_msgs/msg/TFMessage" not in rows(out).values()
 
 
 def test_the_filter_of_a_real_robot_places_its_root(tmp_path: Path) -> None:

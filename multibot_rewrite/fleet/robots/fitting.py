@@ -434,9 +434,10 @@ def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edg
 
 
 def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
-    """Does a node that is not ``free`` send one of the transforms that plugins have ``sent``?"""
+    """Does a node that surely runs and is not ``free`` send a transform that plugins have ``sent``?"""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
-    own = {_place(it, bodies) for it in _in_files(nodes, free)}
+    sure = (it for it in nodes if not it.when)
+    own = {_place(it, bodies) for it in _in_files(sure, free)}
     return any(_place(it, bodies) in own for it in sent)
 
 
