@@ -440,8 +440,15 @@ ELSEWHERE = (
         ),
         # A bridge's topic below the robot's is not its tree, where all others send on /tf.
         (
-            ("/robot1/bridge publishes /robot1/gz/tf " + TF, "/robot1/bridge publishes /tf " + TF,
-             "/robot1/driver publishes /tf " + TF),
+            tuple(
+                line
+                for it in ("robot1", "robot2")
+                for line in (
+                    f"/{it}/bridge publishes /{it}/gz/tf {TF}", f"/{it}/bridge publishes /tf {TF}",
+                    f"/{it}/state publishes /tf {TF}",
+                    f"transform {it}/base -> {it}/laser on /tf by /{it}/state",
+                )
+            ),
             [],
         ),
         # To send on another robot's tree as well is no excuse.

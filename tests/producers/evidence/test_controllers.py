@@ -300,6 +300,15 @@ def test_hardware_asks_its_own_controller_manager(layout: str, target: str, tmp_
     assert spawned == []
 
 
+def test_a_type_below_a_second_ros_parameters() -> None:
+    """controller_manager.cpp reads NAME.type; this one is NAME.ros__parameters.type."""
+    inside = "    drive:\n      ros__parameters: {type: some/Drive}\n"
+    text = f"controller_manager:\n  ros__parameters:\n{inside}"
+    said = r"^c\.yaml:4: the type of 'drive' is below a second ros__parameters, .*; write type: directly"
+    with pytest.raises(InputError, match=said):
+        given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+
+
 @pytest.mark.parametrize("name", ["3drive", "base drive"])
 def test_a_controller_whose_name_no_node_can_have(name: str) -> None:
     """rcl validate_node_name: letters, digits and underscores, no digit first."""
