@@ -204,7 +204,9 @@ def sent_on(out: Path, topic: str) -> list[str]:
     plan = yaml.safe_load((out / "plan.yaml").read_text())
     sent = ["publishes", "topic", topic]
     nodes = plan["robots"]["robot1"]["nodes"].items()
-    return sorted(name.rpartition("/")[2] for name, ends in nodes if sent in [it[:3] for it in ends])
+    return sorted(
+        name.rpartition("/")[2] for name, ends in nodes if sent in [it[:3] for it in ends]
+    )
 
 
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
