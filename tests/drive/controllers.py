@@ -84,6 +84,8 @@ def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
                 ros = it.find("ros")
                 rules = () if ros is None else tuple(gazebo.rules_of(ros))
                 name = gazebo.text(it, "controller_manager_name") or "controller_manager"
+                # A rule of rcl for this node alone moves it.
+                space = dict(rules).get(f"{name}:__ns", space)
                 gone = ", ".join(f.name for f in files if not f.is_file())
                 yield Manager(who, space, name, sections, rules, True, gone)
 

@@ -29,6 +29,8 @@ NODES = {
     "lifecycle_manager": "lifecycle_manager",
     "teleop_node": "teleop_twist_joy_node",
     "map_saver_server": "map_saver",
+    "debayer_node": "DebayerNode",
+    "rectify_node": "RectifyNode",
     # Components of Nav2 (RCLCPP_COMPONENTS_REGISTER_NODE at the end of each source).
     "AmclNode": "amcl",
     "BehaviorServer": "behavior_server",

@@ -23,13 +23,32 @@ pytestmark = [
         reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
     ),
 ]
-# Whose description has all that moves them; that of the others names a file of controllers.
-DRIVEN = ("gz", "classic")
+# Whose description has all that moves them; an arm does not drive.
+DRIVEN = ("gz", "classic", "sdf", "controlled")
+CONTROLLED = ("ros2_control", *stack_cells.OF_MANAGERS)
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+"""
 ROWS = [
     (name, tuple(its))
     for robot in DRIVEN
     for name, its in groupby(stack_cells.cells(robot), lambda it: it[:3])
 ]
+
+
+def with_controllers(cell: Cell, folder: Path) -> str:
+    """The text of its fleet file; a description that names a file of controllers has it beside it."""
+    if cell.robot != "controlled" or cell.stack not in CONTROLLED:
+        return cell.fleet
+    (folder / "config").mkdir(exist_ok=True)
+    (folder / "config" / "controllers.yaml").write_text(CONTROLLERS)
+    source = stack_cells.ROOT / stack_cells.ROBOTS[cell.robot]
+    (folder / "robot.urdf").write_text(source.read_text())
+    text = cell.fleet.replace(str(source), "robot.urdf")
+    return f"{text}companions: {{params: config/controllers.yaml}}\n"
 
 
 @pytest.mark.sample(53)
@@ -42,7 +61,7 @@ def test_a_stack_alone_drives(
         if cell.simulator != "gazebo" or stack_cells.refused(cell):
             continue
         file, out = tmp_path / "fleet.yaml", tmp_path / cell.layout
-        file.write_text(cell.fleet)
+        file.write_text(with_controllers(cell, tmp_path))
         assert multibot.main(["build", str(file), "-o", str(out), "-q"]) == 0
         found = fleet.read(out, cell.release)
         faults = verdict.judged(found)
