@@ -304,7 +304,7 @@ def test_a_type_below_a_second_ros_parameters() -> None:
     """controller_manager.cpp reads NAME.type; this one is NAME.ros__parameters.type."""
     inside = "    drive:\n      ros__parameters: {type: some/Drive}\n"
     text = f"controller_manager:\n  ros__parameters:\n{inside}"
-    said = r"^c\.yaml:4: the type of 'drive' is below a second ros__parameters, .*; write type: directly"
+    said = r"^c\.yaml:4: the type of 'drive' is below a second ros__parameters, .*; write type: "
     with pytest.raises(InputError, match=said):
         given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
 
