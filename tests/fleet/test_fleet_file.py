@@ -100,7 +100,7 @@ def test_companions_of_a_robot_replace_those_of_the_fleet_kind_by_kind(tmp_path:
         "robots:\n  - {name: r, description: rover.urdf, companions: {params: []}}\n"
     )
     found = read(tmp_path, text).robots[0].companions
-    assert found == {"params": (), "rviz": (str(tmp_path / "one_robot.rviz"),)}
+    assert found == {"rviz": (str(tmp_path / "one_robot.rviz"),)}
 
 
 def test_what_is_included_gives_defaults_and_keeps_its_own_paths(tmp_path: Path) -> None:

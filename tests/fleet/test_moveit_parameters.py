@@ -141,5 +141,5 @@ def test_an_angle_in_degrees_is_in_radians_as_launch_files_read_it() -> None:
 @pytest.mark.parametrize("value", ["!foo 3", "!degrees x", "!degrees [1]"])
 def test_a_tag_that_no_launch_file_reads_has_its_line(value: str) -> None:
     text = f"joint_limits:\n  a:\n    max_position: {value}\n"
-    with pytest.raises(InputError, match=r"joint_limits\.yaml:3: "):
+    with pytest.raises(InputError, match=r"joint_limits\.yaml:3:"):
         parameters_from("", {"joint_limits.yaml": text}, "jazzy")

@@ -64,17 +64,19 @@ GZ_DRIVE = """<robot name="rover"><link name="base_link"/><gazebo>
 
 
 @pytest.mark.parametrize(
-    ("more", "frames"),
-    [("", ["r1/base_link"]), (", publish_tf: false", []), (", base_link_frame: mast", [])],
+    ("more", "is_bridged"),
+    [("", False), (", publish_tf: false", True), (", base_link_frame: mast", True)],
 )
-def test_the_drive_of_the_simulator_and_a_filter(
-    more: str, frames: list[str], tmp_path: Path
+def test_the_bridge_leaves_a_transform_to_the_filter_that_sends_it(
+    more: str, is_bridged: bool, tmp_path: Path
 ) -> None:
     params = f"ekf_filter_node:\n  ros__parameters: {{odom_frame: odom, world_frame: odom{more}}}\n"
     text = f"stack: robot_localization\ncompanions: {{params: params.yaml}}\n{PARENTS}"
     plan = planned(tmp_path, text, params__yaml=params, rover__urdf=GZ_DRIVE)
-    found = [it for it in make_outputs(plan).findings if it.code == "MG408"]
-    assert [it.names[0] for it in found if "/r1/ros_gz_bridge" in it.hint] == frames
+    made = make_outputs(plan)
+    rows = "".join(it.text for it in made.files if it.path.endswith("bridge.yaml"))
+    assert ("tf2_msgs/msg/TFMessage" in rows) == is_bridged
+    assert "MG408" not in {it.code for it in made.findings}
 
 
 @pytest.mark.more

@@ -348,7 +348,7 @@ def test_check_finds_the_files_beside_the_plan(
     assert multibot.main(["check", "plan.yaml", "--from", "silent.json"]) == 0
     capsys.readouterr()
     assert multibot.main(["check", "plan.yaml", "--from", "g.json"]) == 2
-    assert "robot1/nav2.yaml:2:1: not valid YAML" in capsys.readouterr().err
+    assert "robot1/nav2.yaml:1:19: not valid YAML" in capsys.readouterr().err
 
 
 def test_a_saved_graph_has_no_states(

@@ -280,7 +280,9 @@ def test_a_folder_is_read_with_its_metadata_or_without(
     assert read_here(monkeypatch, tmp_path) == empty
     (tmp_path / "metadata.yaml").write_text("a: [")
     found = read_here(monkeypatch, tmp_path)
-    assert isinstance(found, str) and found.startswith(f"{tmp_path}: not a readable bag: ")
+    assert isinstance(found, str) and found.startswith(
+        f"{tmp_path}/metadata.yaml:1:5: not valid YAML: "
+    )
 
 
 def test_a_file_that_is_no_bag_is_told_before_it_is_opened(

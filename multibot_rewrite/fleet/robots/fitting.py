@@ -294,6 +294,11 @@ def _rooted(node: NodeFacts, root: str) -> NodeFacts:
     return node._replace(frames=tuple(frames)) if root else node
 
 
+def _is_made_below(name: str) -> bool:
+    """Is it made at run time, in the namespace of its robot? An absolute one all robots would share."""
+    return "<" in name and not name.startswith("/")
+
+
 def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     """The node without the names that it makes of a list which no file gives it: they may come, if a
     file is added. So may those of the panels and displays that RViz has in its usual file, where the
@@ -303,7 +308,7 @@ def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     shows = node.kind == RVIZ and bool(spec.companions.get("rviz"))
     ends = (
         it._replace(when=_BY_FILE)
-        if not it.when and ("<" in it.name or (shows and it.type != TF_TYPE))
+        if not it.when and (_is_made_below(it.name) or (shows and it.type != TF_TYPE))
         else it
         for it in node.endpoints
     )
