@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from drawn_builds import judge, run
 from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, Data, DrawnFleet
+from paths import ROBOTS
 
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -132,3 +133,21 @@ def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
     )  # fmt: skip
     judge(drawn, tmp_path)
     assert "odom_frame_id: r1/odom" in (tmp_path / "out/r1/params.yaml").read_text()
+
+
+def test_a_parameter_file_may_be_called_as_the_bridge_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was refused: two files would be written to ``r1/bridge.yaml``."""
+    monkeypatch.chdir(tmp_path)
+    Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
+    Path("bridge.yaml").write_text("amcl:\n  ros__parameters: {base_frame_id: base_link}\n")
+    Path("fleet.yaml").write_text(
+        "layout: tf-per-robot\ndistro: jazzy\nstack: [nav2]\ndescription: rover.urdf\n"
+        "companions: {params: bridge.yaml}\n"
+        "robots: [{name: r1, pose: {x: 0}}, {name: r2, pose: {x: 2}}]\n"
+    )
+    assert run("build", "fleet.yaml", "-o", "out")[0] == 0
+    assert "amcl" in Path("out/r1/params_bridge.yaml").read_text()
+    assert "ros_topic_name" in Path("out/r1/bridge.yaml").read_text()
+    assert "params_bridge.yaml" in Path("out/fleet.launch.py").read_text()

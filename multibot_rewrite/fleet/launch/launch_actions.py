@@ -19,7 +19,12 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
-from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_paths, path_for
+from multibot_rewrite.fleet.outputs.output_file import (
+    expanded_name,
+    gz_bridge_path,
+    params_paths,
+    path_for,
+)
 from multibot_rewrite.fleet.outputs.relays import not_bridged, relays
 from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
 from multibot_rewrite.fleet.robots import start_poses
@@ -63,7 +68,7 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     left = dict(_left(given))
     simulated = is_simulated(robot)
     starts = [it for name in names.started if name not in left for it in _started(given, name)]
-    bridge = path_for(robot, BRIDGE)
+    bridge = gz_bridge_path(robot)
     spawned = []
     if simulated:
         spawned = [_spawner(given)]

@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.outputs.companion_files import of_fleet
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
+    gz_bridge_path,
     path_for,
     yaml_of,
 )
@@ -98,7 +99,7 @@ def _for_robot(
     text, findings = merge_bridges(texts, [it for it in topics if it.robot == spec.namespace])
     yield from findings
     if text:
-        yield OutputFile(path_for(robot, BRIDGE), text.encode(), tuple(files))
+        yield OutputFile(gz_bridge_path(robot), text.encode(), tuple(files))
 
 
 def _for_all(

@@ -16,6 +16,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 
 # The plan of a built fleet.
 PLAN = "plan.yaml"
@@ -50,7 +51,22 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     Files with one name are in folders called as their own, as many as it takes to tell them apart:
     ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
     """
-    name = name_among(source, (it for its in robot.spec.companions.values() for it in its))
+    kinds = robot.spec.companions
+    name = name_among(source, (it for its in kinds.values() for it in its))
+    kind = next((kind for kind, its in kinds.items() if source in its), "")
+    above, last = os.path.split(name)
+    if last == BRIDGE_FILE and kind != "bridge":
+        # The robot's bridge is called so.
+        name = os.path.join(above, f"{kind}_{last}")
+    return _placed(robot, name)
+
+
+def gz_bridge_path(robot: RewrittenRobot) -> str:
+    """Return where the file of the robot's bridge goes."""
+    return _placed(robot, BRIDGE_FILE)
+
+
+def _placed(robot: RewrittenRobot, name: str) -> str:
     return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
 
 
