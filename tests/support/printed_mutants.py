@@ -4,29 +4,26 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 
 _DOCUMENTED = (ast.Module, ast.FunctionDef)
 
 
 def mutants(text: str) -> Iterator[tuple[str, str]]:
-    """What was changed, and the text of the changed file."""
+    """Yield what was changed, and the text of the changed file."""
     tree = ast.parse(text)
-    for number, node in enumerate(_values(tree)):
-        changed = copy.deepcopy(tree)
-        own = list(_values(changed))[number]
-        own.value = _other(own.value)
-        yield f"line {node.lineno}: {node.value!r} is {own.value!r}", ast.unparse(changed)
+    for node in list(_values(tree)):
+        value, node.value = node.value, _other(node.value)  # type: ignore[assignment]
+        yield f"line {node.lineno}: {value!r} is {node.value!r}", ast.unparse(tree)
+        node.value = value
     for field in ("keywords", "elts", "keys"):
-        for number, node in enumerate(_having(tree, field)):
-            for at, it in enumerate(getattr(node, field)):
-                changed = copy.deepcopy(tree)
-                own_node = list(_having(changed, field))[number]
-                del getattr(own_node, field)[at]
-                if field == "keys":
-                    del own_node.values[at]
-                yield f"line {node.lineno}: without {ast.unparse(it)}", ast.unparse(changed)
+        for owner in list(_having(tree, field)):
+            lists = [getattr(owner, it) for it in (field, "values")[: 1 + (field == "keys")]]
+            for at in range(len(lists[0])):
+                left_out = [it.pop(at) for it in lists]
+                yield f"line {owner.lineno}: without {ast.unparse(left_out[0])}", ast.unparse(tree)  # type: ignore[attr-defined]
+                for its, one in zip(lists, left_out, strict=True):
+                    its.insert(at, one)
 
 
 def _values(tree: ast.AST) -> Iterator[ast.Constant]:

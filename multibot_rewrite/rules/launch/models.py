@@ -115,9 +115,10 @@ def not_brought(launched: Launched) -> Iterator[Finding]:
 
 
 def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
-    """A topic of a model without its name."""
+    """Return a topic of a model without its name, and without the namespace of its description."""
     kind, gz = topic
-    return kind, "/".join(word for word in gz.split("/") if word != model.name)
+    own = {model.name, *model.words.get("-topic", "").strip("/").split("/")[:-1]}
+    return kind, "/".join(word for word in gz.split("/") if word not in own)
 
 
 def _sent(model: InSimulator) -> Iterator[tuple[str, str]]:
