@@ -31,7 +31,7 @@ from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.check import doubts
-from multibot_rewrite.rules.pair.nodes import missing_robot
+from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.domains import unnamed
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tool_nodes import is_tool

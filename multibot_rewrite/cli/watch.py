@@ -13,7 +13,7 @@ from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
-from multibot_rewrite.rules.pair.nodes import missing_robot
+from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.records import CHANGING, System
 
 # As many findings as a screen holds beside the robots.

@@ -78,14 +78,14 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MG1",
         (
-            "rules.pair.nodes",
-            "rules.pair.endpoints",
-            "rules.pair.demands",
-            "rules.pair.in_enclaves",
-            "rules.pair.planned_states",
+            "rules.system.planned_nodes",
+            "rules.system.planned_ends",
+            "rules.system.demands",
+            "rules.system.enclaves",
+            "rules.system.planned_states",
         ),
     ),
-    Home("MG2", ("rules.pair.frame_names", "rules.pair.frames_heard")),
+    Home("MG2", ("rules.system.planned_frames",)),
     Home(
         "MG3",
         (

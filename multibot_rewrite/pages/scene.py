@@ -26,7 +26,7 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.rules.pair.meeting import matches
+from multibot_rewrite.rules.system.planned import matches
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.index import EndKey, Index
 from multibot_rewrite.system.records import (
@@ -207,8 +207,8 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
         yield DrawnEdge(*key, type_, state, common)
     for key, planned in plan.by_key.items():
         node, *_, name = key
-        missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
-        if missing and key not in seen.by_key:
+        reported = states.nodes.get(node) == MISSING or (node, name) in states.endpoints
+        if reported and key not in seen.by_key:
             yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
 
     carried = {(role, name) for _, _, role, name in seen.by_key}

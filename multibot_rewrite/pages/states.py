@@ -9,7 +9,7 @@ from itertools import chain
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.system.tf_trees import tf_trees
 from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.records import alternatives
 from multibot_rewrite.system.tf_copies import tree_topic

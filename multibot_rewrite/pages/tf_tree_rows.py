@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.pair.tf_trees import tf_trees
+from multibot_rewrite.rules.system.tf_trees import tf_trees
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic

@@ -1,41 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """A system, alone or with its plan -> findings, in the order of the codes.
 
-All that is found without a plan is found with one, but for what the plan means. Where the view may be
-incomplete, a finding about something missing is *inconclusive*.
+Where the view may be incomplete, a finding about something missing is *inconclusive*.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from fnmatch import fnmatchcase
-from types import ModuleType
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, Finding
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
-from multibot_rewrite.rules.declaration import PAIR, SYSTEM, Finder
-from multibot_rewrite.rules.pair import (
-    demands,
-    endpoints,
-    frame_names,
-    frames_heard,
-    in_enclaves,
-    leaks,
-    nodes,
-    planned_states,
-    publishers,
-    transforms,
-    types,
-)
-from multibot_rewrite.rules.pair.meeting import missing
 from multibot_rewrite.rules.system import (
     addresses,
     clocks,
     commands,
+    demands,
     differing,
+    enclaves,
     equal_robots,
     frame_ids,
     interfaces,
@@ -44,6 +28,11 @@ from multibot_rewrite.rules.system import (
     lookups,
     matching,
     names,
+    nodes,
+    planned_ends,
+    planned_frames,
+    planned_nodes,
+    planned_states,
     refused,
     relays,
     sharing,
@@ -51,62 +40,28 @@ from multibot_rewrite.rules.system import (
     states,
     tf_pieces,
     tf_topics,
+    transforms,
     unsent,
 )
-from multibot_rewrite.rules.system import nodes as running_nodes
-from multibot_rewrite.rules.system import transforms as any_transforms
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.names import topic_names_miss
-from multibot_rewrite.rules.system.unsent import nothing_known_sends
-from multibot_rewrite.system.index import NO_COUNTS, Index, beside, ends_of, index
+from multibot_rewrite.rules.system.planned import missing
+from multibot_rewrite.rules.with_plan import one_for_a_cause
+from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, Caveat, End, System, incomplete
+from multibot_rewrite.system.records import Caveat, System, incomplete
 from multibot_rewrite.system.records import clocks as time_by_node
 from multibot_rewrite.system.tf_copies import without_bridged
 
-_SYSTEM = (
-    *(running_nodes, names, matching, commands, relays, sharing, any_transforms, tf_topics),
-    *(
-        tf_pieces,
-        frame_ids,
-        lookups,
-        localized,
-        refused,
-        stamps,
-        clocks,
-        states,
-        equal_robots,
-        likes,
-        differing,
-        unsent,
-        interfaces,
-        addresses,
-    ),
+_MODULES = (
+    *(nodes, names, matching, commands, relays, sharing, transforms, tf_topics, tf_pieces),
+    *(frame_ids, lookups, localized, refused, stamps, clocks, states, equal_robots, likes),
+    *(differing, unsent, interfaces, addresses, enclaves, planned_nodes, planned_ends, demands),
+    *(planned_states, planned_frames),
 )
-_PAIR = (
-    *(nodes, endpoints, leaks, types, publishers, demands, in_enclaves, planned_states),
-    *(transforms, frame_names, frames_heard),
-)
-
-
-def _declared(modules: Sequence[ModuleType], kind: str) -> Iterator[Rule]:
-    for module in modules:
-        found = (it for it in vars(module).values() if isinstance(it, Rule))
-        yield from (it for it in found if it.formats == (kind,))
-
-
-def _finders() -> Iterator[Finder]:
-    for module in _PAIR:
-        yield from (it for it in vars(module).values() if isinstance(it, Finder))
-    for rule in _declared(_PAIR, PAIR):
-        if rule.check:
-            yield Finder(rule, rule.check, bool(rule.options["nodes"]))
-
-
-SYSTEM_RULES = {it.code: it for it in sorted(_declared(_SYSTEM, SYSTEM), key=lambda it: it.code)}
-FINDERS = tuple(sorted(_finders(), key=lambda it: it.rule.code))
-RULES = {**{it.code: it for it in _declared(_PAIR, PAIR)}, **SYSTEM_RULES}
+_FOUND = (it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule))
+RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 WAITED_FOR = "expected-not-seen"
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
@@ -114,14 +69,28 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
 def judge(seen: Index) -> list[Finding]:
-    """What is wrong with a system; empty for one that is as it should be."""
-    return _judged(seen, SYSTEM_RULES.values())
+    """What is wrong with a system, and other than its plan has it where there is one; empty for one
+    that is as it should be."""
+    with gc_paused():
+        plan = seen.expected
+        if plan is None:
+            return _judged(seen, _rules(planned=False))
+        # What a robot has not and others have is meant where nothing that is planned is missing.
+        asked = (it for it in _rules(planned=False) if it is not _LACKS or missing(plan, seen))
+        recorded = is_recorded(seen.system)
+        only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
+        by_plan = [it for rule in only if rule.check for it in rule.check(seen)]
+        found = _judged(seen, asked)
+        return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(doubts(seen.system)))
+
+
+def _rules(planned: bool) -> Iterator[Rule]:
+    return (it for it in RULES.values() if it.options["planned"] is planned)
 
 
 def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
-    with gc_paused():
-        found = [it for rule in rules if rule.check for it in rule.check(seen)]
-        return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+    found = [it for rule in rules if rule.check for it in rule.check(seen)]
+    return differing.unexplained(_of_localizers(seen, _of_readers(found)))
 
 
 def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
@@ -155,7 +124,12 @@ def absences(seen: Index) -> list[Finding]:
 
 
 def _part(seen: Index, absent: bool) -> list[Finding]:
-    found = _judged(seen, (it for it in SYSTEM_RULES.values() if (it.code in ABSENCE) is absent))
+    with gc_paused():
+        return _of_part(seen, absent)
+
+
+def _of_part(seen: Index, absent: bool) -> list[Finding]:
+    found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
     # What is found of robots held against each other is left to any other finding.
     if any(it.code in differing.COMPARED for it in found):
         found = judge(seen)
@@ -165,12 +139,9 @@ def _part(seen: Index, absent: bool) -> list[Finding]:
 def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
     counts those of each topic, where they were counted."""
-    with gc_paused():
-        by_plan, seen = side_by_side(plan, graph, messages)
-        finders = [it for it in FINDERS if not (it.nodes and is_recorded(graph))]
-        found = [finding for it in finders for finding in it.find(by_plan, seen)]
-        found += _besides(by_plan, seen, found)
-    return inconclusive_where_in_doubt(sorted(found, key=lambda it: it.code), graph)
+    _, seen = side_by_side(plan, graph, messages)
+    found = sorted(judge(seen), key=lambda it: it.code)
+    return inconclusive_where_in_doubt(found, graph)
 
 
 def side_by_side(
@@ -181,56 +152,6 @@ def side_by_side(
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
     return by_plan, beside(by_plan, there._replace(edges=edges), messages)
-
-
-def _besides(plan: Index, seen: Index, found: Sequence[Finding]) -> Iterator[Finding]:
-    """What is wrong with the system, without what is meant, and what is found with its cause by the
-    plan: under the same code, or as an end that is missing."""
-    said = {(it.code, about) for it in found for about in (*it.names, it.node) if about}
-    said |= {(it.code, f"of {it.robot}") for it in found if it.robot}
-    lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
-    loose = {name for node, *_, name in missing(plan, seen)} - lost
-    told = {name for it in found for name in it.names}
-    # What a robot has not and others have is meant where nothing that is planned is missing.
-    asked = [it for it in SYSTEM_RULES.values() if it is not _LACKS or lost or loose]
-    for it in _judged(seen._replace(system=_without_planned(plan, seen.system)), asked):
-        options = RULES[it.code].options
-        abouts = (*it.names, it.node, *[f"of {it.robot}"] * bool(options["robot_wide"]))
-        by_plan = any((it.code, about) in said for about in abouts)
-        absent = options["absence"] and (not lost.isdisjoint(it.names) or _all_in(it, loose))
-        compared = it.code in differing.COMPARED and not told.isdisjoint(it.names)
-        if not (by_plan or absent or compared or _is_meant(plan, seen, it)):
-            # Nothing sends it by the plan either, whatever another robot has.
-            yield it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
-
-
-def _all_in(finding: Finding, loose: Set[str]) -> bool:
-    """Is it only about what need not be there by the plan?"""
-    return bool(finding.names) and {*finding.names} <= loose
-
-
-def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:
-    """Whether all who do with its names what it is about are planned to."""
-    roles = RULES[finding.code].options["meant"]
-    ends = [end for name in finding.names for end in ends_of(seen, name)]
-    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
-    return bool(about) and all(_is_planned(plan, end) for end in about)
-
-
-def _is_planned(plan: Index, end: End) -> bool:
-    if (end.node, end.kind, end.role, end.name) in plan.by_key:
-        return True
-    topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
-    return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
-
-
-def _without_planned(plan: Index, graph: System) -> System:
-    """The graph without the states that the plan has: they are compared with it."""
-    states_ = {it.name for it in plan.system.nodes if it.lifecycle}
-    timed = dict(planned_states.planned_clocks(plan.system))
-    nodes_ = (it._replace(lifecycle="") if it.name in states_ else it for it in graph.nodes)
-    parameters = (it for it in graph.parameters if it.name != SIM_TIME or it.node not in timed)
-    return graph._replace(nodes=tuple(nodes_), parameters=tuple(parameters))
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:

@@ -1,33 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a rule about a system, or a plan and a system, is declared: on the function that finds it."""
+"""How a rule about a system is declared: on the function that finds it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule, rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.rule import Rule, declare
 
 if TYPE_CHECKING:
     from multibot_rewrite.system.index import Index
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
-_Pair = Callable[["Index", "Index"], Iterator[Finding]]
+_Compare = Callable[["Index", "Index"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
-# What the examples of a rule are written in: lines of a system, or of a plan and a system.
-SYSTEM, PAIR = "system", "pair"
-
-
-class Finder(NamedTuple):
-    """A function that finds by a plan what ``rule`` is about. With ``nodes`` it asks which nodes run,
-    which a recording does not know."""
-
-    rule: Rule
-    find: _Pair
-    nodes: bool
+# What the examples of a rule are written in: lines of a system, and of its plan.
+SYSTEM = "system"
 
 
 def system_rule(
@@ -39,19 +30,17 @@ def system_rule(
     drawn: Drawn = "",
     all_ends: bool = False,
     meant: tuple[str, ...] = (),
-    robot_wide: bool = False,
 ) -> Callable[[_Check], Rule]:
-    """Makes a function a rule about any system: it gets an ``Index`` and yields what its own
-    ``finding`` makes.
+    """Make a function a rule about any system: it gets an ``Index``, may ask what is ``expected`` in
+    it, and yields what its own ``finding`` makes.
 
     ``absence``: the rule finds that something is missing, which an incomplete view cannot prove.
     ``all_ends``: a finding names one node, and is about all nodes that use the names. ``meant`` are
-    roles: where all who have them at the names of a finding are planned to, it is no fault.
-    ``robot_wide``: what a plan finds of a robot is all that there is of it. The examples are lines of
-    ``tests/support/graph_examples.py`` that begin with ``running:``.
+    roles: where all who have them at the names of a finding are planned to, it is no fault. The
+    examples are lines of ``tests/support/graph_examples.py`` that begin with ``running:``.
     """
-    options = system_options(absence, drawn, all_ends, meant, robot_wide)
-    return rule(code, name, level, formats=(SYSTEM,), options=options)
+    options = system_options(absence, drawn, all_ends, meant)
+    return lambda check: declare(code, name, level, check, formats=(SYSTEM,), options=options)
 
 
 def system_options(
@@ -59,14 +48,13 @@ def system_options(
     drawn: Drawn = "",
     all_ends: bool = False,
     meant: tuple[str, ...] = (),
-    robot_wide: bool = False,
 ) -> dict[str, object]:
-    """The options of a rule about any system, as in ``system_rule``."""
+    """Return the options of a rule about any system, as in ``system_rule``."""
     options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
-    return {**options, "meant": meant, "robot_wide": robot_wide}
+    return {**options, "meant": meant, "planned": False}
 
 
-def pair_rule(
+def planned_rule(
     code: str,
     name: str,
     level: str,
@@ -74,18 +62,20 @@ def pair_rule(
     absence: bool = False,
     drawn: Drawn = "",
     nodes: bool = True,
-) -> Callable[[_Check], Rule]:
-    """Makes a function a rule about a plan and what is seen: it gets the ``Index`` of
-    each.
+) -> Callable[[_Compare], Rule]:
+    """Make a function a rule that only a plan can answer: it gets the ``Index`` of the plan and of
+    what is seen, and is not asked without a plan.
 
     ``nodes``: it asks which nodes run, which a recording does not know. The rest is as for
     ``system_rule``.
     """
-    options = {"absence": absence, "drawn": drawn, "all_ends": False, "nodes": nodes}
-    return rule(code, name, level, formats=(PAIR,), options=options)
+    options = {**system_options(absence, drawn), "planned": True, "nodes": nodes}
 
+    def declared(compare: _Compare) -> Rule:
+        @wraps(compare)
+        def check(seen: Index) -> Iterator[Finding]:
+            return compare(seen.expected, seen) if seen.expected else iter(())
 
-def found_by_plan(*rules: Rule, nodes: bool = True) -> Callable[[_Pair], Finder]:
-    """Makes a function one that finds, by a plan, what system rules are about: the same fault, which
-    the plan shows where the system alone does not, or of which it knows the cause."""
-    return lambda find: Finder(rules[0], find, nodes)
+        return declare(code, name, level, check, formats=(SYSTEM,), options=options)
+
+    return declared

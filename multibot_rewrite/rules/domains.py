@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.pair.nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.records import System

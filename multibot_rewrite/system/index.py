@@ -19,7 +19,6 @@ from multibot_rewrite.system.records import (
     OFF,
     PUBLISHES,
     SERVES,
-    SIM_TIME,
     SUBSCRIBES,
     TOPIC,
     Edge,
@@ -36,8 +35,6 @@ from multibot_rewrite.system.tool_nodes import is_tool, is_viewer
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
 NO_COUNTS: Mapping[str, int] = {}
-NO_NAMES: Mapping[str, str] = {}
-NO_SENDERS: Mapping[tuple[str, str], tuple[str, ...]] = {}
 # Node, kind, role and name of an end.
 EndKey = tuple[str, str, str, str]
 _Look = TypeVar("_Look", bound=Callable[..., Any])
@@ -85,21 +82,9 @@ class Sent(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What is known of a system besides what it shows.
+    """What is known of a system besides what it shows: how many ``messages`` came on each topic in
+    ``seconds``, where they were counted."""
 
-    ``home`` has the tf topic of each robot, ``senders`` the nodes that are known to send a transform
-    (parent, child). ``parts`` are nodes of robots whatever they are called, ``tools`` patterns of
-    nodes that are none. ``clocks`` are nodes of which a plan says on which clock they are, ``relays``
-    nodes that are to send their robot's tf elsewhere as well. ``messages`` counts those that came on
-    each topic in ``seconds``, where they were counted.
-    """
-
-    home: Mapping[str, str] = NO_NAMES
-    senders: Mapping[tuple[str, str], tuple[str, ...]] = NO_SENDERS
-    parts: Container[str] = ()
-    tools: tuple[str, ...] = ()
-    clocks: Container[str] = ()
-    relays: Container[str] = ()
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
 
@@ -126,7 +111,7 @@ class Index(NamedTuple):
     ``robot`` and ``frame_robot`` have the robot of a node or name and of a frame, empty where it is of
     none or of all; ``plain`` and ``plain_frame`` the name without the robot's; ``of_names`` and
     ``of_frames`` are how a plan has it. ``known`` is what is known besides. ``memo`` is filled while
-    rules look (``once``).
+    rules look (``once``). ``expected`` is its plan, where there is one.
     """
 
     system: System
@@ -139,6 +124,7 @@ class Index(NamedTuple):
     of_frames: NameOwnership
     known: Known
     memo: dict[object, Any]
+    expected: Index | None = None
 
     @property
     @once
@@ -244,7 +230,32 @@ class Index(NamedTuple):
 
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""
-        return node not in self.known.parts and is_tool(node, self.known.tools)
+        plan = self.expected
+        if plan is None:
+            return is_tool(node)
+        return node not in plan.robot_of and is_tool(node, plan.system.ignored_nodes)
+
+    @property
+    @once
+    def home(self) -> Mapping[str, str]:
+        """The tf topic that the plan has for each robot."""
+        robots = self.expected.system.robots if self.expected else ()
+        return {it.name: tree_topic(it.tf_topic) for it in robots}
+
+    @property
+    @once
+    def senders(self) -> Mapping[tuple[str, str], tuple[str, ...]]:
+        """The nodes that send each transform (parent, child) by the plan."""
+        found: dict[tuple[str, str], tuple[str, ...]] = defaultdict(tuple)
+        for it in self.expected.sent if self.expected else ():
+            found[it.parent, it.child] += (it.node,)
+        return found
+
+    @property
+    @once
+    def relays(self) -> Container[str]:
+        """The nodes that send their robot's tf elsewhere as well, by the plan."""
+        return copying_nodes(self.expected.system) if self.expected else ()
 
 
 def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
@@ -253,21 +264,9 @@ def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
 
 
 def beside(plan: Index, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
-    """A system with what its plan says of names, tf topics, senders and tools."""
-    senders: dict[tuple[str, str], tuple[str, ...]] = defaultdict(tuple)
-    for it in plan.sent:
-        senders[it.parent, it.child] += (it.node,)
-    known = Known(
-        {robot.name: tree_topic(robot.tf_topic) for robot in plan.system.robots},
-        senders,
-        plan.robot_of,
-        plan.system.ignored_nodes,
-        {it.node for it in plan.system.parameters if it.name == SIM_TIME},
-        copying_nodes(plan.system),
-        messages,
-        graph.environment.seconds,
-    )
-    return plan._replace(system=graph, known=known, memo={})
+    """A system with its plan, which says whose each name is."""
+    known = Known(messages, graph.environment.seconds)
+    return plan._replace(system=graph, known=known, memo={}, expected=plan)
 
 
 @once

@@ -16,6 +16,11 @@ def tree_topic(topic: str) -> str:
     return "/".join("tf" if word == "tf_static" else word for word in topic.split("/"))
 
 
+def static_topic(topic: str) -> str:
+    """The topic of static transforms that belongs to a tf topic."""
+    return "/".join("tf_static" if word == "tf" else word for word in topic.split("/"))
+
+
 def copying_nodes(plan: System) -> Mapping[str, str]:
     """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well, or send a
     transform beside such a node; by each its robot."""

@@ -120,7 +120,7 @@ def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str])
     graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
     code, out, _ = held(plan, graph, capsys)
     assert code == 1
-    assert "/robot1/diff_drive: error: MG102" in out
+    assert "/robot1/diff_drive: error: MG303" in out
     assert "it subscribes to /cmd_vel instead" in out
 
 

@@ -210,7 +210,7 @@ def test_what_the_plan_says_of_states_is_meant() -> None:
     assert it.code == "MG511"
     (it,) = found(waiting, Answer("/robot1/amcl", "active"))
     assert (it.code, it.robot, it.node) == ("MG511", "robot1", "/robot1/amcl")
-    assert "is active, planned is inactive" in it.message
+    assert "is active, not inactive" in it.message
 
 
 def test_planned_simulated_time_is_compared_alone() -> None:

@@ -99,7 +99,7 @@ def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
 def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> None:
     tree = page(report_pages.twenty())
     (card,) = tree.find_class("card")
-    assert card.find("p").text == "20 robots, 2 errors each; 40 nodes running"
+    assert card.find("p").text == "20 robots, 1 error each; 40 nodes running"
     assert [it.text for it in card.iterfind("h3/a")] == [f"robot{at}" for at in range(1, 9)]
     assert len(card.xpath(".//h3//a")) == 20
     opened = tree.xpath("//section[@id='graph']//details[@open]/@id")
@@ -122,7 +122,7 @@ def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
 def test_both_robots_of_cross_talk_are_concerned() -> None:
     rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
     assert rows["MG321"] == ("robot1", "robot2")
-    assert rows["MG310"] == ("robot1",)
+    assert rows["MG308"] == ("robot1",)
     assert cards(report_pages.spoiled()) == {"robot1": "bad", "robot2": "bad"}
 
 
@@ -303,7 +303,7 @@ def test_a_finding_shows_the_line_of_the_description(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
-    given = ("check", str(GRAPHS / "plan.yaml"), "--from", str(GRAPHS / "MG102.json"))
+    given = ("check", str(GRAPHS / "plan.yaml"), "--from", str(GRAPHS / "MG310.json"))
     _, tree = drawn(tmp_path, *given)
     marked = {it.text.strip() for it in tree.xpath("//pre/b")}
     assert '88     <plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so">' in marked

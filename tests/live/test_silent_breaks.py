@@ -100,8 +100,9 @@ def test_no_joint_states_of_a_publisher_that_may_be_missing(layout: str) -> None
 def test_a_lidar_without_its_rule(layout: str) -> None:
     driver = named(layout, "lidar_driver")
     graph = moved(healthy(layout), named(layout, "scan"), f"{driver}/out", driver)
-    (finding,) = hints(layout, graph, "MG102")
-    assert finding.node == driver
+    (finding,) = check(read_plan(layout), graph)
+    assert (finding.code, finding.robot) == ("MG303", "robot2")
+    assert f"by the plan {driver} should publish topic {named(layout, 'scan')}" in finding.hint
     assert "~/out:=" in finding.hint
     assert "rover.urdf:106" in finding.hint
 

@@ -7,7 +7,7 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.fleet.fleet import expected, make_fleet
-from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name
+from multibot_rewrite.rules.system.causes import how_to_remap, why_other_name
 from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
 from multibot_rewrite.system.index import index

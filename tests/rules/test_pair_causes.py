@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What was probably meant, and what is to do about it: names beside names, and the whole sentences.
 
-Of ``rules/pair``: causes, frame_prefixes, leaks, name_variants, similar_names.
+Of ``rules/system``: causes, planned_frames, planned_ends, similar_names.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from graph_examples import read_example
 
-from multibot_rewrite.rules.pair.causes import (
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.system.causes import (
     caused,
     how_to_pass,
     how_to_remap,
@@ -22,14 +23,13 @@ from multibot_rewrite.rules.pair.causes import (
     why_not_remapped,
     why_other_name,
 )
-from multibot_rewrite.rules.pair.frame_prefixes import added_prefixes, robot_behind_prefix
-from multibot_rewrite.rules.pair.leaks import _why_leaked
-from multibot_rewrite.rules.pair.name_variants import name_variants
-from multibot_rewrite.rules.pair.similar_names import probable_matches, similar
+from multibot_rewrite.rules.system.planned_ends import _why_besides
+from multibot_rewrite.rules.system.similar_names import probable_matches, similar
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 
+FRAMES = "base, laser, front_laser, tool"
 SCAN = "/robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan"
 PLACE = "arm.urdf:12"
 
@@ -90,47 +90,37 @@ def test_nothing_is_missing() -> None:
     assert probable_matches({}, ["/lidar"], ["/lidar"], plan_of(SCAN).of_names) == {}
 
 
-def test_usual_wrong_names_of_a_frame() -> None:
-    found = {*name_variants("laser", "robot1_laser", "robot1")}
-    assert {"laser", "robot1/robot1_laser", "robot1_robot1_laser", "robot1_laser/robot1"} <= found
-    assert "laser" not in {*name_variants("laser", "laser", "robot1")}
+MANY = "a, b, c, d, e, f"
 
 
 @pytest.mark.parametrize(
-    ("names", "found"),
+    ("planned", "names", "found"),
     [
-        (["x/base", "x/laser"], {"x/base": "x/", "x/laser": "x/"}),
+        (FRAMES, ["x/base", "x/laser"], {"x/base", "x/laser"}),
         # One alone may be a frame of its own, with a slash as well.
-        (["x/base"], {}),
-        (["front_laser"], {}),
-        (["x_base", "x_laser"], {"x_base": "x_", "x_laser": "x_"}),
-        (["x_base", "y_laser"], {}),
-        (["base", "other"], {}),
+        (FRAMES, ["x/base"], set()),
+        (FRAMES, ["front_laser"], set()),
+        (FRAMES, ["x_base", "x_laser"], {"x_base", "x_laser"}),
+        (FRAMES, ["x_base", "y_laser"], set()),
+        (FRAMES, ["base", "other"], set()),
         # The longest: front_laser behind x/.
-        (["x/front_laser", "x/base"], {"x/front_laser": "x/", "x/base": "x/"}),
+        (FRAMES, ["x/front_laser", "x/base"], {"x/front_laser", "x/base"}),
+        # The robot's own name needs no second frame.
+        (FRAMES, ["robot1_laser"], {"robot1_laser"}),
+        (FRAMES, ["laser_robot1"], {"laser_robot1"}),
+        # Of many frames half have the prefix, if it has no slash.
+        (MANY, ["x_a", "x_b"], set()),
+        (MANY, ["x/a", "x/b"], {"x/a", "x/b"}),
+        (MANY, ["x_a", "x_b", "x_c"], {"x_a", "x_b", "x_c"}),
     ],
 )
-def test_a_prefix_in_front_of_planned_frames(names: list[str], found: dict[str, str]) -> None:
-    plan = plan_of(SCAN + "\nframes of robot1 on /tf: base, laser, front_laser, tool")
-    assert added_prefixes(plan.declared["robot1"], names) == found
-
-
-def test_of_a_robot_with_many_frames_half_have_the_prefix() -> None:
-    plan = plan_of(SCAN + "\nframes of robot1 on /tf: a, b, c, d, e, f")
-    robot = plan.declared["robot1"]
-    assert added_prefixes(robot, ["x_a", "x_b"]) == {}
-    # With a slash it is no frame of its own.
-    assert added_prefixes(robot, ["x/a", "x/b"]) == {"x/a": "x/", "x/b": "x/"}
-    assert added_prefixes(robot, ["x_a", "x_b", "x_c"]) == dict.fromkeys(
-        ("x_a", "x_b", "x_c"), "x_"
-    )
-
-
-def test_whose_frame_it_is_behind_a_prefix() -> None:
-    of_frames = plan_of(SCAN + "\nframes of robot1 on /tf: robot1_tool").of_frames
-    assert robot_behind_prefix(of_frames, "x_robot1_tool") == "robot1"
-    assert robot_behind_prefix(of_frames, "robot1_tool") == ""
-    assert robot_behind_prefix(of_frames, "x_tool") == ""
+def test_a_prefix_in_front_of_planned_frames(
+    planned: str, names: list[str], found: set[str]
+) -> None:
+    lines = f"as planned: /robot1/lidar\nplanned: frames of robot1 on /robot1/tf: {planned}"
+    sent = (f"\nrunning: transform tool -> {it} on /robot1/tf_static" for it in names)
+    findings = check(*read_example(lines + "".join(sent)))
+    assert {name for it in findings if it.code == "MG407" for name in it.names} == found
 
 
 @pytest.mark.parametrize(
@@ -197,7 +187,8 @@ def test_why_a_node_uses_a_name_of_no_robot() -> None:
     def why(robots_last: bool = False, **changes: Any) -> tuple[object, ...]:
         node = ("/lidar/robot{}" if robots_last else "/robot{}/lidar").format
         plan = plan_of(f"{node(1)} publishes {node(1)}/out\n{node(2)}", **changes)
-        return _why_leaked(plan, node(1), "/scan", None)
+        end = plan.system.ends[0]._replace(name="/scan")
+        return _why_besides(plan, end, "")
 
     given = "no namespace or remap rule for it, see arm.urdf:12"
     assert why(plugin=PLACE) == (f"plugin lidar has {given}", "arm.urdf", 12)

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.launch.read import read_own
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.rules.declaration import PAIR, SYSTEM
+from multibot_rewrite.rules.declaration import SYSTEM
 from multibot_rewrite.rules.launch.declaration import LAUNCH
 from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.settings import Settings
@@ -57,7 +57,7 @@ COMPANIONS = {
 BUILT = "build"
 REMAP = ("remap", "remap-urdf")
 # What is found in these has no line of a file.
-WITHOUT_FILE = (PAIR, SYSTEM, *REMAP)
+WITHOUT_FILE = (SYSTEM, *REMAP)
 POLICY: Policy = {"layout": "frames-per-robot", "affix": "prefix"}
 FLEET: dict[str, Any] = {
     **POLICY,
@@ -199,13 +199,10 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     return grouped(made.table.problems, {it: it for it in robots})
 
 
-def pair_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A plan and a graph in the lines of ``graph_examples``."""
-    return check(*read_example(example))
-
-
 def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A graph in the same lines, without a plan."""
+    """A graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
+    if rule.options["planned"]:
+        return check(*read_example(example))
     return judge(read_system(example))
 
 
@@ -228,7 +225,6 @@ RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     "fleet": fleet_example,
     "fleet-urdf": description_example,
     **dict.fromkeys(REMAP, remap_example),
-    PAIR: pair_example,
     SYSTEM: system_example,
     LAUNCH: launch_example,
 }

@@ -107,11 +107,12 @@ def test_a_name_of_a_robot_is_found_without_it() -> None:
 
 
 def test_a_tool_is_called_like_one_and_in_no_plan() -> None:
-    known = index(PLAN, ALONE, Known(parts={"/a/rviz2"}, tools=("helper*",)))
-    assert [it for it in ("/a/rviz2", "/b/rviz2", "/helper1", "/driver") if known.is_tool(it)] == [
-        "/b/rviz2",
-        "/helper1",
-    ]
+    names = ("/a/driver", "/a/rviz2", "/b/rviz2", "/helper1", "/driver")
+    planned = PLAN._replace(nodes=(*PLAN.nodes, Node("/a/rviz2", robot="a")))
+    seen = beside(index(planned, ALONE), System())
+    assert [it for it in names if seen.is_tool(it)] == ["/b/rviz2", "/helper1"]
+    alone = index(PLAN, ALONE)
+    assert [it for it in names if alone.is_tool(it)] == ["/a/rviz2", "/b/rviz2"]
 
 
 def test_beside_its_plan_a_graph_is_read_as_the_plan_says() -> None:
@@ -120,16 +121,11 @@ def test_beside_its_plan_a_graph_is_read_as_the_plan_says() -> None:
     assert seen.system is graph
     assert seen.nodes == {"/x": 1}
     assert seen.robot("/a/scan") == "a"
-    assert seen.known == Known(
-        {"a": "/a/tf"},
-        {("a/odom", "a/base"): ("/a/driver", "/a/tool")},
-        {"/a/driver": "a"},
-        ("helper*",),
-        {"/a/driver"},
-        {},
-        {"/a/out": 3},
-        2.5,
-    )
+    assert seen.expected is IT
+    assert seen.home == {"a": "/a/tf"}
+    assert seen.senders == {("a/odom", "a/base"): ("/a/driver", "/a/tool")}
+    assert seen.relays == {}
+    assert seen.known == Known({"/a/out": 3}, 2.5)
 
 
 def test_transforms_are_in_trees_by_their_topic() -> None:

@@ -15,12 +15,15 @@ from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
 from multibot_rewrite.rules.launch.judge import CLAIMS
-from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
 from multibot_rewrite.rules.system import (
     clocks,
+    demands,
     localized,
     matching,
     names,
+    planned_ends,
+    planned_frames,
+    planned_nodes,
     relays,
     sharing,
     tf_pieces,
@@ -40,7 +43,7 @@ _OF_SOURCES = frozenset(
         *(matching.types_differ, relays.limits_left_out, sharing.topic_of_several_robots),
         *(transforms.frame_with_two_parents, transforms.robots_frames_collide),
         *(transforms.tf_cycle, transforms.static_and_moving, transforms.transform_of_two_senders),
-        frame_names.frame_without_robot_name,
+        planned_frames.frame_without_robot_name,
     )
 )
 # Both sides are known by the launch file, and they miss each other by name.
@@ -51,7 +54,12 @@ _MISSED = frozenset(
 _OF_OTHERS = clocks.no_clock.code
 # What a node of the launch file has is known, whatever else runs.
 _OF_NODES = frozenset(
-    it.code for it in (nodes.missing_node, nodes.missing_robot, endpoints.missing_endpoint)
+    it.code
+    for it in (
+        planned_nodes.missing_node,
+        planned_nodes.missing_robot,
+        planned_ends.missing_endpoint,
+    )
 )
 
 
@@ -101,7 +109,7 @@ def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, 
     alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)
     found = {(it.code, name) for it in alone for name in it.names}
     calls = (it for it in lacking if it.code == names.server_names_miss.code)
-    return frozenset(found | {(endpoints.missing_endpoint.code, it.names[0]) for it in calls})
+    return frozenset(found | {(planned_ends.missing_endpoint.code, it.names[0]) for it in calls})
 
 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
@@ -145,12 +153,12 @@ def _is_read(seen: System) -> bool:
 def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
     """Is the node, or one of the robot, to be started by the launch file? What a node has rests on its
     parameters, a controller on its manager; of a program that is not known nothing is."""
-    if it.code == nodes.missing_robot.code:
+    if it.code == planned_nodes.missing_robot.code:
         return any(one.robot == it.robot and one.name in started for one in planned.nodes)
     own = next((one for one in planned.nodes if one.name == it.node), None)
     if own is None or it.node not in started:
         return False
-    if it.code == nodes.missing_node.code:
+    if it.code == planned_nodes.missing_node.code:
         loaded = own.way == SPAWNER or (own.way == HOST and not own.taker)
         return not loaded or _has_manager(own, seen)
     known = any(one.known for one in seen.nodes if one.name == it.node)

@@ -12,11 +12,11 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import DESCRIPTION
 from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
-from multibot_rewrite.rules.pair.nodes import missing_node
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
 )
+from multibot_rewrite.rules.system.planned_nodes import missing_node
 from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System

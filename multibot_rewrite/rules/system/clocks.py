@@ -14,7 +14,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, nodes_of
-from multibot_rewrite.system.records import TOPIC, without_clock
+from multibot_rewrite.system.parameters import parameter_text
+from multibot_rewrite.system.records import SIM_TIME, TOPIC, without_clock
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
@@ -107,12 +108,13 @@ def clocks_mixed(seen: Index) -> Iterator[Finding]:
 
 def mixed_clocks(seen: Index) -> Iterator[Finding]:
     """The findings of MG503."""
+    yield from _not_as_planned(seen)
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
         return
     untold = without_clock(seen.system)
     asked = {node for node in seen.nodes if _is_timed(node) and node not in untold}
-    timed = {node for node in asked if node not in seen.known.clocks}
+    timed = asked - planned_clocks(seen).keys()
     for robot in dict.fromkeys(map(seen.robot, sorted(timed))):
         own = [node for node in sorted(timed) if seen.robot(node) == robot]
         others = [node for node in own if node not in simulated]
@@ -120,6 +122,31 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
             yield _mixed(robot, others, sorted(simulated & set(own)) or sorted(simulated))
         elif others and robot:
             yield _real_beside_simulated(robot, others, simulated)
+
+
+def planned_clocks(seen: Index) -> dict[str, str]:
+    """By node: the clock that the plan has for it, as the value of its parameter."""
+    planned = seen.expected.system.parameters if seen.expected else ()
+    return {it.node: it.value for it in planned if it.name == SIM_TIME}
+
+
+def _not_as_planned(seen: Index) -> Iterator[Finding]:
+    """One finding for the nodes of a robot that differ alike, by what they subscribe to."""
+    ends = seen.by_name.get((TOPIC, CLOCK))
+    timed = nodes_of(ends.subscribers) if ends else ()
+    told = {it.node for it in seen.system.parameters if it.name == SIM_TIME}
+    differing: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for node, wanted in planned_clocks(seen).items():
+        if node in seen.nodes and node not in told and wanted != parameter_text(node in timed):
+            differing[seen.robot(node), wanted].append(node)
+    for (robot, wanted), nodes in differing.items():
+        verb = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
+        which = f"these nodes {verb} to {CLOCK}: {shorten(nodes)}"
+        yield clocks_mixed.finding(
+            f"{SIM_TIME} is planned to be {wanted}, but {which}",
+            f"start them with {SIM_TIME}: {wanted}",
+            robot=robot, node=nodes[0], names=tuple(nodes),
+        )  # fmt: skip
 
 
 def _is_timed(node: str) -> bool:

@@ -12,7 +12,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.states import ACTIVE
-from multibot_rewrite.rules.system.tf_pieces import root_of
+from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree
@@ -30,7 +30,7 @@ class _Body(NamedTuple):
     loose: tuple[str, ...]
 
 
-@system_rule("MG415", "map-not-joined", ERROR, absence=True, robot_wide=True)
+@system_rule("MG415", "map-not-joined", ERROR, absence=True)
 def map_not_joined(seen: Index) -> Iterator[Finding]:
     """Where the tree is in pieces below the odometry as well, that is the finding."""
     for tree in seen.trees:

@@ -14,8 +14,8 @@ from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.tf_pieces import (
     is_of_description,
     publishes_description,
-    root_of,
 )
+from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index
 from multibot_rewrite.system.records import NOWHERE, QUIET, SUBSCRIBES, UNKNOWN_NODES, Edge, Lookup
 

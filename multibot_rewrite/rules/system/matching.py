@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache
 from math import inf
 
@@ -14,8 +14,9 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.causes import caused, plugin_of
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP
@@ -27,41 +28,81 @@ LIVELINESS = ("AUTOMATIC", "MANUAL_BY_NODE", "MANUAL_BY_TOPIC")
 # A valid type hash starts with the version of the hash.
 HASH = "RIHS"
 STAMPED = "Stamped"
+_SWITCH = "enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side"
 
 
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
-    """Where one of a node's ends has the type of the other side, it connects."""
+    """Where one of a node's ends has the type of the other side, or of the plan, it connects."""
     for ends in seen.by_name.values():
-        givers, takers = (ends.publishers, ends.subscribers)
-        if ends.kind != TOPIC:
-            givers, takers = ends.servers, ends.clients
-        if len({(end.type, end.type_hash) for end in (*givers, *takers)}) < 2:
+        every = [end for side in ends[3:] for end in side]
+        planned = planned_types(seen).get((ends.kind, ends.name), frozenset())
+        looking = [it for it in every if it.role == SUBSCRIBES and seen.is_tool(it.node)]
+        apart = _apart((it for it in every if it not in looking), {(it, "") for it in planned})
+        if apart:
+            yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())
+            continue
+        givers, takers = ends[3:5] if ends.kind == TOPIC else ends[5:7]
+        if len({(end.type, end.type_hash) for end in every}) < 2:
             continue
         # Of a side alone the first one counts.
         others = givers if takers else givers[:1]
-        apart = _apart(takers or givers, others)
+        apart = _apart(takers or givers, _all_types(others))
         if takers and not apart:
             # Every reader hears somebody; a sender may be heard by nobody.
-            others, apart = takers, _apart(givers, takers)
-        for node, own in apart.items():
-            given = {it for end in others for it in _types(end)}
-            asked = {it for end in own for it in _types(end)}
-            message, cause = _difference(ends.name, others[0].node, dict(asked), dict(given))
-            level = WARNING if is_viewer(node) else ERROR
-            robot = seen.robot(node) or seen.robot(ends.name)
-            both = (*others, *own)
-            yield types_differ.finding(
-                message, cause + see(both),
-                level=level, robot=robot, node=node, names=(ends.name,), **where(both),
-            )  # fmt: skip
+            others, apart = takers, _apart(givers, _all_types(takers))
+        yield from (_differs(seen, ends, own, others) for own in apart.values())
 
 
-def _apart(ends: Iterable[End], others: Sequence[End]) -> Mapping[str, Sequence[End]]:
-    """By node: the ends that connect with none of the others, where all types are known."""
-    given = {it for end in others for it in _types(end)}
+@once
+def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
+    """The types that the plan has for each name, where they are known."""
+    found: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for end in seen.expected.by_key.values() if seen.expected else ():
+        found[end.kind, end.name] |= {end.type, *end.also} - {""}
+    return found
+
+
+def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
+    asked, given = dict(_all_types(own)), dict(_all_types(others))
+    message, cause = _difference(ends.name, others[0].node, asked, given)
+    both, node = (*others, *own), own[0].node
+    level = WARNING if is_viewer(node) else ERROR
+    robot = seen.robot(node) or seen.robot(ends.name)
+    return types_differ.finding(
+        message, cause + see(both),
+        level=level, robot=robot, node=node, names=(ends.name,), **where(both),
+    )  # fmt: skip
+
+
+def _not_as_planned(seen: Index, ends: Ends, own: Sequence[End], planned: Set[str]) -> Finding:
+    node = own[0].node
+    message, _ = _difference(
+        ends.name, "the plan", dict(_all_types(own)), dict.fromkeys(planned, "")
+    )
+    plugin, place = plugin_of(seen.expected, node)
+    which = f"another version or setting of {plugin or 'the node'}"
+    if _by_a_switch({it for it, _ in _all_types(own)}, planned):
+        which = _SWITCH
+    at = f", see {place}" if place else ""
+    cause = caused(f"{which}{at}? If this type is right, correct the plan", place)
+    return types_differ.finding(
+        message, **cause._asdict(),
+        robot=seen.robot(node) or seen.robot(ends.name),
+        node=node if node in seen.nodes else "", names=(ends.name,),
+    )  # fmt: skip
+
+
+def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
+    """The types of some ends; nothing where one of them is not known."""
+    known = [*ends]
+    return {it for end in known for it in _types(end)} if all(end.type for end in known) else set()
+
+
+def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
+    """By node: the ends that connect with none of the types, where all of its own are known."""
     by_node: dict[str, list[End]] = defaultdict(list)
-    for end in ends if given and all(end.type for end in others) else ():
+    for end in ends if given else ():
         by_node[end.node].append(end)
     return {
         node: own
@@ -98,11 +139,14 @@ def _difference(
             "their packages of messages were built from different versions: build both from one",
         )
     cause = "no message ever arrives; use the same type on both sides"
-    if {it + STAMPED for it in asked} & given.keys() or {
-        it + STAMPED for it in given
-    } & asked.keys():
-        cause += ": enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side"
+    if _by_a_switch(asked.keys(), given.keys()):
+        cause += f": {_SWITCH}"
     return f"uses {name} as {wanted}, but {giver} has it as {there}", cause
+
+
+def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
+    """Is one side stamped and the other not?"""
+    return any({f"{it}{STAMPED}" for it in a} & b for a, b in ((some, others), (others, some)))
 
 
 @system_rule("MG307", "qos-incompatible", ERROR)
@@ -164,9 +208,13 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
 
 @system_rule("MG309", "not-latched", ERROR)
 def not_latched(seen: Index) -> Iterator[Finding]:
-    """Where a subscriber asks for it, that is the finding."""
+    """Where a subscriber asks for it, that is the finding; so is another QoS than a plan has."""
+    topics = seen.expected.system.topics if seen.expected else ()
+    planned = {it.name: it.qos for it in topics if it.qos}
+    for name, qos in planned.items():
+        yield from _offered_otherwise(seen, name, qos)
     for ends in seen.by_name.values() if seen.system.environment.rmw != ZENOH else ():
-        if ends.kind != TOPIC or not _is_latched(ends):
+        if ends.kind != TOPIC or ends.name in planned or not _is_latched(ends):
             continue
         yield from _misses_what_was_sent(seen, ends)
         if _with_durability(ends.subscribers, DURABILITY[1]):
@@ -179,6 +227,20 @@ def not_latched(seen: Index) -> Iterator[Finding]:
                 node=node,
                 names=(ends.name,),
             )
+
+
+def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -> Iterator[Finding]:
+    """Where it is known what is offered; a policy of which no word is known is as planned."""
+    ends = seen.by_name.get((TOPIC, name))
+    for end in ends.publishers if ends else ():
+        offered = [(policy, word, getattr(end.qos, policy)) for policy, word in qos if end.qos]
+        known = (it for it in offered if it[2] not in (it[1], "UNKNOWN", "SYSTEM_DEFAULT"))
+        if different := [f"{policy} {there}, the plan has {word}" for policy, word, there in known]:
+            yield not_latched.finding(
+                f"{name} is published with {', '.join(different)}",
+                f"set it with qos_overrides.{name}.publisher in its parameters",
+                robot=seen.robot(name) or seen.robot(end.node), node=end.node, names=(name,),
+            )  # fmt: skip
 
 
 def _with_durability(ends: Iterable[End], word: str) -> list[End]:

@@ -34,7 +34,7 @@ from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, 
 ABSENT = "is that robot started, and is its name right?"
 
 
-@system_rule("MG303", "topic-names-miss", ERROR, absence=True)
+@system_rule("MG303", "topic-names-miss", ERROR, absence=True, drawn="leak")
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
     common, a warning: something else may send it."""
@@ -154,7 +154,8 @@ def _is_doubled(name: str, meant: str) -> bool:
 def _missed_topic(
     seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
 ) -> Finding:
-    sender = nodes_of(other.publishers)[0]
+    robot = seen.robot(end.node) or seen.robot(end.name)
+    sender = min(nodes_of(other.publishers), key=lambda it: seen.robot(it) != robot)
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
     message = (
         f"subscribes to {end.name}{also}, which no node publishes; {sender} publishes {other.name}"
@@ -170,7 +171,6 @@ def _missed_topic(
     else:
         cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
     level = NOTE if is_viewer(sender) else level
-    robot = seen.robot(end.node) or seen.robot(end.name)
     return topic_names_miss.finding(
         message, cause + see((other.publishers[0], end)),
         level=level, robot=robot, node=end.node, names=(end.name, other.name), **where([end]),

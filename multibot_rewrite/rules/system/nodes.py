@@ -69,9 +69,11 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
         if len(managers) > 1:
             message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
             cause = "one of them is too many, or its node_names has nodes of another robot"
+            services = (f"{node}{end}" for node in nodes for end in (_CHANGE_STATE, "/get_state"))
             yield managed_twice.finding(
-                message, cause, robot=seen.robot(nodes[0]), node=managers[0], names=tuple(managers)
-            )
+                message, cause,
+                robot=seen.robot(nodes[0]), node=managers[0], names=(*managers, *services),
+            )  # fmt: skip
 
 
 def _asks_for_a_person(node: str) -> bool:

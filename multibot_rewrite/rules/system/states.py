@@ -10,7 +10,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
-from multibot_rewrite.rules.system.clocks import mixed_clocks
+from multibot_rewrite.rules.system.clocks import mixed_clocks, planned_clocks
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import (
     CLAIMS,
@@ -28,19 +28,27 @@ ACTIVE = "active"
 
 @system_rule("MG511", "not-active", ERROR)
 def not_active(seen: Index) -> Iterator[Finding]:
-    """One finding for the nodes of a robot that are in one state and have one manager."""
-    found: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+    """One finding for the nodes of a robot that are in one state and have one manager. A plan may have
+    another state for a node."""
+    planned = seen.expected.system.nodes if seen.expected else ()
+    states = {it.name: it.lifecycle for it in planned if it.lifecycle}
+    found: dict[tuple[str, str, str, str], list[str]] = defaultdict(list)
     for it in seen.system.nodes:
-        if it.lifecycle not in ("", ACTIVE):
-            found[seen.robot(it.name), it.lifecycle, _manager(seen, it.name)].append(it.name)
-    for (robot, state, manager), nodes in found.items():
+        wanted = states.get(it.name, ACTIVE)
+        if it.lifecycle not in ("", wanted):
+            about = (seen.robot(it.name), it.lifecycle, wanted, _manager(seen, it.name))
+            found[about].append(it.name)
+    for (robot, state, wanted, manager), nodes in found.items():
         verb = "is" if len(nodes) == 1 else "are"
-        message = f"{shorten(sorted(nodes), SEVERAL)} {verb} {state}, not active"
-        cause = f"see the log of {manager}" if manager else "no node activates it: is that meant?"
+        message = f"{shorten(sorted(nodes), SEVERAL)} {verb} {state}, not {wanted}"
+        is_planned = not states.keys().isdisjoint(nodes)
+        cause = "no node activates it: is that meant?"
+        if manager or is_planned:
+            cause = f"see the log of {manager or 'its lifecycle manager'}"
         yield not_active.finding(
             message,
             f"{cause}; ros2 lifecycle get {nodes[0]}",
-            level=ERROR if manager else WARNING,
+            level=ERROR if manager or is_planned else WARNING,
             robot=robot,
             node=nodes[0],
         )
@@ -102,11 +110,12 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG514", "use-sim-time-differs", WARNING)
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
-    """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot."""
-    told = {it.robot for it in mixed_clocks(seen)}
+    """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot, and
+    of planned parameters ``parameter_not_planned``."""
+    told, planned = {it.robot for it in mixed_clocks(seen)}, planned_clocks(seen)
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():
-        if not is_tool(node):
+        if not is_tool(node) and node not in planned:
             by_robot[seen.robot(node)][simulated].append(node)
     for robot, found in by_robot.items():
         if len(found) < 2 or robot in told:

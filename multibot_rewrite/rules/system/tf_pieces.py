@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -13,6 +13,15 @@ from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.planned_frames import misnamed
+from multibot_rewrite.rules.system.tf_causes import why_disconnected
+from multibot_rewrite.rules.system.tf_trees import (
+    above_each,
+    loose_odometry,
+    no_odometry,
+    root_of,
+    roots_by_robot,
+)
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -21,12 +30,24 @@ from multibot_rewrite.system.tool_nodes import last_word
 _STATE_PUBLISHER = "robot_state_publisher"
 
 
-@system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True, robot_wide=True)
+@system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True)
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
-    """By the usual names of these frames (REP 105); other pieces may be meant.
+    """By the frames of a plan, and by the usual names of frames (REP 105): other pieces may be meant.
+    What a plan shows of a robot is all of it."""
+    plan, told = seen.expected, set()
+    others = misnamed(plan, seen) if plan else ()
+    for robot, roots in roots_by_robot(plan, seen) if plan else ():
+        # Of frames under other names, or on another topic, that is the finding.
+        if plan and robot.name not in others:
+            told.add(robot.name)
+            message = in_pieces(robot.name, tree_topic(robot.tf_topic), roots)
+            cause = why_disconnected(plan, seen, robot, roots)._asdict()
+            yield tf_tree_in_pieces.finding(message, **cause, robot=robot.name, names=tuple(roots))
+    yield from (it for it in _by_usual_names(seen) if it.robot not in told)
 
-    Where nodes may run that are not known, one of them may join what is in pieces.
-    """
+
+def _by_usual_names(seen: Index) -> Iterator[Finding]:
+    """Where nodes may run that are not known, one of them may join what is in pieces."""
     yield from told_not_to(seen)
     if any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats):
         for tree in seen.trees:
@@ -43,7 +64,7 @@ def _by_frames(seen: Index) -> Iterator[Finding]:
 
 def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
     """The odometry frames of a tree that are not connected with the base of their robot."""
-    above = _above(tree)
+    above = above_each(tree)
     if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
         # A frame with two parents is a finding of its own.
         return
@@ -75,12 +96,16 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
             near = _meant(it.parent, sent(it.parent) - {it.child}) if bare else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
-                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, _above(tree))), why)
+                yield _slipped(
+                    seen, tree, it, near, (it.parent, root_of(near, above_each(tree))), why
+                )
             leaf = it.child not in parents and not is_of_description(seen, it)
             near = _meant(it.child, roots(it.child) - {it.parent}) if leaf else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and has nothing below it"
-                yield _slipped(seen, tree, it, near, (root_of(it.child, _above(tree)), near), why)
+                yield _slipped(
+                    seen, tree, it, near, (root_of(it.child, above_each(tree)), near), why
+                )
 
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str], set[str]]:
@@ -120,10 +145,6 @@ def _slipped(
     message = f"{in_pieces(robot, tree.topic, sorted(roots))}: {why}"
     names = (it.child, it.parent)
     return tf_tree_in_pieces.finding(message, f"did you mean {near}?", robot=robot, names=names)
-
-
-def _above(tree: Tree) -> dict[str, str]:
-    return {it.child: it.parent for it in tree.edges}
 
 
 def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
@@ -183,19 +204,6 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def no_odometry(odom: str, root: str) -> str:
-    """The cause of a tree in pieces: nothing is sent below an odometry frame."""
-    return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
-
-
-def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
-    """The odometry frames that nothing is sent below, each with the root that it hangs from."""
-    for tree in seen.trees:
-        above, parents = _above(tree), {it.parent for it in tree.edges}
-        loose = (it for it in above if it not in parents and seen.plain_frame(it) == "odom")
-        yield from ((it, root_of(it, above)) for it in loose)
-
-
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
     by a plugin in a simulator a driver that is started apart may send the odometry; pieces without the
@@ -229,12 +237,3 @@ def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
         if first != second:
             above[second] = first
     return root
-
-
-def root_of(frame: str, above: Mapping[str, str]) -> str:
-    """The frame above all that are above it; in a circle any of them."""
-    for _ in above:
-        if frame not in above:
-            return frame
-        frame = above[frame]
-    return frame

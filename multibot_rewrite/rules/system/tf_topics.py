@@ -11,16 +11,15 @@ from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.index import Index, Tree
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, incomplete
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
+from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 TF = "tf"
 _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 
-@system_rule(
-    "MG405", "tf-on-two-topics", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES), robot_wide=True
-)
+@system_rule("MG405", "tf-on-two-topics", ERROR, drawn="leak")
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
     not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one in its
@@ -28,23 +27,19 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
-        for found, nodes in ((senders, tree.senders), (listeners, tree.listeners)):
+        ways = ((senders, tree.senders, PUBLISHES), (listeners, tree.listeners, SUBSCRIBES))
+        for found, nodes, role in ways:
             for node in (it for it in nodes if seen.robot(it) and not _looks(seen, it)):
-                found[seen.robot(node)].setdefault(tree.topic, []).append(node)
-    # Where robots' frames collide, that is the finding, unless it is known where they belong.
+                if not _is_meant(seen, node, role, tree.topic):
+                    found[seen.robot(node)].setdefault(tree.topic, []).append(node)
+    # Where robots' frames collide, that is the finding.
     mixed = {tree.topic for tree in seen.trees if collide(seen, tree)}
-    known = (it for it in listeners if it in seen.known.home)
+    known = (it for it in listeners if it in seen.home)
     for robot in unique((*senders, *known)):
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
-        planned = robot in seen.known.home
-        odd = [
-            it
-            for it in topics
-            if it != home
-            and (planned or it not in mixed)
-            and not _is_beside(seen, robot, topics, it)
-        ]
+        others = (it for it in topics if it != home and it not in mixed)
+        odd = [it for it in others if not _is_beside(seen, robot, topics, it)]
         yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
@@ -67,7 +62,7 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
             yield tf_on_two_topics.finding(
                 f"listens to {tree.topic}, on which no node sends; robots send on {shorten(sent)}",
                 f"start it with -r {tree.topic}:={sent[0]}"
-                f" -r {_static_topic(tree.topic)}:={_static_topic(sent[0])}, one for each robot",
+                f" -r {static_topic(tree.topic)}:={static_topic(sent[0])}, one for each robot",
                 level=WARNING, robot=seen.robot(rviz[0]), node=rviz[0], names=(tree.topic,),
             )  # fmt: skip
 
@@ -95,30 +90,29 @@ def _frames_beside(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
     """A robot's frames on a topic that none of its nodes has, sent by a node of no robot that does not
-    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest.
-    Where it is known which topic is the robot's, its plan is asked (rules/pair/transforms.py)."""
+    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest. Of
+    frames of which no sender is known only a plan says where they belong."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
-    children = {it.topic: {edge.child for edge in it.edges} for it in seen.trees}
     for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
             robot = seen.frame_robot(it.child)
-            if robot and robot == seen.frame_robot(it.parent) and it.publishers:
+            known = it.publishers or robot in seen.home
+            if robot and robot == seen.frame_robot(it.parent) and known:
                 found[robot].append(it)
-        for robot in (it for it in found if it in senders and it not in seen.known.home):
-            home = _home(seen, robot, senders[robot])
+        for robot in (it for it in found if it in senders or it in seen.home):
+            home = _home(seen, robot, senders.get(robot, {}))
+            own = trees.get(home, Tree(home, (), (), ()))
+            children = {it.child for it in own.edges}
             whole = len(found[robot]) > 1
-            odd = [
-                it
-                for it in found[robot]
-                if not _is_copy(seen, trees[home], children[home], it, whole)
-            ]
-            if not odd or tree.topic in senders[robot]:
+            odd = [it for it in found[robot] if not _is_copy(seen, own, children, it, whole)]
+            if not odd or home == tree.topic or tree.topic in senders.get(robot, ()):
                 continue
-            node, frames = odd[0].publishers[0], unique(it.child for it in odd)
+            node, frames = next(iter(odd[0].publishers), ""), unique(it.child for it in odd)
             yield tf_on_two_topics.finding(
-                f"{node} sends {shorten(frames)} on {tree.topic}, but the tf of {robot} is on {home}",
+                f"{node or 'a node'} sends {shorten(frames)} on {tree.topic}, but the tf of {robot} is"
+                f" on {home}",
                 f"start it in the namespace of {robot}, with the rules {_REMAP}",
                 level=level, robot=robot, node=node, names=(*frames, tree.topic, home),
             )  # fmt: skip
@@ -128,6 +122,8 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
     """Is it in the tree as well, without the robot's name if it is not the only one, or sent by a node
     of a robot, or by one that hears the tree? ``children`` are those of the tree."""
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
+    if not edge.publishers:
+        return False
     named = edge.child in children or (whole and seen.plain_frame(edge.child) in children)
     return hears or named
 
@@ -139,14 +135,21 @@ def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], top
     return seen.robot(topic) == robot and {*at_home}.issuperset(topics[topic])
 
 
+def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
+    """Has the plan the node there, away from the tf of its robot?"""
+    keys = ((node, TOPIC, role, it) for it in (topic, static_topic(topic)))
+    known = seen.expected.by_key if seen.expected else ()
+    return topic != seen.home.get(seen.robot(node)) and any(it in known for it in keys)
+
+
 def _looks(seen: Index, node: str) -> bool:
-    return is_viewer(node) or node in seen.known.relays
+    return is_viewer(node) or node in seen.relays
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
-    if robot in seen.known.home:
-        return seen.known.home[robot]
+    if robot in seen.home:
+        return seen.home[robot]
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
     return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
 
@@ -166,10 +169,5 @@ def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     if other not in ("", robot):
         return f"a namespace or remap rule of {robot} names {other}"
     target = "tf" if home.startswith(f"/{robot}/") else home
-    rules = f"-r {topic}:={target} -r {_static_topic(topic)}:={_static_topic(target)}"
+    rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
     return f"pass {rules}: to the whole process, where the node shares one"
-
-
-def _static_topic(topic: str) -> str:
-    """Return the topic of static transforms that belongs to a tf topic."""
-    return "/".join("tf_static" if word == "tf" else word for word in topic.split("/"))

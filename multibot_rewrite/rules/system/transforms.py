@@ -12,6 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.rules.system.senders import who_can_send
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import Edge
@@ -55,7 +56,7 @@ def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str
     senders = _senders(tree, (it for it in tree.edges if it.child == frame))
     robots = robots_of(seen, senders)
     owner = seen.frame_robot(frame) or seen.robot(tree.topic)
-    planned = [(node, it) for it in edges for node in seen.known.senders.get(it, ())]
+    planned = [(node, it) for it in edges for node in seen.senders.get(it, ())]
     there = [it for it in planned if it[0] in senders] or planned[:1]
     known = [node for node, _ in there]
     nodes = sorted(senders, key=lambda it: (it not in known, seen.robot(it) != owner))
@@ -80,12 +81,12 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
             bare = _bare_frames(seen, tree)
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
             cause = _either(tree, robots_of(seen, tree.senders))
-            yield robots_frames_collide.finding(message, cause, names=tuple(bare))
+            yield robots_frames_collide.finding(message, cause, names=(*bare, tree.topic))
 
 
 def collide(seen: Index, tree: Tree) -> str:
     """Who sends frames that do not say whose they are; empty where nothing collides."""
-    senders = [it for it in tree.senders if it not in seen.known.relays]
+    senders = [it for it in tree.senders if it not in seen.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
@@ -218,7 +219,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
             nodes = who_can_send(seen, nodes, own)
-            right = {it for edge in own for it in seen.known.senders.get(edge[1::-1], ())}
+            right = {it for edge in own for it in seen.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
@@ -245,9 +246,13 @@ def _sent_twice(tree: Tree) -> list[Edge]:
     return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
-@system_rule("MG407", "robots-name-twice", ERROR, robot_wide=True)
+@system_rule("MG407", "robots-name-twice", ERROR)
 def robots_name_twice(seen: Index) -> Iterator[Finding]:
-    """All frames of a robot and topic are one finding."""
+    """All frames of a robot and topic are one finding. What a plan shows of a robot is all of it."""
+    told = set()
+    for message, cause, it, names in with_more_names(seen.expected, seen) if seen.expected else ():
+        told.add(it.name)
+        yield robots_name_twice.finding(message, cause, robot=it.name, names=names)
     for tree in seen.trees:
         doubled: dict[str, list[str]] = defaultdict(list)
         for frame in unique(it for edge in tree.edges for it in (edge.child, edge.parent)):
@@ -258,6 +263,8 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
             if not once and robot in plain.split("/"):
                 doubled[robot].append(frame)
         for robot, frames in doubled.items():
+            if robot in told:
+                continue
             verb = "has" if len(frames) == 1 else "have"
             message = f"{shorten(frames)} {verb} the name of {robot} twice"
             cause = (

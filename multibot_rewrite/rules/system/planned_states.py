@@ -1,50 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about states of the plan: life cycle, parameters, clocks, machines."""
+"""Rules about what nodes answer by a plan: parameters, and the machines that they run on."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
-from multibot_rewrite.rules.declaration import found_by_plan, pair_rule
-from multibot_rewrite.rules.system.clocks import clocks_mixed
-from multibot_rewrite.rules.system.states import not_active
-from multibot_rewrite.system.index import Index, ends_of
-from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.parameters import parameter_value
 from multibot_rewrite.system.reach import machines
-from multibot_rewrite.system.records import (
-    SIM_TIME,
-    SUBSCRIBES,
-    UNTOLD,
-    Parameter,
-    System,
-    clocks,
-    without_clock,
-)
+from multibot_rewrite.system.records import SIM_TIME, UNTOLD, Parameter
 
 # A planned parameter, and its value there.
 Difference = tuple[Parameter, str]
 
 
-@found_by_plan(not_active)
-def state_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """A node that did not answer is not known."""
-    states = {it.name: it.lifecycle for it in seen.system.nodes if it.lifecycle}
-    for planned in plan.system.nodes:
-        state = states.get(planned.name, planned.lifecycle)
-        if planned.lifecycle and state != planned.lifecycle:
-            yield not_active.finding(
-                f"is {state}, planned is {planned.lifecycle}",
-                f"ros2 lifecycle get {planned.name}; see the log of its lifecycle manager",
-                robot=planned.robot,
-                node=planned.name,
-            )
-
-
-@pair_rule("MG132", "parameter-not-planned", ERROR)
+@planned_rule("MG132", "parameter-not-planned", ERROR)
 def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
@@ -126,33 +100,7 @@ def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
     return ""
 
 
-@found_by_plan(clocks_mixed)
-def clock_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding for the nodes of a robot that differ alike."""
-    timed = {it.node for it in ends_of(seen, CLOCK) if it.role == SUBSCRIBES}
-    asked = {*clocks(seen.system), *without_clock(seen.system)}
-    differing: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node, wanted in planned_clocks(plan.system):
-        if node in seen.nodes and node not in asked and wanted != parameter_text(node in timed):
-            differing[plan.robot_of.get(node, ""), wanted].append(node)
-    for (robot, wanted), nodes in differing.items():
-        verb = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
-        which = f"these nodes {verb} to {CLOCK}: {shorten(nodes)}"
-        yield clocks_mixed.finding(
-            f"{SIM_TIME} is planned to be {wanted}, but {which}",
-            f"start them with {SIM_TIME}: {wanted}",
-            robot=robot,
-            node=nodes[0],
-            names=tuple(nodes),
-        )
-
-
-def planned_clocks(plan: System) -> Iterator[tuple[str, str]]:
-    """By node: the clock that it is planned to have."""
-    return ((it.node, it.value) for it in plan.parameters if it.name == SIM_TIME)
-
-
-@pair_rule("MG133", "host-not-planned", ERROR)
+@planned_rule("MG133", "host-not-planned", ERROR)
 def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
     machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence, Set
 
-from multibot_rewrite.rules.pair.similar_names import probable_matches
+from multibot_rewrite.rules.system.similar_names import probable_matches
 from multibot_rewrite.system.index import EndKey, Index, once
 from multibot_rewrite.system.records import End
 

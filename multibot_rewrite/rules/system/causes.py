@@ -38,10 +38,10 @@ def caused(hint: str, place: str) -> Cause:
     return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
-def plugin_of(plan: Index, node: str) -> tuple[str, str]:
-    """The plugin that starts a node, and its place in the description; both empty without one."""
-    place = plugin_place(plan, node)
-    if not place:
+def plugin_of(plan: Index | None, node: str) -> tuple[str, str]:
+    """The plugin that starts a planned node, and its place in the description; both empty without."""
+    place = str(plan.node[node].plugin) if plan and node in plan.node else ""
+    if not (plan and place):
         return "", ""
     plain = plan.of_names.without_robot(node, plan.robot_of.get(node, ""))
     return f"plugin {plain.rpartition('/')[2]}", place
@@ -94,7 +94,7 @@ def why_not_remapped(plan: Index, planned: End) -> Cause:
 def how_to_remap(plan: Index, planned: End) -> str:
     """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
-    if not rule or plugin_place(plan, planned.node):
+    if not rule or plugin_of(plan, planned.node)[1]:
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
     return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
@@ -118,12 +118,6 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     if way == COMPONENT:
         return f"{what} where it is loaded into its container: {_as_written(way, rule)}"
     return f"{what} with {_as_written(way, rule)}"
-
-
-def plugin_place(plan: Index, node: str) -> str:
-    """The ``file:line`` of the plugin that starts a planned node; empty for any other node."""
-    planned = plan.node.get(node)
-    return str(planned.plugin) if planned else ""
 
 
 def _way(plan: Index, node: str) -> tuple[str, str]:

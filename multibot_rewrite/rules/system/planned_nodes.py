@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about nodes: is every planned node running, only once, and is every running node planned."""
+"""Rules about nodes by a plan: does every planned one run, and is every one that runs planned?"""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules.declaration import pair_rule
-from multibot_rewrite.rules.pair.causes import Cause, caused, plugin_of, why_other_name
-from multibot_rewrite.rules.pair.meeting import matches, unplanned_nodes
+from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, why_other_name
+from multibot_rewrite.rules.system.planned import matches, unplanned_nodes
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
-from multibot_rewrite.system.records import SERVES, Robot
+from multibot_rewrite.system.records import SERVES, Robot, alternatives
 
 
-@pair_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
+@planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
 def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
     for robot in plan.system.robots:
-        for node in () if _is_absent(plan, seen, robot) else _missing(plan, seen, robot):
+        for node in () if _is_missing(plan, seen, robot) else _missing(plan, seen, robot):
             match = matches(plan, seen).get(node, "")
             cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
             message = (
@@ -31,6 +31,16 @@ def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
         if node not in seen.nodes and node not in plan.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
+    for group, of in _groups(plan):
+        if seen.nodes.keys().isdisjoint(group) and not (of and is_absent(plan, seen, of)):
+            message = f"none of {shorten(group, SEVERAL)} is in the graph; the plan has one of them"
+            yield missing_node.finding(message, "start one of them", robot=of, names=group)
+
+
+def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
+    """The groups of nodes of which one runs, each with its robot."""
+    for group in alternatives(plan.system):
+        yield group, next((plan.robot_of[it] for it in group if it in plan.robot_of), "")
 
 
 def _waiting(plan: Index, seen: Index, node: str) -> str:
@@ -52,8 +62,13 @@ def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
     ]
 
 
-def _is_absent(plan: Index, seen: Index, robot: Robot) -> bool:
-    return seen.nodes.keys().isdisjoint(plan.own[robot.name]) and bool(_missing(plan, seen, robot))
+def is_absent(plan: Index, seen: Index, robot: str) -> bool:
+    """Does no node of the robot run?"""
+    return seen.nodes.keys().isdisjoint(plan.own[robot])
+
+
+def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
+    return is_absent(plan, seen, robot.name) and bool(_missing(plan, seen, robot))
 
 
 def _not_started(plan: Index, node: str) -> Cause:
@@ -64,7 +79,7 @@ def _not_started(plan: Index, node: str) -> Cause:
     return Cause("is it started, or did it end with an error?")
 
 
-@pair_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
+@planned_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
 def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Only where the plan has nodes of its robot."""
     if not unplanned_nodes(plan, seen):
@@ -97,11 +112,11 @@ def _foreign_names(plan: Index, seen: Index, node: str, robot: str) -> str:
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
 
 
-@pair_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
+@planned_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in plan.system.robots:
-        if _is_absent(plan, seen, robot):
+        if _is_missing(plan, seen, robot):
             message = (
                 f"none of the {len(plan.own[robot.name])} nodes of {robot.name} is in the graph"
             )
@@ -124,3 +139,16 @@ def _why_absent(plan: Index, seen: Index, robot: Robot) -> Cause:
     cause = why_other_name(plan, *matches[0])
     same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
     return cause._replace(hint=cause.hint + same)
+
+
+@planned_rule("MG125", "several-alternatives-run", ERROR)
+def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
+    """One finding a group."""
+    for group, robot in _groups(plan):
+        running = tuple(node for node in group if node in seen.nodes)
+        if len(running) > 1:
+            message = f"{shorten(running, SEVERAL)} run at once; the plan has one of them"
+            hint = f"stop {shorten(running[1:], SEVERAL)}"
+            yield several_alternatives_run.finding(
+                message, hint, robot=robot, node=running[0], names=running
+            )

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: Apache-2.0
-"""The rules of ``multibot check``, and the look-ups they share; all pure."""

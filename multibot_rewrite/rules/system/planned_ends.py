@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rule about the names of planned nodes: which one lacks, and what it has in their place or besides."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.rules.system.causes import (
+    DOES,
+    Cause,
+    caused,
+    how_to_pass,
+    how_to_remap,
+    names_without_rules,
+    plugin_of,
+    use_absolute,
+    why_not_remapped,
+)
+from multibot_rewrite.rules.system.commands import (
+    command_for_several_robots,
+    command_from_another_robot,
+)
+from multibot_rewrite.rules.system.names import service_of_two_nodes
+from multibot_rewrite.rules.system.planned import missing, unplanned_ends
+from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
+from multibot_rewrite.rules.system.similar_names import similar
+from multibot_rewrite.system.index import TF, Index, ends_of
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    End,
+)
+from multibot_rewrite.system.tf_copies import copying_nodes
+from multibot_rewrite.system.tool_nodes import in_namespaces_above
+from multibot_rewrite.system.words import is_order
+
+TO_DO = {
+    PUBLISHES: "publish",
+    SUBSCRIBES: "subscribe to",
+    SERVES: "offer",
+    CALLS: "have a client for",
+}
+
+
+@planned_rule("MG102", "missing-endpoint", ERROR, absence=True, drawn="missing", nodes=False)
+def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
+    """Only where its node is in the graph. A name of no robot, or of another one, in its place or
+    besides is what that is to the other robots."""
+    if not seen.nodes:
+        yield from _recorded(plan, seen)
+        return
+    taken = set()
+    for planned in {it[:1] + it[3:]: end for it, end in missing(plan, seen).items()}.values():
+        # Of two nodes with one name, rcl shows the services of only one.
+        times = seen.nodes.get(planned.node, 0)
+        if not times or (times > 1 and planned.kind != TOPIC):
+            continue
+        used = _used_instead(plan, seen, planned)
+        taken.add((planned.node, used))
+        end = next((it for it in ends_of(seen, used) if it.node == planned.node), planned)
+        robot = plan.robot_of.get(planned.node, "")
+        rule = _of_wrong_robot(plan, end, robot) or missing_endpoint
+        yield rule.finding(
+            f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not",
+            **_why_missing(plan, seen, planned, used)._asdict(),
+            robot=robot, node=planned.node, names=(planned.name, *[used] * bool(used)),
+        )  # fmt: skip
+    for node, robot in plan.robot_of.items():
+        for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
+            wrong = _of_wrong_robot(plan, end, robot)
+            if wrong and (node, end.name) not in taken:
+                other = plan.robot(end.name)
+                no_name = f"uses {end.name}, which is not a name of {robot}{_how_many(seen, end)}"
+                of_another = f"{DOES[end.role]} {end.name}, a name of {other}"
+                yield wrong.finding(
+                    of_another if other else no_name,
+                    **_why_besides(plan, end, other)._asdict(),
+                    robot=robot, node=node, names=(end.name,),
+                )  # fmt: skip
+    yield from _planned_for_several(plan, seen)
+
+
+def _how_many(seen: Index, end: End) -> str:
+    """How many robots use the name, as far as they are there."""
+    robots = {seen.robot(it.node) for it in ends_of(seen, end.name)} - {""}
+    if len(robots) > 1:
+        return f": {len(robots)} robots use it"
+    return ", and is not in shared_topics: robots that do the same use one topic"
+
+
+def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
+    """A name that the plan itself has for several robots, because no remap rule changes it."""
+    users: dict[str, list[End]] = defaultdict(list)
+    relays = copying_nodes(plan.system)
+    for key in plan.by_key:
+        if key in seen.by_key and key[0] not in relays and key[0] in plan.robot_of:
+            users[key[3]].append(seen.by_key[key])
+    for name, ends in users.items():
+        robots = unique(plan.robot_of[it.node] for it in ends)
+        rule = _rule_of(plan, ends[0]) if len(robots) > 1 and not plan.robot(name) else None
+        if rule:
+            yield rule.finding(
+                f"uses {name}, which the plan has for several robots: {shorten(robots, SEVERAL)}",
+                "no remap rule changes it: set the node's parameter, or add it to shared_topics",
+                robot=robots[0], node=ends[0].node, names=(name,),
+            )  # fmt: skip
+
+
+def _of_wrong_robot(plan: Index, end: End, robot: str) -> Rule | None:
+    """What it is to other robots that a node of ``robot`` has an end which is not planned; None for
+    nothing."""
+    other = plan.robot(end.name)
+    planned = (end.node, end.kind, end.role, end.name) in plan.by_key
+    if planned or not robot or other == robot:
+        return None
+    if not other or end.name in plan.system.shared_topics or end.type == TF:
+        return _rule_of(plan, end)
+    return data_of_another_robot if end.role == SUBSCRIBES else command_from_another_robot
+
+
+def _rule_of(plan: Index, end: End) -> Rule | None:
+    """What it is to use a name together with other robots; None where it is to be so. Whose tf is where
+    is a rule of its own."""
+    if end.name in plan.system.shared_topics or end.name in EVERYBODYS or end.type == TF:
+        return None
+    if end.kind != TOPIC:
+        return service_of_two_nodes
+    return command_for_several_robots if is_order(end.name, end.type) else topic_of_several_robots
+
+
+def _why_besides(plan: Index, end: End, other: str) -> Cause:
+    node, name = end.node, end.name
+    robot, (plugin, place) = plan.robot_of[node], plugin_of(plan, node)
+    if other:
+        return Cause(f"a remap rule or parameter of {robot} names {other}")
+    if plugin:
+        return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
+    target = f"{name}/{robot}" if plan.of_names.robot_is_last else f"/{robot}{name}"
+    rule = how_to_pass(plan, node, f"{name}:={target}")
+    return Cause(f"an absolute name in its code or parameters; pass {rule}")
+
+
+def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
+    """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
+    if not used:
+        managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
+        state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
+        same = [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
+        # Of text and numbers are many things.
+        if len(same) == 1 or (same and "std_" not in planned.type):
+            return Cause(
+                f"it {DOES[planned.role]} {shorten(same)} of that type: is that meant?{state}"
+            )
+        return Cause(f"it has no similar name; is it switched off by a parameter?{state}")
+    instead = f"it {DOES[planned.role]} {used} instead"
+    if used in names_without_rules(plan, planned):
+        why = why_not_remapped(plan, planned)
+        return why._replace(hint=f"{instead}: {why.hint}{how_to_remap(plan, planned)}")
+    return _why_remapped(plan, planned, used, instead)
+
+
+def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:
+    """Why an endpoint has a name that comes from a rule or parameter."""
+    if not plan.robot(planned.name):
+        _, place = plugin_of(plan, planned.node)
+        why = f": a rule remaps it, but the plan has one {planned.name} for all robots"
+        return caused(f"{instead}{why}{f', see {place}' if place else ''}", place)
+    if planned.name in in_namespaces_above(planned.node, used):
+        return Cause(f"{instead}: {use_absolute(planned.name)}")
+    other = plan.robot(used)
+    if other and other != plan.robot_of.get(planned.node, other):
+        wrong = f"a name of {other}: a remap rule or parameter names the wrong robot"
+        return Cause(f"{instead}, {wrong}")
+    return Cause(f"{instead}: is the name misspelled in a remap rule or parameter?")
+
+
+def _used_instead(plan: Index, seen: Index, planned: End) -> str:
+    """The name that the node probably uses in place of a planned one, or an empty string."""
+    unplanned = [it.name for it in _unplanned(plan, seen, planned)]
+    likely = [name for name in names_without_rules(plan, planned) if name in unplanned]
+    # A relative name that was resolved below the node's own namespace.
+    likely += [it for it in unplanned if planned.name in in_namespaces_above(planned.node, it)]
+    if likely:
+        return likely[0]
+    # A node for all robots has names of several: which robot's is in the name itself.
+    ownership = plan.of_names
+    robot = plan.robot_of.get(planned.node) or ownership.robot(planned.name)
+    plain = {
+        ownership.without_robot(name, ownership.robot(name) or robot): name for name in unplanned
+    }
+    wanted = ownership.without_robot(planned.name, robot)
+    near = plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
+    if near or planned.node in plan.robot_of:
+        return near
+    return similar(planned.name, unplanned)
+
+
+def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:
+    """What the node has in the role of a planned endpoint without being planned."""
+    node, kind, role = planned.node, planned.kind, planned.role
+    return [
+        it
+        for it in seen.by_node.get(node, ())
+        if (it.kind, it.role) == (kind, role) and (node, kind, role, it.name) not in plan.by_key
+    ]
+
+
+def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
+    """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
+    there for some of them, or is there under a name of no robot."""
+    there = {name: ends for (kind, name), ends in seen.by_name.items() if kind == TOPIC}
+    for names in _of_each(plan, PUBLISHES).values():
+        others = [name for name in names.values() if name in there]
+        for robot, name in names.items() if others else ():
+            if name not in there:
+                message = f"{name} is not there, {shorten(others, SEVERAL)} is"
+                cause = "did its node run, in its robot's namespace, and was the topic recorded?"
+                yield missing_endpoint.finding(message, cause, robot=robot, names=(name,))
+    planned, every = {name for *_, name in plan.by_key}, _of_each(plan, PUBLISHES, SUBSCRIBES)
+    for name in [it for it in there if it not in planned and not plan.robot(it)]:
+        segments = name.strip("/").split("/")
+        likely = {"/" + "/".join(it) for it in (segments, segments[1:], segments[:-1])}
+        meant = [own for plain in likely for own in every.get(plain, {}).values()]
+        rule = _of_wrong_robot(plan, there[name].publishers[0], plan.robots[0]) if meant else None
+        if rule:
+            message = f"{name} is of no robot; planned: {shorten(meant, SEVERAL)}"
+            cause = "start its node in its robot's namespace, with the rules of multibot plan"
+            yield rule.finding(message, cause, names=(name,))
+
+
+def _of_each(plan: Index, *roles: str) -> Mapping[str, Mapping[str, str]]:
+    """Name without the robot's -> robot -> planned topic that a node has in a role; tf is of each."""
+    named = [name for _, kind, role, name in plan.by_key if kind == TOPIC and role in roles]
+    trees = [it.tf_topic for it in plan.system.robots if it.frames]
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in (*named, *trees):
+        robot = plan.robot(name)
+        if robot and name not in plan.system.shared_topics and name not in EVERYBODYS:
+            found[plan.of_names.without_robot(name, robot)][robot] = name
+    return found

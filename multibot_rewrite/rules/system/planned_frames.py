@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rules about tf frames by a plan: those under other names, those besides, and those not sent."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
+
+from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.rules.system.causes import Cause, caused
+from multibot_rewrite.rules.system.similar_names import similar
+from multibot_rewrite.rules.system.tf_causes import (
+    is_described,
+    sent_by_robot,
+    state_publisher,
+    where_set,
+    why_not_received,
+)
+from multibot_rewrite.rules.system.tf_trees import TfTree, frames_in, tf_trees
+from multibot_rewrite.system.index import Index, once
+from multibot_rewrite.system.ownership import SEPARATORS
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, Robot
+from multibot_rewrite.system.tf_copies import static_topic
+
+
+class Stray(NamedTuple):
+    """A frame of a robot that is not planned. ``meant`` is the planned frame that it is under another
+    name, or empty; ``added`` what it has in front or behind besides. ``bare``: it lacks the robot's
+    name."""
+
+    frame: str
+    meant: str
+    added: str = ""
+    bare: bool = False
+
+
+# Robot -> its strays, of one tree.
+Strays = Mapping[str, Sequence[Stray]]
+
+
+@planned_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
+def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
+    """Of one robot only; else it is a frame of several robots."""
+    for tree, robot, found in _of_each(plan, seen):
+        if bare := [it for it in found if it.bare]:
+            bare.sort(key=lambda it: robot.frames.index(it.meant))
+            names = [it.frame for it in bare]
+            message = (
+                f"frames {shorten(names)} on {tree.topic} do not have the name of {robot.name}"
+            )
+            yield frame_without_robot_name.finding(
+                message, **_why_bare(plan, tree, robot, bare)._asdict(),
+                robot=robot.name, names=tuple(names),
+            )  # fmt: skip
+
+
+def _why_bare(plan: Index, tree: TfTree, robot: Robot, bare: Sequence[Stray]) -> Cause:
+    """The node that sends all of them by the plan, besides the description; else the description."""
+    expected = {it.meant for it in bare}
+    sent = next((it for it in sent_by_robot(plan, robot) if expected <= {*it[1:]}), None)
+    first = f"expected {bare[0].meant}"
+    if sent:
+        place = where_set(plan, sent.node)
+        see = f", see {place}" if place else ""
+        return caused(f"{first}: by the plan {sent.node} sends {sent}{see}", place)
+    senders = shorten(tree.senders.get(robot.name, ())) or "its robot_state_publisher"
+    return Cause(f"{first}: load the rewritten description in {senders}")
+
+
+@planned_rule("MG204", "undeclared-frame", WARNING, nodes=False)
+def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
+    """A frame that a driver adds below its sensor's link is none. It is an error where it is there in
+    place of a planned one."""
+    for tree, robot, found in _of_each(plan, seen):
+        children = {edge.child: edge for edge in tree.edges}
+        others = [
+            it
+            for it in found
+            if it.frame in children and not (it.bare or it.added)
+            if not _of_a_sensor(plan, robot.name, it.frame, children)
+        ]
+        if others:
+            names, meant = [it.frame for it in others], others[0].meant
+            verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
+            cause = f"did you mean {meant}? Otherwise" if meant else "a sensor's own frame? Then"
+            instead = any(it.meant and it.meant not in {*frames_in(tree)} for it in others)
+            yield undeclared_frame.finding(
+                f"{_frames(names)} {verb} not in the description of {robot.name}",
+                f"{cause} add {them} to other_frames of the plan",
+                level=ERROR if instead else WARNING, robot=robot.name, names=tuple(names),
+            )  # fmt: skip
+
+
+def _frames(names: Sequence[str]) -> str:
+    return f"frame {names[0]}" if len(names) == 1 else f"frames {shorten(names)}"
+
+
+def _of_a_sensor(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
+    """Is it a frame that a driver adds below its sensor's link? Its name begins like the link's:
+    camera_depth_frame is below camera_link."""
+    above, passed = name, set()
+    while above in children and children[above].static and above not in passed:
+        passed.add(above)
+        above = children[above].parent
+        if above in plan.frames_of[robot]:
+            return _first_word(plan, above, robot) == _first_word(plan, name, robot)
+    return False
+
+
+def _first_word(plan: Index, frame: str, robot: str) -> str:
+    plain = plan.of_frames.without_robot(frame, robot)
+    ends = (at for at, letter in enumerate(plain) if letter in "/" + SEPARATORS)
+    return plain[: next(ends, None)]
+
+
+def with_more_names(plan: Index, seen: Index) -> Iterator[tuple[str, str, Robot, tuple[str, ...]]]:
+    """Message, cause, robot and frames: planned ones with the robot's name again, or another prefix.
+
+    Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of parent
+    and child of every transform, as it is.
+    """
+    for _, robot, found in _of_each(plan, seen):
+        if names := tuple(it.frame for it in found if it.added):
+            added = next(it.added for it in found if it.added)
+            verb = "is" if len(names) == 1 else "are"
+            sender = state_publisher(plan, robot) or f"the robot_state_publisher of {robot.name}"
+            cause = (
+                f"frame_prefix of {sender} is {added!r}, or tf_frame_prefix_enable of a controller (on"
+                " by default), on top of a rewritten description: set them to '' and false"
+            )
+            yield f"{_frames(names)} {verb} planned without {added!r}", cause, robot, names
+
+
+def misnamed(plan: Index, seen: Index) -> Set[str]:
+    """The robots of which frames are sent under other names, or on another tf topic than theirs."""
+    strays = set()
+    for tree, robot, found in _of_each(plan, seen):
+        sent = {edge.child for edge in tree.edges}
+        if any(it.meant and it.meant not in sent and it.frame in sent for it in found):
+            strays.add(robot.name)
+    for tree in tf_trees(plan, seen):
+        children = (plan.of_frames.exact.get(edge.child, "") for edge in tree.edges)
+        strays |= {it for it in children if it and it not in tree.home}
+    return strays
+
+
+def _of_each(plan: Index, seen: Index) -> Iterator[tuple[TfTree, Robot, Sequence[Stray]]]:
+    for tree, strays in _strays(plan, seen):
+        for robot, found in strays.items():
+            yield tree, plan.declared[robot], found
+
+
+@once
+def _strays(plan: Index, seen: Index) -> Sequence[tuple[TfTree, Strays]]:
+    return [(tree, _strays_of(plan, tree)) for tree in tf_trees(plan, seen)]
+
+
+def _strays_of(plan: Index, tree: TfTree) -> Strays:
+    """The frames of a tree that belong to a robot by name or topic, and are not planned."""
+    found: dict[str, list[Stray]] = defaultdict(list)
+    names: dict[str, list[str]] = defaultdict(list)
+    # A moving frame on a robot's own topic may be anything that it detects.
+    present, fixed = {*frames_in(tree)}, {it.child for it in tree.edges if it.static}
+    for name in (it for it in frames_in(tree) if it not in _known(plan)):
+        robot = plan.frame_robot(name)
+        plain = {one: _planned(plan, one).get(name, "") for one in tree.robots if not robot}
+        bare = [one for one, it in plain.items() if it and (it == name or it not in present)]
+        if len(bare) == 1:
+            found[bare[0]].append(Stray(name, plain[bare[0]], bare=True))
+        elif not any(plain.values()):
+            home = tree.home[0] if len(tree.home) == 1 else _behind_prefix(plan, name)
+            names[robot or home].append(name)
+    for robot, own in names.items():
+        if robot and plan.declared[robot].frames:
+            strays = _with_meanings(plan, robot, own)
+            sure = (
+                it for it in strays if it.added or it.frame in fixed or plan.frame_robot(it.frame)
+            )
+            found[robot] += sure
+    return found
+
+
+@once
+def _known(plan: Index) -> Set[str]:
+    return {*plan.system.shared_frames}.union(*plan.frames_of.values())
+
+
+def _planned(plan: Index, robot: str) -> Mapping[str, str]:
+    """The robot's frames by their name without the robot's; the same where the layout adds none."""
+    return _planned_frames(plan).get(robot, {})
+
+
+@once
+def _planned_frames(plan: Index) -> Mapping[str, Mapping[str, str]]:
+    found = {}
+    for robot in plan.system.robots:
+        plain = {plan.of_frames.without_robot(it, robot.name): it for it in robot.frames}
+        # One of a layout without the names may hold the robot's.
+        is_plain = any(it == frame for it, frame in plain.items())
+        found[robot.name] = {it: it for it in robot.frames} if is_plain else plain
+    return found
+
+
+def _behind_prefix(plan: Index, name: str) -> str:
+    """The robot of whom a frame is but for a prefix: ``foo_left_tool`` of ``left_tool``; else ""."""
+    exact = plan.of_frames.exact
+    return next((exact[name[at:]] for at in range(1, len(name)) if name[at:] in exact), "")
+
+
+def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
+    """One frame may be another one of its own (``front_laser`` beside ``laser``): a prefix is in front
+    of both ends of a transform, and of all that a robot_state_publisher sends."""
+    declared, whose = plan.declared[robot], plan.of_frames
+    frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
+    plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan, robot)}
+    prefixes = {name: _in_front(frames, name) for name in names}
+    often = Counter(prefixes.values())
+    least = min(len(declared.frames), max(2, len(declared.frames) // 2))
+    for name in names:
+        front = prefixes[name]
+        behind = next((name[len(it) :] for it in frames if name.startswith(it)), "")
+        twice = next((it for it in (front, behind) if it.strip("/" + SEPARATORS) == tag), "")
+        common = front if often[front] >= (2 if front.endswith("/") else least) else ""
+        own = whose.without_robot(name, robot)
+        again = whose.without_robot(own, robot)
+        if added := twice or common:
+            yield Stray(name, name.removeprefix(added).removesuffix(added), added)
+        elif again != own and again in plain and tag not in whose.ambiguous_words:
+            yield Stray(name, plain[again], tag)
+        else:
+            yield Stray(name, plain.get(own) or plain.get(similar(own, plain), ""))
+
+
+def _in_front(frames: Sequence[str], name: str) -> str:
+    """What is in front of the longest planned frame that the name ends with."""
+    ends = [frame for frame in frames if name.endswith(frame) and name != frame]
+    return name.removesuffix(max(ends, key=len)) if ends else ""
+
+
+@planned_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
+def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
+    """One finding for a robot whose senders all run. Where no transform was received at all, tf may
+    not have been looked at. A frame under another name has a finding of its own."""
+    senders = _senders(plan) if seen.system.edges else {}
+    heard: dict[str, set[str]] = defaultdict(set)
+    for tree, strays in _strays(plan, seen):
+        nobodys: list[str] = []
+        for name in frames_in(tree):
+            # On another topic it has a finding of its own.
+            owner = plan.of_frames.exact.get(name, "")
+            (heard[owner].add if owner else nobodys.append)(name)
+        for owner in {*tree.home, *tree.robots} if nobodys else ():
+            plain = _planned(plan, owner)
+            heard[owner].update(it for name in nobodys for it in (name, plain.get(name, "")))
+        for owner, found in strays.items():
+            heard[owner].update(it.meant for it in found)
+    for robot in plan.system.robots:
+        needed = senders.get(robot.name, set()) - plan.may_miss
+        if needed and needed <= seen.nodes.keys():
+            left = _left_to_others(plan, seen, robot) | heard[robot.name]
+            if missing := [it for it in robot.frames if it not in left]:
+                yield _not_received(seen, plan, robot, missing)
+
+
+def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
+    """The frames that only nodes send which may be missing by the plan, and are. A link without joints
+    comes with the odometry, or not at all."""
+    sent = sent_by_robot(plan, robot)
+    absent = plan.may_miss - seen.nodes.keys()
+    left = {name for it in sent if it.node in absent for name in it[1:]}
+    links = {it for it in robot.frames if plan.plain_frame(it) not in SENT_FRAMES}
+    left |= links if len(links) == 1 else set()
+    return left.difference(*(it[1:] for it in sent if it.node not in absent))
+
+
+def _senders(plan: Index) -> Mapping[str, set[str]]:
+    """By robot: its planned nodes that publish its tf."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for node, kind, role, name in plan.by_key:
+        robot = plan.declared.get(plan.robot_of.get(node, ""))
+        topics = (robot.tf_topic, static_topic(robot.tf_topic)) if robot else ()
+        if robot and (kind, role) == (TOPIC, PUBLISHES) and name in topics:
+            found[robot.name].add(node)
+    return found
+
+
+def _not_received(seen: Index, plan: Index, robot: Robot, missing: Sequence[str]) -> Finding:
+    several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
+    what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
+    described = set(robot.frames).difference(*(it[1:] for it in sent_by_robot(plan, robot)))
+    # The root comes with the odometry, too.
+    described = {it for it in described if plan.plain_frame(it) not in USUAL_FRAMES}
+    undescribed = bool(described) and described.issubset(missing)
+    return frame_not_received.finding(
+        f"{what} in no transform: {shorten(missing)}",
+        why_not_received(plan, seen, robot, missing, undescribed),
+        level=INCONCLUSIVE if undescribed and not is_described(plan, robot) else ERROR,
+        robot=robot.name, names=tuple(missing),
+    )  # fmt: skip

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is found of a system, and what only its plan shows -> one finding for each cause.
+
+What is found without a plan is found with one, unless it is meant, or the plan has the cause of it: a
+name that a node lacks, in place of those who wait for it. What only the plan shows is the hint of a
+finding about the same, or else a finding of its own.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.wording import shorten, unique
+from multibot_rewrite.rules.system.demands import sender_not_planned
+from multibot_rewrite.rules.system.differing import COMPARED, unexplained
+from multibot_rewrite.rules.system.planned import missing
+from multibot_rewrite.rules.system.planned_ends import missing_endpoint
+from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
+from multibot_rewrite.rules.system.planned_nodes import unplanned_node
+from multibot_rewrite.rules.system.unsent import nothing_known_sends
+from multibot_rewrite.system.index import TF, Index, ends_of
+from multibot_rewrite.system.records import PUBLISHES, End
+from multibot_rewrite.system.tf_copies import tree_topic
+
+# A node, or a name and whose it is: a node's or robot's, or beside which other name; empty for all.
+_About = tuple[str, str]
+_TWO = 2
+
+
+def one_for_a_cause(
+    seen: Index,
+    plan: Index,
+    found: Sequence[Finding],
+    by_plan: Sequence[Finding],
+    rules: Mapping[str, Rule],
+    in_doubt: bool,
+) -> list[Finding]:
+    """The findings about a system, and those that only its plan shows, without those of one cause.
+    ``in_doubt``: more may be there than is seen."""
+    left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
+    last_first = sorted(enumerate(left), key=lambda one: (_is_absence(one[1], rules), one[0]))[::-1]
+    places = {about: at for at, it in last_first for about in _abouts(it, rules)}
+    causes: dict[int, list[Finding]] = defaultdict(list)
+    others: list[Finding] = []
+    for it in by_plan:
+        at = next((places[key] for key in _same(seen, it, rules) if key in places), None)
+        (others if at is None else causes[at]).append(it)
+    said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
+    lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
+    loose = {name for node, *_, name in missing(plan, seen)} - lost
+    kept = []
+    for at, it in enumerate(left):
+        names = {*it.names} if at not in said and _is_absence(it, rules) else set()
+        if not (names & lost or (names and names <= loose)):
+            kept.append(said.get(at, it))
+    every = {*unexplained([*kept, *by_plan])}
+    # Nothing sends it by the plan either, whatever another robot has.
+    return [
+        it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
+        for it in (*kept, *others)
+        if it in every
+    ]
+
+
+def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
+    return bool(rules[it.code].options["absence"])
+
+
+def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
+    if it.code in COMPARED:
+        return
+    yield it.node, ""
+    # What is missing at one robot is no cause of what another one lacks.
+    whose = {it.node, it.robot} if _is_absence(it, rules) else {it.node, it.robot, ""}
+    yield from ((one, name) for name in it.names for one in whose)
+    if len(it.names) == _TWO:
+        yield from ((f"beside {it.names[1 - at]}", name) for at, name in enumerate(it.names))
+
+
+def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
+    """Is it of ``missing_endpoint``, whatever it is called?"""
+    return it.code == missing_endpoint.code or not rules[it.code].options["planned"]
+
+
+def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
+    """What another finding is about that has the same cause as one by the plan."""
+    if it.code == unplanned_node.code:
+        yield it.node, ""
+    elif it.code in (sender_not_planned.code, frame_without_robot_name.code):
+        yield from ((whose, name) for name in it.names for whose in (it.node, it.robot, ""))
+    elif _is_of_an_end(it, rules) and _is_there(it):
+        used = it.names[-1]
+        is_tf = any(end.type == TF for end in ends_of(seen, used))
+        about = tree_topic(used) if is_tf else used
+        yield from ((whose, about) for whose in ("", f"beside {it.names[0]}", it.node, it.robot))
+    elif _is_of_an_end(it, rules):
+        # What all robots have, such as /clock, the nodes of a robot lack together.
+        lacks = (it.node,) if seen.robot(it.names[0]) else (it.node, it.robot)
+        yield from ((whose, it.names[0]) for whose in lacks)
+
+
+def _is_there(it: Finding) -> bool:
+    """Has the node something in place of what it lacks?"""
+    return len(it.names) > 1 or it.code != missing_endpoint.code
+
+
+def _with_cause(
+    it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule], in_doubt: bool
+) -> Finding:
+    """The finding with what the plan says of it, or what it says for certain in place of it."""
+    known = [one for one in by_plan if one.code != unplanned_node.code]
+    if known and in_doubt and _is_absence(it, rules) and not _is_absence(known[0], rules):
+        return known[0]
+    hint, place = _hint(it, known, rules) if known else it.hint, known[0] if known else it
+    if len(known) < len(by_plan):
+        hint += f"; {it.node} is not in the plan"
+    level = ERROR if any(one.level == ERROR for one in by_plan) else it.level
+    found = it._replace(hint=hint, level=level)
+    if not place.file:
+        return found
+    return found._replace(file=place.file, line=place.line, column=place.column)
+
+
+def _hint(it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]) -> str:
+    first, *others = by_plan
+    if not _is_of_an_end(first, rules):
+        return first.hint
+    if not _is_there(first):
+        return it.hint
+    who = "it" if first.node == it.node else first.node
+    more = unique(
+        f"{one.node} (see {one.file}:{one.line})" if one.file else one.node
+        for one in others
+        if one.node != first.node
+    )
+    same = f"; the same for {shorten(more)}" if more else ""
+    return f"by the plan {who} {first.message}: {first.hint}{same}"
+
+
+def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
+    """Are all who do with its names what it is about planned to?"""
+    roles = rule.options["meant"]
+    ends = [end for name in it.names for end in ends_of(seen, name)] if roles else []
+    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
+    return bool(about) and all(_is_planned(plan, end) for end in about)
+
+
+def _is_planned(plan: Index, end: End) -> bool:
+    if (end.node, end.kind, end.role, end.name) in plan.by_key:
+        return True
+    topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)
+    return any(fnmatchcase(end.node, pattern) for it in topics for pattern in it.senders)
