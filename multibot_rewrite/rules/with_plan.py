@@ -42,13 +42,16 @@ def one_for_a_cause(
     """The findings about a system, and those that only its plan shows, without those of one cause.
     ``in_doubt``: more may be there than is seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
-    last_first = sorted(enumerate(left), key=lambda one: (_is_absence(one[1], rules), one[0]))[::-1]
-    places = {about: at for at, it in last_first for about in _abouts(it, rules)}
+    # What is there counts before what is missing, then the first.
+    places: list[dict[_About, int]] = [{}, {}]
+    for at, it in reversed([*enumerate(left)]):
+        places[_is_absence(it, rules)].update(dict.fromkeys(_abouts(it, rules), at))
     causes: dict[int, list[Finding]] = defaultdict(list)
     others: list[Finding] = []
     for it in by_plan:
-        at = next((places[key] for key in _same(seen, it, rules) if key in places), None)
-        (others if at is None else causes[at]).append(it)
+        keys = [*_same(seen, it, rules)]
+        same = [them[key] for them in places for key in keys if key in them]
+        (causes[same[0]] if same else others).append(it)
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
@@ -96,7 +99,7 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
         used = it.names[-1]
         is_tf = any(end.type == TF for end in ends_of(seen, used))
         about = tree_topic(used) if is_tf else used
-        yield from ((whose, about) for whose in ("", f"beside {it.names[0]}", it.node, it.robot))
+        yield from ((whose, about) for whose in (it.node, f"beside {it.names[0]}", it.robot, ""))
     elif _is_of_an_end(it, rules):
         # What all robots have, such as /clock, the nodes of a robot lack together.
         lacks = (it.node,) if seen.robot(it.names[0]) else (it.node, it.robot)

@@ -68,7 +68,7 @@ def test_faults_name_the_robot(tmp_path: Path) -> None:
     graph = without_node(graph, "/guard/bt_navigator")
     graph = with_end(graph, "/fleet_b/robot1/gripper", "/fleet_b/robot1/open")
     found = {(it.code, it.robot, it.node) for it in check(plan, graph)}
-    assert ("MG310", "fleet_a/robot1", "/fleet_a/robot1/collision_monitor") in found
+    assert ("MG308", "fleet_a/robot1", "/fleet_a/robot1/collision_monitor") in found
     assert ("MG321", "fleet_b/robot1", "/fleet_b/robot1/amcl") in found
     assert ("MG101", "guard", "/guard/bt_navigator") in found
     assert ("MG108", "fleet_b/robot1", "/fleet_b/robot1/gripper") in found

@@ -94,7 +94,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
         node("robot1", "amcl", lambda it: it.replace('"tf")', '"/robot2/tf")')),
         "MG405",
     ),
-    "a rule is lost": (node("robot1", "controller_server", without("cmd_vel")), "MG102"),
+    "a rule is lost": (node("robot1", "controller_server", without("cmd_vel")), "MG315"),
     "a node is lost": (node("robot1", "velocity_smoother", lambda it: ""), "MG101"),
     "a node has another name": (
         node("robot1", "amcl", lambda it: it.replace('"amcl"', '"amcl_node"')),
@@ -106,11 +106,11 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
     ),
     "a parameter file has another topic": (
         in_file("robot2/nav2_params.yaml", "scan_topic: scan", "scan_topic: robot2/scan"),
-        "MG102",
+        "MG303",
     ),
     "a costmap's source is misspelt": (
         in_file("robot1/nav2_params.yaml", "topic: /robot1/scan", "topic: /robot1/scn"),
-        "MG102",
+        "MG303",
     ),
     "a parameter file is not given": (
         node("robot1", "collision_monitor", lambda it: it.replace("*params, ", "")),

@@ -169,13 +169,13 @@ SCENARIOS = (
     Scenario("healthy L3", L3, healthy, frozenset()),
     Scenario(
         "leak", L2, leak,
-        frozenset({("MG102", "/robot1/diff_drive"), ("MG310", "/robot1/diff_drive")}),
+        frozenset({("MG303", "/robot1/diff_drive")}),
     ),
     Scenario("cross-talk", L2, cross_talk, frozenset({("MG311", "/robot1/pilot")})),
     Scenario(
         "once silent", L2, once_silent,
         frozenset({
-            ("MG208", "robot2"), ("MG102", "/robot2/lidar_driver"), ("MG306", "/robot1/lidar_driver"),
+            ("MG208", "robot2"), ("MG303", "/robot2/pilot"), ("MG306", "/robot1/lidar_driver"),
             ("MG408", "robot1"),
         }),
     ),
@@ -185,10 +185,7 @@ SCENARIOS = (
     Scenario("two parents", L2, two_parents, frozenset({("MG401", "robot1")})),
     Scenario(
         "missing remap", L3, missing_remap,
-        frozenset({
-            ("MG102", "/robot1/robot_state_publisher"),
-            ("MG405", "robot1"),
-        }),
+        frozenset({("MG405", "/robot1/robot_state_publisher")}),
     ),
     Scenario("not started", L2, not_started, frozenset({("MG109", "robot2")})),
     Scenario("wrong namespace", L2, wrong_namespace, frozenset({("MG101", "/robot2/pilot")})),

@@ -766,7 +766,8 @@ def test_the_whole_command(
         other = tmp_path / "other.launch.py"
         other.write_text(TWO.replace("RULES", "[]"))
         assert main(["check-launch", str(other), "--plan", str(plan), "--distro", "jazzy"]) == 1
-        assert "MG102" in capsys.readouterr().out
+        told = capsys.readouterr().out
+        assert "MG402" in told and "should publish topic /robot1/tf" in told
 
 
 @pytest.mark.more

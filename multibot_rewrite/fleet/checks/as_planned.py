@@ -53,6 +53,7 @@ _MISSED = frozenset(
 # What a simulator may give that the launch file does not start.
 _OF_OTHERS = clocks.no_clock.code
 # What a node of the launch file has is known, whatever else runs.
+_LACKS = planned_ends.missing_endpoint.code
 _OF_NODES = frozenset(
     it.code
     for it in (
@@ -124,7 +125,17 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
         return NOTE if _sender_left(it, planned, started) else "" if doubts(seen) else WARNING
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
-    return "" if it.code in ABSENCE and doubts(seen) else ERROR
+    if not (it.code in ABSENCE and doubts(seen)):
+        return ERROR
+    # Known is what a node of the launch file has in place of a planned name.
+    there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
+    lacks = (
+        one.node
+        for one in planned.ends
+        if one.name in it.names and (one.node, one.kind, one.role, one.name) not in there
+    )
+    of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
+    return ERROR if any(_is_of_launch(one, planned, seen, started) for one in of_nodes) else ""
 
 
 def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:

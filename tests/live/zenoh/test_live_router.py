@@ -94,7 +94,7 @@ def test_what_is_wrong_is_found(
         there.end(7, "/robot2", "drive", "MS", "/cmd_vel", STRING)
         assert check(plan, address, 3) == 1
     shown = capsys.readouterr().out
-    assert "/robot2/drive: error: MG102" in shown
+    assert "/robot2/drive: error: MG320 should subscribe to topic" in shown
     assert "it subscribes to /cmd_vel instead" in shown
 
 
