@@ -125,17 +125,17 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
         return NOTE if _sender_left(it, planned, started) else "" if doubts(seen) else WARNING
     if it.code == demands.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
-    if not (it.code in ABSENCE and doubts(seen)):
-        return ERROR
-    # Known is what a node of the launch file has in place of a planned name.
+    sure = it.code not in ABSENCE or not doubts(seen)
+    return ERROR if sure or _is_of_a_lack(it, planned, seen, started) else ""
+
+
+def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Is it about a planned name that a node of the launch file lacks? What it has instead is known."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
-    lacks = (
-        one.node
-        for one in planned.ends
-        if one.name in it.names and (one.node, one.kind, one.role, one.name) not in there
-    )
+    named = (one for one in planned.ends if one.name in it.names)
+    lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
     of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
-    return ERROR if any(_is_of_launch(one, planned, seen, started) for one in of_nodes) else ""
+    return any(_is_of_launch(one, planned, seen, started) for one in of_nodes)
 
 
 def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:

@@ -34,14 +34,15 @@ _SWITCH = "enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
     """Where one of a node's ends has the type of the other side, or of the plan, it connects."""
+    by_plan = planned_types(seen)
     for ends in seen.by_name.values():
-        every = [end for side in ends[3:] for end in side]
-        planned = planned_types(seen).get((ends.kind, ends.name), frozenset())
-        looking = [it for it in every if it.role == SUBSCRIBES and seen.is_tool(it.node)]
-        apart = _apart((it for it in every if it not in looking), {(it, "") for it in planned})
-        if apart:
-            yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())
-            continue
+        every = (*ends.publishers, *ends.subscribers, *ends.servers, *ends.clients)
+        planned = by_plan.get((ends.kind, ends.name), frozenset())
+        if planned and not planned >= {end.type for end in every}:
+            asked = (it for it in every if it.role != SUBSCRIBES or not seen.is_tool(it.node))
+            if apart := _apart(asked, {(it, "") for it in planned}):
+                yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())
+                continue
         givers, takers = ends[3:5] if ends.kind == TOPIC else ends[5:7]
         if len({(end.type, end.type_hash) for end in every}) < 2:
             continue
@@ -59,7 +60,10 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     """The types that the plan has for each name, where they are known."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for end in seen.expected.by_key.values() if seen.expected else ():
-        found[end.kind, end.name] |= {end.type, *end.also} - {""}
+        types = found[end.kind, end.name]
+        types.update(end.also)
+        if end.type:
+            types.add(end.type)
     return found
 
 

@@ -101,10 +101,11 @@ def _how_many(seen: Index, end: End) -> str:
 def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
     """A name that the plan itself has for several robots, because no remap rule changes it."""
     users: dict[str, list[End]] = defaultdict(list)
-    relays = copying_nodes(plan.system)
+    relays, there, robot_of = copying_nodes(plan.system), seen.by_key, plan.robot_of
+    of_one = plan.of_names.exact
     for key in plan.by_key:
-        if key in seen.by_key and key[0] not in relays and key[0] in plan.robot_of:
-            users[key[3]].append(seen.by_key[key])
+        if key[3] not in of_one and key in there and key[0] in robot_of and key[0] not in relays:
+            users[key[3]].append(there[key])
     for name, ends in users.items():
         robots = unique(plan.robot_of[it.node] for it in ends)
         rule = _rule_of(plan, ends[0]) if len(robots) > 1 and not plan.robot(name) else None

@@ -279,12 +279,12 @@ def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
 
 def _senders(plan: Index) -> Mapping[str, set[str]]:
     """By robot: its planned nodes that publish its tf."""
+    topics = {it.name: (it.tf_topic, static_topic(it.tf_topic)) for it in plan.system.robots}
     found: dict[str, set[str]] = defaultdict(set)
+    robot_of = plan.robot_of
     for node, kind, role, name in plan.by_key:
-        robot = plan.declared.get(plan.robot_of.get(node, ""))
-        topics = (robot.tf_topic, static_topic(robot.tf_topic)) if robot else ()
-        if robot and (kind, role) == (TOPIC, PUBLISHES) and name in topics:
-            found[robot.name].add(node)
+        if role == PUBLISHES and kind == TOPIC and name in topics.get(robot_of.get(node, ""), ()):
+            found[robot_of[node]].add(node)
     return found
 
 
