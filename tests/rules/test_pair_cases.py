@@ -214,8 +214,8 @@ CAMERA = LIDAR.replace("lidar", "camera")
         ),
         (
             "planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is inactive",
-            ["MG511 is inactive, planned is active; ros2 lifecycle get /robot1/amcl; see the log of"
-             " its lifecycle manager"],
+            ["MG511 /robot1/amcl is inactive, not active; see the log of its lifecycle manager; ros2"
+             " lifecycle get /robot1/amcl"],
         ),
         ("planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is active", []),
         ("planned: state of /robot1/amcl: active\n" + AMCL, []),

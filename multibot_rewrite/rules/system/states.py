@@ -33,7 +33,7 @@ def not_active(seen: Index) -> Iterator[Finding]:
     planned = seen.expected.system.nodes if seen.expected else ()
     states = {it.name: it.lifecycle for it in planned if it.lifecycle}
     found: dict[tuple[str, str, str, str], list[str]] = defaultdict(list)
-    for it in seen.system.nodes:
+    for it in seen.node.values():
         wanted = states.get(it.name, ACTIVE)
         if it.lifecycle not in ("", wanted):
             about = (seen.robot(it.name), it.lifecycle, wanted, _manager(seen, it.name))
