@@ -9,7 +9,6 @@ from itertools import chain
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.system.tf_trees import tf_trees
 from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.records import alternatives
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -61,7 +60,7 @@ def worst(states: Iterable[str]) -> str:
 def find_targets(plan: Index, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
     homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
-    topics = [*dict.fromkeys((*(tree.topic for tree in tf_trees(plan, seen)), *homes))]
+    topics = [*dict.fromkeys((*(tree.topic for tree in seen.trees if tree.edges), *homes))]
     return tuple(
         Targets(
             tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(plan, finding, topics))

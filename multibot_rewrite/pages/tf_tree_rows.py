@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.rules.system.tf_trees import tf_trees
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -45,10 +44,10 @@ class FrameTree(NamedTuple):
 
 def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTree, ...]:
     """The trees on each topic in the order of the robots, then the frames missing there."""
-    if not (tf_trees(plan, seen) or states.frames):
+    edges = {tree.topic: tree.edges for tree in seen.trees if tree.edges}
+    if not (edges or states.frames):
         return ()
     order = {robot: at for at, robot in enumerate(plan.declared)}
-    edges = {tree.topic: tree.edges for tree in tf_trees(plan, seen)}
     found: list[FrameTree] = []
     home_topics = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):

@@ -89,8 +89,9 @@ def _rules(planned: bool) -> Iterator[Rule]:
 
 
 def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
-    found = [it for rule in rules if rule.check for it in rule.check(seen)]
-    return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+    with gc_paused():
+        found = [it for rule in rules if rule.check for it in rule.check(seen)]
+        return differing.unexplained(_of_localizers(seen, _of_readers(found)))
 
 
 def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
@@ -124,11 +125,6 @@ def absences(seen: Index) -> list[Finding]:
 
 
 def _part(seen: Index, absent: bool) -> list[Finding]:
-    with gc_paused():
-        return _of_part(seen, absent)
-
-
-def _of_part(seen: Index, absent: bool) -> list[Finding]:
     found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
     # What is found of robots held against each other is left to any other finding.
     if any(it.code in differing.COMPARED for it in found):

@@ -198,15 +198,6 @@ def _without_tag(segment: str, tag: str) -> str:
     return segment
 
 
-def without_tag_once(name: str, tag: str) -> Iterator[str]:
-    """The name with the tag removed from its beginning or its end, for every separator that fits."""
-    for separator in ("/", *SEPARATORS, ""):
-        if name.startswith(tag + separator):
-            yield name[len(tag + separator) :]
-        if name.endswith(separator + tag):
-            yield name[: -len(separator + tag)]
-
-
 def name_ownership(plan: System) -> NameOwnership:
     """The ownership of graph names: nodes, topics, services, actions."""
     nodes = {it.name: it.robot for it in plan.nodes if it.robot}

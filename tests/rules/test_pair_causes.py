@@ -19,12 +19,11 @@ from multibot_rewrite.rules.system.causes import (
     name_without_rules,
     names_without_rules,
     remap_rule,
-    tf_rule,
     why_not_remapped,
     why_other_name,
 )
+from multibot_rewrite.rules.system.planned import probable_matches, similar
 from multibot_rewrite.rules.system.planned_ends import _why_besides
-from multibot_rewrite.rules.system.similar_names import probable_matches, similar
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
@@ -286,18 +285,3 @@ def test_why_a_node_has_another_name(
     plan = plan_of(f"{node} publishes /robot1/scan", **changes)
     place = ("arm.urdf", 12) if "plugin" in changes else ("", 0)
     assert why_other_name(plan, node, match) == (hint, *place)
-
-
-@pytest.mark.parametrize(
-    ("node", "topic", "rule"),
-    [
-        ("/robot1/lidar", "/robot1/tf", "/tf:=tf"),
-        ("/lidar_robot1", "/robot1/tf", "/tf:=/robot1/tf"),
-        ("/robot1/lidar", "/tf", "/tf:=/tf"),
-    ],
-)
-def test_the_rule_for_tf(node: str, topic: str, rule: str) -> None:
-    plan = plan_of(f"{node} publishes /robot1/scan\nframes of robot1 on {topic}: robot1/base")
-    robot = plan.declared["robot1"]
-    assert tf_rule(plan, robot, "tf") == rule
-    assert tf_rule(plan, robot, "tf_static") == rule.replace("tf", "tf_static")

@@ -11,7 +11,6 @@ from multibot_rewrite.system.ownership import (
     name_ownership,
     whose_by_plan,
     without_name,
-    without_tag_once,
 )
 from multibot_rewrite.system.records import (
     PUBLISHES,
@@ -99,20 +98,6 @@ def test_the_name_of_a_robot_in_frames_may_be_another() -> None:
     frames = by_tags("r1")._replace(tags={"robot1": "r1"})
     assert (frames.tag("robot1"), frames.tag("robot2")) == ("r1", "robot2")
     assert frames.without_robot("r1/base_link", "robot1") == "base_link"
-
-
-@pytest.mark.parametrize(
-    ("name", "found"),
-    [
-        ("a/scan", ["scan", "/scan"]),
-        ("scan_a", ["scan", "scan_"]),
-        ("a-scan", ["scan", "-scan"]),
-        ("scan.a", ["scan", "scan."]),
-        ("scan", []),
-    ],
-)
-def test_a_tag_is_taken_off_either_end(name: str, found: list[str]) -> None:
-    assert list(without_tag_once(name, "a")) == found
 
 
 def node(name: str, robot: str = "") -> Node:

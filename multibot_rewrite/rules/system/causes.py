@@ -8,7 +8,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Robot
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
 
 # What a node does with a name, by the role of its endpoint.
 DOES = {
@@ -134,13 +134,6 @@ def _as_written(way: str, rule: str) -> str:
     if way == COMPONENT:
         return f"{pair} of its ComposableNode"
     return f"--ros-args -r {rule}, or with {pair} in the launch file"
-
-
-def tf_rule(plan: Index, robot: Robot, topic: str) -> str:
-    """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
-    namespaced = any(node.startswith(f"/{robot.name}/") for node in plan.own[robot.name])
-    place = robot.tf_topic.removeprefix(f"/{robot.name}/") if namespaced else robot.tf_topic
-    return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
 def why_other_name(plan: Index, node: str, match: str) -> Cause:

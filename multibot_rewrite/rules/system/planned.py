@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 
-from multibot_rewrite.rules.system.similar_names import probable_matches
+from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.system.index import EndKey, Index, once
+from multibot_rewrite.system.ownership import NameOwnership
 from multibot_rewrite.system.records import End
+
+# With more names than these, some name is always similar.
+MOST_CANDIDATES = 50
 
 
 @once
@@ -49,3 +53,45 @@ def matches(plan: Index, seen: Index) -> Mapping[str, str]:
     """The running node that each missing node probably is."""
     gone = {node: robot for node, robot in plan.robot_of.items() if node not in seen.nodes}
     return probable_matches(gone, _others(plan, seen), unplanned_nodes(plan, seen), plan.of_names)
+
+
+def probable_matches(
+    missing: Mapping[str, str],
+    others: Collection[str],
+    unplanned: Iterable[str],
+    ownership: NameOwnership,
+) -> dict[str, str]:
+    """The running node that each missing node (node -> robot) probably is, where there is one.
+
+    ``others`` are all running nodes that are not in the plan, ``unplanned`` those of them that are
+    no tools: only these are compared by similar name.
+    """
+    by_robot: dict[str, list[str]] = defaultdict(list)
+    for node in unplanned if missing else ():
+        by_robot[ownership.robot(node)].append(node)
+    spaces = {_letters(node.split("/")[1]): node.split("/")[1] for node in by_robot.get("", ())}
+    found: dict[str, str] = {}
+    for node, robot in missing.items():
+        plain = ownership.without_robot(node, robot)
+        space = spaces.get(_letters(robot), robot)
+        likely = (plain, f"/{plain.rpartition('/')[2]}", f"/{space}{plain}")
+        own = {ownership.without_robot(it, robot): it for it in by_robot.get(robot, ())}
+        there = next((it for it in likely if it in others), "")
+        if match := there or own.get(similar(plain, own), ""):
+            found[node] = match
+    return found
+
+
+def _letters(name: str) -> str:
+    """Its letters and digits in lower case."""
+    return "".join(filter(str.isalnum, name)).lower()
+
+
+def similar(name: str, known: Collection[str]) -> str:
+    """The known name that extends ``name``, is its beginning or is nearly the same; or ""."""
+    if len(known) > MOST_CANDIDATES:
+        return ""
+    extended = [other for other in known if other.startswith(name) or name.startswith(other)]
+    if extended:
+        return min(extended, key=lambda other: abs(len(other) - len(name)))
+    return nearest(name, known, MISTYPED)

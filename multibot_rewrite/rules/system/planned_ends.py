@@ -27,9 +27,8 @@ from multibot_rewrite.rules.system.commands import (
     command_from_another_robot,
 )
 from multibot_rewrite.rules.system.names import service_of_two_nodes
-from multibot_rewrite.rules.system.planned import missing, unplanned_ends
+from multibot_rewrite.rules.system.planned import missing, similar, unplanned_ends
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
-from multibot_rewrite.rules.system.similar_names import similar
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import (
     CALLS,

@@ -12,7 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused
-from multibot_rewrite.rules.system.similar_names import similar
+from multibot_rewrite.rules.system.planned import similar
 from multibot_rewrite.rules.system.tf_causes import (
     is_described,
     sent_by_robot,
@@ -20,8 +20,8 @@ from multibot_rewrite.rules.system.tf_causes import (
     where_set,
     why_not_received,
 )
-from multibot_rewrite.rules.system.tf_trees import TfTree, frames_in, tf_trees
-from multibot_rewrite.system.index import Index, once
+from multibot_rewrite.rules.system.tf_trees import frames_in, home_of, robots_on
+from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, Robot
 from multibot_rewrite.system.tf_copies import static_topic
@@ -58,7 +58,7 @@ def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _why_bare(plan: Index, tree: TfTree, robot: Robot, bare: Sequence[Stray]) -> Cause:
+def _why_bare(plan: Index, tree: Tree, robot: Robot, bare: Sequence[Stray]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
     expected = {it.meant for it in bare}
     sent = next((it for it in sent_by_robot(plan, robot) if expected <= {*it[1:]}), None)
@@ -67,7 +67,8 @@ def _why_bare(plan: Index, tree: TfTree, robot: Robot, bare: Sequence[Stray]) ->
         place = where_set(plan, sent.node)
         see = f", see {place}" if place else ""
         return caused(f"{first}: by the plan {sent.node} sends {sent}{see}", place)
-    senders = shorten(tree.senders.get(robot.name, ())) or "its robot_state_publisher"
+    own = sorted(it for it in tree.senders if plan.robot(it) == robot.name)
+    senders = shorten(own) or "its robot_state_publisher"
     return Cause(f"{first}: load the rewritten description in {senders}")
 
 
@@ -142,41 +143,42 @@ def misnamed(plan: Index, seen: Index) -> Set[str]:
         sent = {edge.child for edge in tree.edges}
         if any(it.meant and it.meant not in sent and it.frame in sent for it in found):
             strays.add(robot.name)
-    for tree in tf_trees(plan, seen):
+    for tree in seen.trees:
         children = (plan.of_frames.exact.get(edge.child, "") for edge in tree.edges)
-        strays |= {it for it in children if it and it not in tree.home}
+        strays |= {it for it in children if it and it not in home_of(plan, tree)}
     return strays
 
 
-def _of_each(plan: Index, seen: Index) -> Iterator[tuple[TfTree, Robot, Sequence[Stray]]]:
+def _of_each(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, Sequence[Stray]]]:
     for tree, strays in _strays(plan, seen):
         for robot, found in strays.items():
             yield tree, plan.declared[robot], found
 
 
 @once
-def _strays(plan: Index, seen: Index) -> Sequence[tuple[TfTree, Strays]]:
-    return [(tree, _strays_of(plan, tree)) for tree in tf_trees(plan, seen)]
+def _strays(plan: Index, seen: Index) -> Sequence[tuple[Tree, Strays]]:
+    return [(tree, _strays_of(plan, tree)) for tree in seen.trees]
 
 
-def _strays_of(plan: Index, tree: TfTree) -> Strays:
+def _strays_of(plan: Index, tree: Tree) -> Strays:
     """The frames of a tree that belong to a robot by name or topic, and are not planned."""
     found: dict[str, list[Stray]] = defaultdict(list)
     names: dict[str, list[str]] = defaultdict(list)
     # A moving frame on a robot's own topic may be anything that it detects.
+    own, robots = home_of(plan, tree), robots_on(plan, tree)
     present, fixed = {*frames_in(tree)}, {it.child for it in tree.edges if it.static}
     for name in (it for it in frames_in(tree) if it not in _known(plan)):
         robot = plan.frame_robot(name)
-        plain = {one: _planned(plan, one).get(name, "") for one in tree.robots if not robot}
+        plain = {one: _planned(plan, one).get(name, "") for one in robots if not robot}
         bare = [one for one, it in plain.items() if it and (it == name or it not in present)]
         if len(bare) == 1:
             found[bare[0]].append(Stray(name, plain[bare[0]], bare=True))
         elif not any(plain.values()):
-            home = tree.home[0] if len(tree.home) == 1 else _behind_prefix(plan, name)
+            home = own[0] if len(own) == 1 else _behind_prefix(plan, name)
             names[robot or home].append(name)
-    for robot, own in names.items():
+    for robot, strange in names.items():
         if robot and plan.declared[robot].frames:
-            strays = _with_meanings(plan, robot, own)
+            strays = _with_meanings(plan, robot, strange)
             sure = (
                 it for it in strays if it.added or it.frame in fixed or plan.frame_robot(it.frame)
             )
@@ -253,7 +255,7 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
             # On another topic it has a finding of its own.
             owner = plan.of_frames.exact.get(name, "")
             (heard[owner].add if owner else nobodys.append)(name)
-        for owner in {*tree.home, *tree.robots} if nobodys else ():
+        for owner in {*home_of(plan, tree), *robots_on(plan, tree)} if nobodys else ():
             plain = _planned(plan, owner)
             heard[owner].update(it for name in nobodys for it in (name, plain.get(name, "")))
         for owner, found in strays.items():

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.system.causes import Cause, caused
-from multibot_rewrite.rules.system.tf_trees import loose_odometry, no_odometry, tf_trees
+from multibot_rewrite.rules.system.tf_trees import home_of, loose_odometry, no_odometry
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, Sent, ends_of
@@ -74,7 +74,7 @@ def why_not_received(
 def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
     """Why the frames of a robot are in several pieces, with these roots."""
     home = tree_topic(robot.tf_topic)
-    edges = [edge for tree in tf_trees(plan, seen) if tree.topic == home for edge in tree.edges]
+    edges = [edge for tree in seen.trees if tree.topic == home for edge in tree.edges]
     there = {(it.parent, it.child) for it in edges}
     unsent = [it for it in sent_by_robot(plan, robot) if it[1:] not in there]
     named = _two_names(plan, robot, roots, edges) or _misspelled(plan, robot, roots, edges)
@@ -151,10 +151,10 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
 def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
-    for tree in tf_trees(plan, seen):
+    for tree in seen.trees:
         for edge in tree.edges if tree.topic == tree_topic(robot.tf_topic) else ():
             other = plan.frame_robot(edge.child)
-            if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
+            if other not in ("", robot.name) and (len(home_of(plan, tree)) == 1 or edge.several):
                 yield other, edge
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tf trees of a snapshot: the transforms on a tf topic and its tf_static, and their senders."""
+"""The transforms on a tf topic and its tf_static: whose they are by a plan, and where they begin."""
 
 from __future__ import annotations
 
@@ -7,48 +7,36 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.chains import chain_ends
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
-class TfTree(NamedTuple):
-    """The transforms of a tf topic and its tf_static; ``topic`` is the tf topic.
-
-    ``senders`` are all nodes that publish there, by their robot, "" for none; a transform does not
-    say which of them sent it. ``home`` are the robots whose tf topic this is by the layout,
-    ``robots`` those that publish here, or ``home`` where no publisher is known.
-    """
-
-    topic: str
-    edges: tuple[Edge, ...]
-    senders: Mapping[str, tuple[str, ...]]
-    home: tuple[str, ...]
-    robots: tuple[str, ...]
-
-
 @once
-def tf_trees(plan: Index, seen: Index) -> Sequence[TfTree]:
-    """Those with transforms."""
-    home: dict[str, list[str]] = defaultdict(list)
+def homes(plan: Index) -> Mapping[str, Sequence[str]]:
+    """By tf topic: the robots whose it is by the layout."""
+    found: dict[str, list[str]] = defaultdict(list)
     for robot in plan.system.robots:
-        home[tree_topic(robot.tf_topic)].append(robot.name)
-    there = (it for it in seen.trees if it.edges)
-    return [_tree(plan, it, tuple(home.get(it.topic, ()))) for it in there]
+        found[tree_topic(robot.tf_topic)].append(robot.name)
+    return found
 
 
-def _tree(plan: Index, tree: Tree, home: tuple[str, ...]) -> TfTree:
-    senders: dict[str, tuple[str, ...]] = defaultdict(tuple)
-    for node in sorted(tree.senders):
-        senders[plan.robot(node)] += (node,)
-    robots = tuple(filter(None, senders)) if senders else home
-    return TfTree(tree.topic, tree.edges, senders, home, robots)
+def home_of(plan: Index, tree: Tree) -> Sequence[str]:
+    """The robots whose tf topic this is by the layout."""
+    return homes(plan).get(tree.topic, ())
+
+
+def robots_on(plan: Index, tree: Tree) -> Sequence[str]:
+    """The robots that publish there, or those whose topic it is where no publisher is known."""
+    if not tree.senders:
+        return home_of(plan, tree)
+    return unique(filter(None, map(plan.robot, sorted(tree.senders))))
 
 
 def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[str]]]:
     """The robots whose planned frames have several roots on the tf topic of the robot, with these."""
-    for tree in tf_trees(plan, seen):
+    for tree in seen.trees:
         # A chain may go through frames that are nobody's, as a relay names them.
         above = {edge.child: edge.parent for edge in tree.edges}
         roots_above = chain_ends(above)
@@ -64,19 +52,20 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
                 yield plan.declared[robot], roots
 
 
-def _robots_at_home(plan: Index, tree: TfTree, edge: Edge) -> Set[str]:
+def _robots_at_home(plan: Index, tree: Tree, edge: Edge) -> Set[str]:
     return {_robot_at_home(plan, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
-def _robot_at_home(plan: Index, tree: TfTree, frame: str) -> str:
+def _robot_at_home(plan: Index, tree: Tree, frame: str) -> str:
     """The robot whose layout puts this frame on this topic, or an empty string."""
-    if len(tree.home) == 1:
-        return tree.home[0] if frame in plan.frames_of[tree.home[0]] else ""
+    home = home_of(plan, tree)
+    if len(home) == 1:
+        return home[0] if frame in plan.frames_of[home[0]] else ""
     robot = plan.of_frames.exact.get(frame, "")
     return robot if robot and tree_topic(plan.declared[robot].tf_topic) == tree.topic else ""
 
 
-def frames_in(tree: TfTree) -> Iterator[str]:
+def frames_in(tree: Tree) -> Iterator[str]:
     """Every frame of a tree, each once."""
     return iter(dict.fromkeys(name for edge in tree.edges for name in (edge.child, edge.parent)))
 
