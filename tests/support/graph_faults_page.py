@@ -31,8 +31,9 @@ them; where a source cannot show it, the cell says what is not in the source.
 
 - *no plan*: `multibot check` of a snapshot; its *exit* code; *cause*: the finding names who did it and
   what to do; *live*: played by real nodes as well (`tests/live/test_live_doctor.py`).
-- *with the plan*: the codes that `check` adds with the plan of the system; no entry: it has no plan. A
-  name that a node lacks by its plan is MG102 there, or MG101 a node, in place of what reads it in vain.
+- *with the plan*: the codes of `check` with the plan of the system; no entry: it has no plan. A name
+  that a node lacks by its plan is MG102 there, or MG101 a node, in place of what reads it in vain, if
+  the node has nothing in its place; MG108 is a node that the plan has not.
 - *Zenoh*: `check --from ROUTER`, by the tokens of a router. *rosgraph*: a message of `rosgraph_msgs`.
   *recorded*: a bag. *check-launch*: a launch file that starts these nodes.
 - *build*: the fault put into the files of a built fleet (`tests/support/built_faults.py`), and what
