@@ -435,3 +435,23 @@ def test_a_robot_that_is_planned_without_what_others_have(more: str, is_told: bo
     codes = {it.code for it in check(plan, graph)}
     assert "MG327" not in codes or is_told
     assert ("MG101" in codes) is is_told
+
+
+@pytest.mark.parametrize(("frame", "level"), [("robot1/lasr", "error"), ("robot1/tool", "warning")])
+def test_a_frame_in_place_of_a_planned_one_is_an_error(frame: str, level: str) -> None:
+    found = check(*read_example(FRAMES.format("robot1/base_link", frame)))
+    assert [it.level for it in found if it.code == "MG204"] == [level]
+
+
+def test_each_robot_that_lacks_a_name_is_told() -> None:
+    """Both send on one topic in place of their own: who waits for robot2's is no matter of robot1."""
+    sent = (
+        f"planned: /robot{{0}}/a publishes /robot{{0}}/x {TEXT} as /x\n"
+        f"running: /robot{{0}}/a publishes /x {TEXT}\n"
+        f"as planned: /robot{{0}}/b subscribes /robot{{0}}/x {TEXT}\n"
+    )
+    found = check(*read_example(sent.format(1) + sent.format(2)))
+    assert [(it.code, it.node) for it in found] == [("MG303", "/robot1/b"), ("MG303", "/robot2/b")]
+    assert all(
+        f"by the plan /robot{at}/a should publish" in it.hint for at, it in enumerate(found, 1)
+    )
