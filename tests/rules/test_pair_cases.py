@@ -455,3 +455,15 @@ def test_each_robot_that_lacks_a_name_is_told() -> None:
     assert all(
         f"by the plan /robot{at}/a should publish" in it.hint for at, it in enumerate(found, 1)
     )
+
+
+def test_the_only_name_of_its_type_is_the_one_in_its_place() -> None:
+    """One line, although it is missing and the other one is of no robot."""
+    lines = f"planned: /robot1/a publishes /robot1/x {TEXT}\nplanned: /robot2/a\n"
+    (found,) = (
+        it
+        for it in check(*read_example(f"{lines}running: /robot1/a publishes /y/other {TEXT}"))
+        if it.node == "/robot1/a"
+    )
+    assert (found.code, found.names) == ("MG102", ("/robot1/x",))
+    assert "it publishes /y/other of that type" in found.hint

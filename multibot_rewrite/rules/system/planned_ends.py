@@ -65,7 +65,9 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
         if not times or (times > 1 and planned.kind != TOPIC):
             continue
         used = _used_instead(plan, seen, planned)
-        taken.add((planned.node, used))
+        # Without one that is called so, the only one of its type is what the hint names.
+        alike = [] if used else _of_its_type(plan, seen, planned)
+        taken.add((planned.node, used or next(iter(alike if len(alike) == 1 else ()), "")))
         end = next((it for it in ends_of(seen, used) if it.node == planned.node), planned)
         robot = plan.robot_of.get(planned.node, "")
         rule = _of_wrong_robot(plan, end, robot) or missing_endpoint
@@ -155,7 +157,7 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
-        same = [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
+        same = _of_its_type(plan, seen, planned)
         # Of text and numbers are many things.
         if len(same) == 1 or (same and "std_" not in planned.type):
             return Cause(
@@ -203,6 +205,11 @@ def _used_instead(plan: Index, seen: Index, planned: End) -> str:
     if near or planned.node in plan.robot_of:
         return near
     return similar(planned.name, unplanned)
+
+
+def _of_its_type(plan: Index, seen: Index, planned: End) -> list[str]:
+    ends = _unplanned(plan, seen, planned)
+    return [it.name for it in ends if it.type == planned.type != ""]
 
 
 def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:
