@@ -107,7 +107,7 @@ def _of_launch(options: argparse.Namespace) -> int:
 
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
-    known = {node.robot for node in made.table.nodes}
+    known = {node.robot for node in made.table.runs}
     nothing = [robot for robot in made.inventories if robot not in known]
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
@@ -122,7 +122,7 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(
-        made.inventories, made.naming, made.models, made.table.names, made.placed
+        made.inventories, made.naming, made.models, made.table.runs, made.placed
     )
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"

@@ -141,7 +141,7 @@ def _with_bridge_and_findings(
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.names)
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.runs)
     own = topics if any(it.robot for it in topics) else ()
     gaps = tuple(shared_by_nothing(fleet))
     return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
@@ -201,7 +201,7 @@ def assemble(
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
-        own = [node for node, _ in plugins[it.robot]]
+        own = [run.fact for run in plugins[it.robot]]
         edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
     table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
     unread = dict.fromkeys(found for it in members for found in it.unread)
@@ -237,7 +237,7 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
 def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
     """By full name: the file or stack that names a node."""
     known = {it.name: it.origin for it in facts}
-    return {it.full_name: origin for it in table.nodes if (origin := known.get(it.node, ""))}
+    return {it.full_name: origin for it in table.runs if (origin := known.get(it.node, ""))}
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
@@ -300,9 +300,9 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
     puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
     described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
-    for it in merged(fleet.table.nodes):
+    for it in merged(fleet.table.runs):
         given: dict[str, object] = {}
-        if it.robot in clocks and not it.home.plugin:
+        if it.robot in clocks and not it.fact.plugin:
             given[SIM_TIME] = clocks[it.robot]
         if it.robot and it.node in described and fleet.naming.layout.at_run_time:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
@@ -313,7 +313,7 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
 def _sends(fleet: Fleet) -> Iterator[Edge]:
     """The transforms that nodes' parameters name."""
     described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
-    for it in fleet.table.nodes:
+    for it in fleet.table.runs:
         edges = fleet.edges.get((it.robot, it.node), ())
         if edges and it.node not in described:
             sender = (it.full_name,)
@@ -323,8 +323,7 @@ def _sends(fleet: Fleet) -> Iterator[Edge]:
 def possible(fleet: Fleet) -> tuple[End, ...]:
     """Every endpoint that its nodes may have, by parameter too."""
     return tuple(
-        planned_end(it.node, end.kind, end.role, it.name, end.type, end.name)
-        for it in fleet.table.names
-        for end in [it.endpoint]
+        planned_end(run.full_name, end.kind, end.role, name, end.type, end.name)
+        for run, end, name in fleet.table.ends
         if end.role
     )

@@ -193,3 +193,7 @@ class NodeFacts(NamedTuple):
     def is_controller(self) -> bool:
         """Does the controller manager load it? The hardware's nodes are in its process, too."""
         return self.host == MANAGER and not self.of_hardware
+
+
+# What is known of a node that nobody knows.
+UNKNOWN = NodeFacts("", "", ())

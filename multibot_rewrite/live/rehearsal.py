@@ -14,9 +14,10 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.records import Rules, Run, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
 from multibot_rewrite.spelling.way_checks import (
@@ -25,7 +26,7 @@ from multibot_rewrite.spelling.way_checks import (
     is_stand_in,
     running_nodes,
 )
-from multibot_rewrite.spelling.ways import Pair, ros_arguments
+from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -84,22 +85,22 @@ def stub_nodes(
     ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
     without any a node gets only its namespace and its name.
     """
-    types = {name.name: name.endpoint.type for name in table.names if name.endpoint.type}
-    names: dict[str, list[EndpointName]] = {}
-    for name in table.names:
-        if not name.endpoint.when:
-            names.setdefault(name.node, []).append(name)
-    spaces = {(it.robot, it.node): it.namespace for it in table.nodes}
+    types = {name: end.type for _, end, name in table.ends if end.type}
+    names: dict[str, list[tuple[Endpoint, str]]] = {}
+    for run, end, name in table.ends:
+        if not end.when:
+            names.setdefault(run.full_name, []).append((end, name))
+    spaces = {(it.robot, it.node): it.namespace for it in table.runs}
     for it in running_nodes(table, left_out):
         node, own = it.node, names.get(it.node.full_name, [])
-        space, other = _as_started(node, spaces.get((node.robot, node.home.host)))
+        space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
         yield (
             node.robot,
             StubNode(
                 node.code_name,
                 tuple(ros_arguments(space, other, _rules(it, own))),
                 tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
-                tuple(dict.fromkeys(_stub_endpoint(name, types) for name in own)),
+                tuple(dict.fromkeys(_stub_endpoint(*it, types) for it in own)),
                 tuple(edges.get((node.robot, node.node), ())),
             ),
         )
@@ -128,20 +129,20 @@ def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
             yield node.robot, StubNode(node.name[1:], (), (), tuple(ends.get(node.name, ())), ())
 
 
-def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:
+def _as_started(node: Run, host: str | None) -> tuple[str, str]:
     """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
 
     Where the code of a host places the node itself (a costmap), it asks nobody for either.
     """
-    if host is None or not node.home.apart:
+    if host is None or not node.fact.apart:
         return node.namespace, node.other_name
     return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
-def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, ...]:
+def _rules(running: RunningNode, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     """The rules of a node; a controller manager that stands in for its controllers has theirs."""
     node = running.node
-    theirs = {it.endpoint.name for it in names if is_stand_in(node, it.endpoint)}
+    theirs = {end.name for end, _ in names if is_stand_in(node, end)}
     if not theirs:
         return running.rules
     bare = bound_to(node, ())
@@ -150,12 +151,12 @@ def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, .
     return (*own, *running.handed_on)
 
 
-def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
-    kind, role, own, type_, *_ = name.endpoint
+def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> StubEndpoint:
+    kind, role, own, type_, *_ = end
     # A topic without a role is nearly always a sensor's output.
     return StubEndpoint(
-        *(kind, role or PUBLISHES, own, type_ or types.get(name.name, "")),
-        *(name.endpoint.helper, name.endpoint.by),
+        *(kind, role or PUBLISHES, own, type_ or types.get(name, "")),
+        *(end.helper, end.by),
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.records import EndpointName, Table
+from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, Sure, System, place_of
 
@@ -82,12 +82,12 @@ def expect(
         tag = word if word != name else ""
         return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
 
-    own, made = _own_nodes(table, facts, maybe_real), _private_nodes(table.names)
+    own, made = _own_nodes(table, facts, maybe_real), _private_nodes(table)
     names = dict.fromkeys((*frames, *filter(None, own)))
     nodes = _by_robot(table, own, made, (*names, ""))
     return System(
         nodes=tuple(_placed(nodes, table, sources)),
-        ends=tuple(dict.fromkeys(_planned(table.names))),
+        ends=tuple(dict.fromkeys(_planned(table))),
         robots=tuple(map(robot, names)),
         layout=table.layout,
         shared_topics=tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
@@ -104,7 +104,7 @@ def _by_robot(
     robots: Iterable[str],
 ) -> Iterator[Node]:
     """The nodes of each robot, with those that they make for themselves."""
-    always = _private_nodes(it for it in table.names if not it.endpoint.when)
+    always = _private_nodes(table, always=True)
     for name in robots:
         private = made.get(name, ()) if name else ()
         for full, sure in _with_made(own.get(name, {}), private, always.get(name, ())):
@@ -118,11 +118,11 @@ def _own_nodes(
     optional = {node.name for node in facts if node.when}
     conditional = {
         (it.robot, it.node)
-        for it in table.nodes
-        if it.node in optional or (it.home.written and it.robot in maybe_real)
+        for it in table.runs
+        if it.node in optional or (it.written and it.robot in maybe_real)
     }
     found: dict[str, dict[str, Sure]] = {}
-    for it in table.nodes:
+    for it in table.runs:
         own, may = found.setdefault(it.robot, {}), (it.robot, it.node) in conditional
         own[it.full_name] = MAY if it.robot and may else own.get(it.full_name, RUNS)
     return found
@@ -154,10 +154,10 @@ def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, str]) -> 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
     found = {it.node.full_name: it for it in reversed(deliveries(table))}
-    full = {(it.robot, it.node): it.full_name for it in table.nodes}
-    for node in table.nodes:
+    full = {(it.robot, it.node): it.full_name for it in table.runs}
+    for node in table.runs:
         it = found.get(node.full_name)
-        if it is None or it.way == PROCESS or node.home.plugin:
+        if it is None or it.way == PROCESS or node.fact.plugin:
             continue
         taker = full.get((node.robot, it.taker), "")
         yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
@@ -180,24 +180,23 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
-def _private_nodes(names: Iterable[EndpointName]) -> dict[str, tuple[str, ...]]:
-    """By robot: patterns of the nodes that its nodes make for themselves."""
+def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
+    """By robot: patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
-    for name in names:
-        full = f"{name.node}{name.endpoint.by}"
-        if name.endpoint.by and full not in found.get(name.robot, ()):
-            found[name.robot] = (*found.get(name.robot, ()), full)
+    for run, end, _ in table.ends:
+        full = f"{run.full_name}{end.by}"
+        if end.by and not (always and end.when) and full not in found.get(run.robot, ()):
+            found[run.robot] = (*found.get(run.robot, ()), full)
     return found
 
 
-def _planned(names: Iterable[EndpointName]) -> Iterator[End]:
-    """The endpoints that do not depend on parameters."""
-    for name in names:
-        end = name.endpoint
+def _planned(table: Table) -> Iterator[End]:
+    """The ends that do not depend on parameters."""
+    for run, end, name in table.ends:
         if end.when or (end.helper and not end.by):
             continue
-        if end.role and name.name not in SENT_BY_EVERY_NODE:
-            own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
+        if end.role and name not in SENT_BY_EVERY_NODE:
+            own = (f"{run.full_name}{end.by}", end.kind, end.role, name)
             yield planned_end(*own, end.type, end.name, end.also)
 
 

@@ -1,71 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records of the remap table: remap rules, and the names that they lead to."""
+"""Nodes as they run: their rules, and the names that these lead to."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
+
+# A remap rule, as rcl takes it: what it matches, and what comes in its place.
+Rule: TypeAlias = tuple[str, str]
+Rules: TypeAlias = tuple[Rule, ...]
+# The ends of a node, each with its full name.
+Names: TypeAlias = tuple[tuple[Endpoint, str], ...]
 
 
-class Home(NamedTuple):
-    """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
-    ``NodeFacts``, ``apart`` and ``of_hardware``. ``written`` is true for a plugin of a description,
-    ``process_wide`` if its rules hold for its whole process."""
+class Run(NamedTuple):
+    """A node as it runs: its robot (empty for a node of all robots), its name in its stack, its
+    namespace and name, its remap rules in order, and what is known of it.
 
-    host: str = ""
-    container: str = ""
-    plugin: str = ""
-    written: bool = False
-    process_wide: bool = False
-    apart: bool = False
-    of_hardware: bool = False
-
-    @property
-    def is_controller(self) -> bool:
-        """As in ``NodeFacts``."""
-        return self.host == MANAGER and not self.of_hardware
-
-
-class NodeRule(NamedTuple):
-    """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
-
-    ``node`` is its name in the stack, without the robot; ``kind`` is the kind of name that it is for,
-    empty if that is not known; ``why`` says what would go wrong without it.
+    ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its whole
+    process. ``names`` are its ends with their names under the rules.
     """
-
-    robot: str
-    node: str
-    source: str
-    target: str
-    kind: str
-    why: str
-
-
-class EndpointName(NamedTuple):
-    """An endpoint of a robot's node, and its name with the remap rules.
-
-    ``node`` and ``name`` are absolute.
-    """
-
-    robot: str
-    node: str
-    endpoint: Endpoint
-    name: str
-
-
-class NodeTable(NamedTuple):
-    """One node of one robot: its namespace, its name, its rules in order, and where it runs."""
 
     robot: str
     node: str
     namespace: str
     name: str
-    rules: tuple[NodeRule, ...]
-    home: Home = Home()
+    rules: Rules
+    fact: NodeFacts = UNKNOWN
+    written: bool = False
+    process_wide: bool = False
+    names: Names = ()
 
     @property
     def full_name(self) -> str:
@@ -83,15 +51,15 @@ class NodeTable(NamedTuple):
         return self.name if self.name != self.code_name else ""
 
 
-# Nodes with their tables.
-Pairs: TypeAlias = Sequence[tuple[NodeFacts, NodeTable]]
-
-
 class Table(NamedTuple):
     """The remap table of a fleet for a release of ROS, and what it cannot do or does wrongly."""
 
     layout: str
-    nodes: tuple[NodeTable, ...]
-    names: tuple[EndpointName, ...]
+    runs: tuple[Run, ...]
     problems: tuple[Finding, ...]
     release: str
+
+    @property
+    def ends(self) -> Iterator[tuple[Run, Endpoint, str]]:
+        """Every end, with its node and its full name."""
+        yield from ((run, end, name) for run in self.runs for end, name in run.names)

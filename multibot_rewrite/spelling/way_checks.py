@@ -17,15 +17,15 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import BoundNode, bind, parse_remap, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.records import Names, Rule, Rules, Run, Table
 from multibot_rewrite.spelling.ways import (
     COMPONENT,
     PLUGIN,
     SPAWNER,
     Delivery,
     Key,
-    Pair,
     deliveries,
+    key_of,
     rules_by_taker,
 )
 from multibot_rewrite.system.records import ACTION, PUBLISHES, TOPIC
@@ -36,20 +36,20 @@ class RunningNode(NamedTuple):
     has, which are those of a helper node in it. ``handed_on`` are the rules of controllers that it
     loads and that no stack names."""
 
-    node: NodeTable
+    node: Run
     way: str
-    rules: tuple[Pair, ...]
+    rules: Rules
     process_namespace: str
-    process_rules: tuple[Pair, ...]
-    handed_on: tuple[Pair, ...] = ()
+    process_rules: Rules
+    handed_on: Rules = ()
 
 
 class _Standing(NamedTuple):
     """The rules by robot and taker, and those that hold for the whole process of the simulator."""
 
-    rules: Mapping[Key, tuple[Pair, ...]]
-    world: tuple[Pair, ...]
-    nodes: Mapping[Key, NodeTable]
+    rules: Mapping[Key, Rules]
+    world: Rules
+    nodes: Mapping[Key, Run]
     controllers: ControllerWay
 
 
@@ -64,13 +64,13 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[Runn
         controller_way(table.release),
     )
     # A component's first delivery is its own, the second that of its helper nodes.
-    first = {it.node: it for it in reversed(meant)}
+    first = {key_of(it.node): it for it in reversed(meant)}
     yield from (_running(it, standing) for it in reversed(first.values()))
 
 
-def _of_simulator(given: Iterable[Delivery]) -> tuple[Pair, ...]:
+def _of_simulator(given: Iterable[Delivery]) -> Rules:
     """The rules of the first plugin that starts ROS in the simulator."""
-    return next((it.rules for it in given if it.node.home.process_wide), ())
+    return next((it.rules for it in given if it.node.process_wide), ())
 
 
 def _running(it: Delivery, standing: _Standing) -> RunningNode:
@@ -93,7 +93,7 @@ def _running(it: Delivery, standing: _Standing) -> RunningNode:
         handed_on = wide if standing.controllers.process_wide else given
         return RunningNode(node, it.way, rules, node.namespace, wide, handed_on)
     taker = standing.nodes.get((node.robot, it.taker), node)
-    container = standing.nodes.get((node.robot, taker.home.container))
+    container = standing.nodes.get((node.robot, taker.fact.container))
     if container is None:
         return RunningNode(node, it.way, own, taker.namespace, own)
     process = standing.rules.get((node.robot, container.node), ())
@@ -102,24 +102,24 @@ def _running(it: Delivery, standing: _Standing) -> RunningNode:
     return RunningNode(node, it.way, rules, container.namespace, process)
 
 
-def _of_plugin(node: NodeTable, own: tuple[Pair, ...], standing: _Standing) -> tuple[Pair, ...]:
+def _of_plugin(node: Run, own: Rules, standing: _Standing) -> Rules:
     """A plugin's rules are its own; nodes without any have those of the first robot's plugin."""
-    if node.home.written and not node.home.process_wide:
+    if node.written and not node.process_wide:
         return own
-    if not node.home.written or standing.controllers.process_wide:
+    if not node.written or standing.controllers.process_wide:
         return standing.world
     return tuple(dict.fromkeys((*own, *standing.world)))
 
 
-def is_stand_in(node: NodeTable, endpoint: Endpoint) -> bool:
+def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
     """Is this a topic of a controller of the plugin, and not of the controller manager itself?
 
     Those are what the plugin is known to publish, and without a role what its rules name.
     """
-    return node.home.process_wide and endpoint.role in (PUBLISHES, "")
+    return node.process_wide and endpoint.role in (PUBLISHES, "")
 
 
-def bound_to(node: NodeTable, rules: Iterable[Pair]) -> BoundNode:
+def bound_to(node: Run, rules: Iterable[Rule]) -> BoundNode:
     """The node under these rules."""
     found = (parse_remap(f"{source}:={target}") for source, target in rules)
     return bind(node.name, node.namespace, filter(None, found))
@@ -144,17 +144,17 @@ def not_taken(table: Table) -> Iterator[Finding]:
     """
     of_manager = controller_way(table.release).of_manager
     some = _of_robots(table, _robots_worth_a_look(table))
-    names: dict[tuple[str, str], list[EndpointName]] = {}
-    for it in some.names:
-        if not (it.endpoint.fixed or it.endpoint.when):
-            names.setdefault((it.robot, it.node), []).append(it)
+    names: dict[tuple[str, str], Names] = {}
+    for run in some.runs:
+        own = tuple(it for it in run.names if not (it[0].fixed or it[0].when))
+        key = run.robot, run.full_name
+        names[key] = (*names.get(key, ()), *own)
     owners = cache(partial(_owners, table))
     for running in _worth_a_look(some):
-        plain = tuple((it.source, it.target) for it in running.node.rules)
-        if running.node.home.process_wide or running.rules != plain:
+        if running.node.process_wide or running.rules != running.node.rules:
             own = names.get((running.node.robot, running.node.full_name), ())
-            if running.node.home.process_wide and not of_manager:
-                own = [it for it in own if it.endpoint.role != PUBLISHES]
+            if running.node.process_wide and not of_manager:
+                own = tuple(it for it in own if it[0].role != PUBLISHES)
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
                 yield _finding(running, list(wrong), table.release)
@@ -164,26 +164,23 @@ def _robots_worth_a_look(table: Table) -> set[str]:
     """Those of which descriptions decide something, and the first with each of the stack's nodes."""
     first: dict[str, set[str]] = {}
     found = {""}
-    for it in table.nodes:
+    for it in table.runs:
         robots = first.setdefault(it.node, set())
-        if len(robots) < ENOUGH or it.home.plugin or it.home.is_controller:
+        if len(robots) < ENOUGH or it.fact.plugin or it.fact.is_controller:
             robots.add(it.robot)
             found.add(it.robot)
     return found
 
 
 def _of_robots(table: Table, robots: Set[str]) -> Table:
-    return table._replace(
-        nodes=tuple(it for it in table.nodes if it.robot in robots),
-        names=tuple(it for it in table.names if it.robot in robots),
-    )
+    return table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
 
 
 def _owners(table: Table) -> dict[str, set[str]]:
     """The robots that have each name."""
     owners: dict[str, set[str]] = {}
-    for it in table.names:
-        owners.setdefault(it.name, set()).add(it.robot)
+    for run, _, name in table.ends:
+        owners.setdefault(name, set()).add(run.robot)
     return owners
 
 
@@ -192,34 +189,34 @@ def _worth_a_look(table: Table) -> Iterator[RunningNode]:
     seen: Counter[str] = Counter()
     for it in running_nodes(table):
         seen[it.node.node] += 1
-        if it.node.home.plugin or it.node.home.is_controller or seen[it.node.node] <= ENOUGH:
+        if it.node.fact.plugin or it.node.fact.is_controller or seen[it.node.node] <= ENOUGH:
             yield it
 
 
 def _wrong(
-    names: Iterable[EndpointName],
+    names: Names,
     running: RunningNode,
     owners: Callable[[], Mapping[str, set[str]]],
 ) -> Iterator[str]:
     """Those called otherwise than the table says: as in the code, or like something of a robot."""
     node = running.node
     own, theirs, bare = (bound_to(node, it) for it in (running.rules, running.handed_on, ()))
-    for it in names:
-        kind = TOPIC if it.endpoint.kind == ACTION else it.endpoint.kind
-        given = theirs if is_stand_in(node, it.endpoint) else own
-        found = resolve_bound(it.endpoint.name, kind, given)
-        if found == it.name:
+    for end, name in names:
+        kind = TOPIC if end.kind == ACTION else end.kind
+        given = theirs if is_stand_in(node, end) else own
+        found = resolve_bound(end.name, kind, given)
+        if found == name:
             continue
-        is_bare = found == resolve_bound(it.endpoint.name, kind, bare)
+        is_bare = found == resolve_bound(end.name, kind, bare)
         if is_bare or node.robot not in owners().get(found, {node.robot}):
-            yield it.endpoint.name
+            yield end.name
 
 
 def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
     node, names = running.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
-    hint = f"give its rules to the process of {node.home.host or node.name}"
-    if node.home.process_wide and controller_way(release).spawner:
+    hint = f"give its rules to the process of {node.fact.host or node.name}"
+    if node.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
         hint = "name their stack, and start each with its spawner's --controller-ros-args"
     elif running.way == PLUGIN:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from named_ends import named_ends
 from plans import sends
 from rule_examples import DESCRIPTION
 
@@ -52,7 +53,7 @@ def written(folder: Path, text: str = FLEET) -> str:
 
 def test_the_plan_of_every_robot_has_what_is_launched(tmp_path: Path) -> None:
     fleet = fleet_of(tmp_path)
-    names = {it.name for it in fleet.table.names if it.node == "/robot2/amcl"}
+    names = {it.name for it in named_ends(fleet.table) if it.node == "/robot2/amcl"}
     assert "/robot2/front/scan" in names and "/robot2/scan" not in names
     plan = to_yaml(expected(fleet))
     assert "  /robot1/amcl: system_model.yaml:3\n  /robot2" in plan.replace("_publisher", "")
@@ -61,13 +62,13 @@ def test_the_plan_of_every_robot_has_what_is_launched(tmp_path: Path) -> None:
 
 def test_a_rule_of_the_launch_file_leads_where_it_led(tmp_path: Path) -> None:
     table = fleet_of(tmp_path).table
-    (amcl,) = (it for it in table.nodes if it.full_name == "/robot1/amcl")
+    (amcl,) = (it for it in table.runs if it.full_name == "/robot1/amcl")
     assert {(it.source, it.target) for it in amcl.rules} >= {("/tf", "tf")}
 
 
 def test_a_robot_may_have_its_own_launch_files(tmp_path: Path) -> None:
     text = FLEET.replace("robot2, ", "robot2, launch: [], ")
-    robots = {it.node for it in fleet_of(tmp_path, text).table.names}
+    robots = {it.node for it in named_ends(fleet_of(tmp_path, text).table)}
     assert "/robot1/amcl" in robots and "/robot2/amcl" not in robots
 
 

@@ -38,7 +38,7 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
@@ -109,10 +109,12 @@ def test_endpoints_of_a_helper_are_marked() -> None:
 
 
 def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
-    one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
-    rules = (NodeRule("r", "manager", "c", "d", "", ""),)
-    two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
-    ((_, stub),) = stub_nodes(Table("both", (one, two), (), (), NEWEST_LTS), {})
+    one = Run("r", "manager", "/r", "manager", (("a", "b"),))
+    rules = (("c", "d"),)
+    two = one._replace(
+        rules=rules, fact=NodeFacts("manager", "acme", (), plugin="acme"), written=True
+    )
+    ((_, stub),) = stub_nodes(Table("both", (one, two), (), NEWEST_LTS), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
 
 
@@ -225,7 +227,7 @@ def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
     reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
-    plugins = [facts for facts, _ in plugin_nodes(reading, "robot1")]
+    plugins = [it.fact for it in plugin_nodes(reading, "robot1")]
     found = edges_of("robot1", inventory, nodes, plugins, naming)
     return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}
 

@@ -23,7 +23,7 @@ from multibot_rewrite.spelling.plan import (
     planned_end,
     tf_topic,
 )
-from multibot_rewrite.spelling.records import Home, NodeTable
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.targets import expanded, placed, target_of
 from multibot_rewrite.spelling.transforms import (
@@ -107,14 +107,14 @@ def test_a_robot_may_have_another_name_in_its_frames() -> None:
 def test_a_node_says_where_its_rules_stand() -> None:
     naming = make_naming("L1")
     hosted = NodeFacts("hosted", "acme", (Endpoint(TOPIC, PUBLISHES, "/x"),), host="driver")
-    gz = NodeTable("a", "gz", "/a", "gz", (), Home(plugin="p", written=True))
+    gz = Run("a", "gz", "/a", "gz", (), NodeFacts("gz", "p", (), plugin="p"), written=True)
     facts = (
         DRIVER,
         hosted,
         NodeFacts("box", "acme", ()),
         NodeFacts("c", "acme", (), container="box"),
     )
-    plugins = {"a": [(NodeFacts("gz", "p", ()), gz)]}
+    plugins = {"a": [gz]}
     table = build_table(["a"], facts, naming, plugins, release=NEWEST_LTS)
     found = expect(table, naming, {"a": []}, facts, sources={"/a/gz": "r.urdf:7"}, maybe_real=["a"])
     assert {it.name: (it.way, it.taker) for it in found.nodes if it.way} == {

@@ -72,15 +72,15 @@ def _process(
 ) -> Iterator[tuple[str, StubNode]]:
     """The node of a process and those that it makes; one that no plan has is there, too."""
     arguments = (ROS_ARGS, *rules) if rules else ()
-    own = [it for it in fleet.planned.table.nodes if it.full_name == full]
+    own = [it for it in fleet.planned.table.runs if it.full_name == full]
     if not own:
         yield "", StubNode(full.rpartition("/")[2] or "unnamed", arguments, (), (), ())
     for it in own:
         yield it.robot, _told(stubs[it.full_name], arguments)
         hosted = [
             one
-            for one in fleet.planned.table.nodes
-            if one.robot == it.robot and one.home.host == it.node and not one.home.plugin
+            for one in fleet.planned.table.runs
+            if one.robot == it.robot and one.fact.host == it.node and not one.fact.plugin
         ]
         free = tuple(word for word in rules if not word.startswith(("__ns", "__node")))
         for one in hosted:
@@ -120,8 +120,8 @@ def _plugins(
     model: str, fleet: LoadedFleet, stubs: Mapping[str, StubNode]
 ) -> Iterator[tuple[str, StubNode]]:
     (robot,) = (it for it in fleet.plan.robots if it.spec.model == model)
-    for it in fleet.planned.table.nodes:
-        if it.robot == robot.spec.namespace and it.home.plugin:
+    for it in fleet.planned.table.runs:
+        if it.robot == robot.spec.namespace and it.fact.plugin:
             yield it.robot, stubs[it.full_name]
 
 

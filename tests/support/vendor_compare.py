@@ -143,7 +143,7 @@ def _topics(
     built: Built, row: dict[str, Any], name: str, given: Rows, theirs: Rows, ours: Rows
 ) -> None:
     """Where the names of a node lead by the vendor's parameters and rules, and by the table."""
-    nodes = built.fleet.table.nodes if built.fleet else ()
+    nodes = built.fleet.table.runs if built.fleet else ()
     table = next((it for it in nodes if it.full_name == name), None)
     if table is None or built.fleet is None:
         return

@@ -63,7 +63,7 @@ def graph(release: str, name: str) -> tuple[System, System]:
     by_name = {(it.name): (kind, it) for kind, it in kinds}
     ends = []
     nodes = []
-    for placed in table.nodes:
+    for placed in table.runs:
         kind, node = by_name[placed.node]
         if kind not in facts(release):
             assert node.when, f"{release} has no facts of {kind}"

@@ -18,9 +18,9 @@ def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Fi
     """The robots whose stack has a manager that no plugin makes, though one makes another."""
     first: dict[str, RewrittenRobot] = {}
     for robot in robots:
-        own = [it for it in table.nodes if it.robot == robot.member.robot]
+        own = [it for it in table.runs if it.robot == robot.member.robot]
         made = [it.manager for it in robot.member.reading.nodes if it.manager]
-        asked = {it.full_name for it in own if it.node == MANAGER and not it.home.written}
+        asked = {it.full_name for it in own if it.node == MANAGER and not it.written}
         if made and asked and asked.isdisjoint(made):
             message = f"the plugin makes {made[0]}, but spawners ask {min(asked)}"
             hint = "remove <namespace> and <controller_manager_name> of the plugin"

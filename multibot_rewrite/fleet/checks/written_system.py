@@ -65,10 +65,7 @@ def of_each_kind(plan: FleetPlan) -> list[RewrittenRobot]:
 def with_robots(fleet: Fleet, robots: Iterable[RewrittenRobot]) -> Fleet:
     """What a fleet has of some robots and for all."""
     kept = {"", *(it.spec.namespace for it in robots)}
-    table = fleet.table._replace(
-        nodes=tuple(it for it in fleet.table.nodes if it.robot in kept),
-        names=tuple(it for it in fleet.table.names if it.robot in kept),
-    )
+    table = fleet.table._replace(runs=tuple(it for it in fleet.table.runs if it.robot in kept))
     return fleet._replace(
         table=table,
         inventories={name: it for name, it in fleet.inventories.items() if name in kept},
@@ -112,7 +109,7 @@ def _sections(plan: FleetPlan, robot: RewrittenRobot) -> Sections:
 def _nodes(
     fleet: Fleet, may: Mapping[str, frozenset[str]], given: Mapping[str, Sections]
 ) -> Iterator[Node]:
-    for it in merged(fleet.table.nodes):
+    for it in merged(fleet.table.runs):
         if not it.robot or it.robot in may:
             # A person starts a tool, or nobody does.
             doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
@@ -125,18 +122,18 @@ def _nodes(
 
 def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) -> Iterator[End]:
     known = {it.name: it for it in nodes}
-    for it in fleet.table.names:
-        end, node = it.endpoint, known.get(it.node)
-        if node is None or it.name in OF_EVERY_NODE:
+    for run, end, name in fleet.table.ends:
+        node = known.get(run.full_name)
+        if node is None or name in OF_EVERY_NODE:
             continue
-        sections = given.get(it.robot, NO_SECTIONS)
-        place = _parameter(node.known, end.parameter, sections) if it.robot else NOWHERE
+        sections = given.get(run.robot, NO_SECTIONS)
+        place = _parameter(node.known, end.parameter, sections) if run.robot else NOWHERE
         # A node with parameters is meant to run: what it needs has to be there.
         needs = end.role in NEEDS and node.place != NOWHERE
         sure = MAY if end.when else RUNS if needs else node.sure
         told = (end.name, end.also, sure, place if place != NOWHERE else node.place)
         yield from either_way(
-            End(end.kind, end.role, it.name, end.type, "", it.node, None, "", *told)
+            End(end.kind, end.role, name, end.type, "", node.name, None, "", *told)
         )
 
 
@@ -196,7 +193,7 @@ def _is_of(node: str, robot: str, nodes: Mapping[str, str]) -> bool:
 def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:
     name, given = robot.spec.namespace, _sections(plan, robot)
     topic = tf_topic(name, fleet.naming)
-    full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
+    full = {it.node: it.full_name for it in fleet.table.runs if it.robot == name}
     root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
     tree = robot.tree
     joints = (joint for joint, _ in tree_joints(robot.member.sent.root))

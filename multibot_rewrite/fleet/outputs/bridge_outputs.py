@@ -57,7 +57,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     """
     fleet = plan.fleet
     topics, unbridged = bridged_topics(
-        fleet.inventories, fleet.naming, fleet.models, fleet.table.names, fleet.placed
+        fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
     )
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:

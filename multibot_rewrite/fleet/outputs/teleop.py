@@ -16,6 +16,7 @@ from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.spelling.records import Names
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
@@ -42,9 +43,14 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
 
 def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
     """Does something read velocity commands, or send them to a base that is not in the plan?"""
-    own = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
-    sends = any(it.endpoint.role == PUBLISHES and it.name == _usual(robot) for it in own)
+    own = _ends(plan, robot)
+    sends = any(end.role == PUBLISHES and name == _usual(robot) for end, name in own)
     return sends or bool(_listeners(plan, robot))
+
+
+def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Names:
+    runs = (it for it in plan.fleet.table.runs if it.robot == robot.spec.namespace)
+    return tuple(it for run in runs for it in run.names)
 
 
 def _usual(robot: RewrittenRobot) -> str:
@@ -76,15 +82,13 @@ def command(it: Teleop) -> str:
 def _listeners(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, set[str]]:
     """Subscribed topics of commands without a publisher in the plan, with their types, then those of
     any name that bridges bring to the simulator."""
-    names = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
-    own = [it for it in names if it.endpoint.kind == TOPIC]
-    sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
+    own = [it for it in _ends(plan, robot) if it[0].kind == TOPIC]
+    sent = {name for end, name in own if end.role == PUBLISHES}
     heard: dict[str, set[str]] = {}
-    for name in own:
-        asked = name.endpoint.name.rpartition("/")[2] in COMMANDS
-        asked = asked and name.endpoint.type in (PLAIN, STAMPED)
-        if asked and name.endpoint.role != PUBLISHES and name.name not in sent:
-            heard.setdefault(name.name, set()).add(name.endpoint.type)
+    for end, name in own:
+        asked = end.name.rpartition("/")[2] in COMMANDS and end.type in (PLAIN, STAMPED)
+        if asked and end.role != PUBLISHES and name not in sent:
+            heard.setdefault(name, set()).add(end.type)
     for topic, type_ in _bridged(plan, robot):
         if type_ in (PLAIN, STAMPED) and topic not in sent:
             heard.setdefault(topic, set()).add(type_)
@@ -100,7 +104,7 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
                 yield robot_topic(robot.topics, end.name), end.type
     fleet = plan.fleet
     own = {robot.spec.namespace: fleet.inventories[robot.spec.namespace]}
-    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.names)
+    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.runs)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
 
 

@@ -65,7 +65,7 @@ def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
             parent, child = (it.removeprefix(MODEL) for it in frames)
             found.append(edge_of(parent, child))
     reading = read(source.source, source.file, member.vocabulary)
-    nodes = (node for node, _ in plugin_nodes(reading, ""))
+    nodes = (it.fact for it in plugin_nodes(reading, ""))
     return (*found, *(it for node in nodes for it in sent_by(node, "")))
 
 

@@ -280,7 +280,7 @@ class LoadedRobot:
         """The relays of its tf to ``/tf``, by their names in ``table``; empty unless the fleet file
         says ``relayed``. Raises nothing."""
         made = relays(self._graph, self._robot.topics.naming, self._fleet.plan.file)
-        return {it.table.node: it for it in made}
+        return {it.run.node: it for it in made}
 
     @cached_property
     def _spawn(self) -> spawn.Spawn:

@@ -162,7 +162,7 @@ def _plugins(model: Model) -> Iterator[RunningNode]:
     """The nodes of plugins in the simulator."""
     # Of gz the manager is the node of the plugin.
     nodes = [it for it in model.reading.nodes if it.manager != it.full_name]
-    facts = {fact.name: fact for fact, _ in plugin_nodes(model.reading, model.name)}
+    facts = {it.node: it.fact for it in plugin_nodes(model.reading, model.name)}
     for it in nodes:
         home, program = it.namespace or "/", it.section.names[0]
         names = (it.name, home, tuple(rules_of(it)), (), home)
