@@ -274,10 +274,10 @@ def test_nodes_that_hardware_makes(tmp_path: Path) -> None:
     names = {it.name for it in named_ends(table) if it.robot == "left"}
     assert {"/left/service_server/set_load", "/left/action_server/error_recovery"} <= names
     mock = nodes_with(tmp_path, MOCK, "both", MANAGED)
-    assert "service_server" not in {it.node for it in mock.nodes}
+    assert "service_server" not in {it.node for it in mock.runs}
     # Without a controller manager nothing loads the hardware.
     alone = nodes_with(tmp_path, FRANKA, "both")
-    assert "service_server" not in {it.node for it in alone.nodes}
+    assert "service_server" not in {it.node for it in alone.runs}
 
 
 @pytest.mark.parametrize(
