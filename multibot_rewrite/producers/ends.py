@@ -12,7 +12,7 @@ from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,

@@ -3,18 +3,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
+from multibot_rewrite.system.parameters import Value
+from multibot_rewrite.system.records import Place
 
 # A remap rule, as rcl takes it: what it matches, and what comes in its place.
 Rule: TypeAlias = tuple[str, str]
 Rules: TypeAlias = tuple[Rule, ...]
 # The ends of a node, each with its full name.
 Names: TypeAlias = tuple[tuple[Endpoint, str], ...]
+
+
+class Given(NamedTuple):
+    """The value of a parameter, with the type that rcl gives it, and where it is set."""
+
+    value: Value
+    place: Place
+
+
+class GivenNode(NamedTuple):
+    """What a robot's parameter files set for one node.
+
+    ``name`` is its name without the robot, ``known`` the known node that it is (empty for none),
+    ``type`` the plugin type of a controller. ``values`` are its parameters by dotted name, those of
+    wildcard sections with them. ``manager`` is the controller manager that has it as a controller.
+    ``known`` may be a guess by its parameters: ``unknown_type`` is true if its type is not known,
+    ``like`` the known type that may be meant.
+    """
+
+    name: str
+    known: str
+    type: str
+    values: Mapping[str, Given]
+    place: Place
+    manager: str = ""
+    unknown_type: bool = False
+    like: str = ""
 
 
 class Run(NamedTuple):

@@ -21,8 +21,7 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import Robot
 
 

@@ -10,7 +10,6 @@ import yaml
 from launched_nodes import AT, launched, runs, started
 
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.bridges import (
     Row,
     bridge_rows,
@@ -20,6 +19,7 @@ from multibot_rewrite.producers.launch.bridges import (
     told_rows,
 )
 from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.spelling.records import Given
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
 

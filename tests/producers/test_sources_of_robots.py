@@ -21,7 +21,6 @@ from multibot_rewrite.knowledge.records import (
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import bridge_ends, node_ends
 from multibot_rewrite.producers.evidence.hardware import Exported
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.launched import file_of
@@ -53,6 +52,7 @@ from multibot_rewrite.producers.transforms import (
     lookups_of,
     node_edges,
 )
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,

@@ -24,10 +24,10 @@ from multibot_rewrite.producers.ends import (
     either_way,
     plugin_ends,
 )
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import edge
 from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.records import (

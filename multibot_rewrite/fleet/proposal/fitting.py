@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import own_names
 from multibot_rewrite.fleet.proposal.searching import Found, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 _OF_ROBOT = ("frame", "link", "joint")
 # With so many times as many names that the robot has not, another file is no rival.

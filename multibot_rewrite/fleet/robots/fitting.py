@@ -30,8 +30,8 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup, sent_with
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, bridged_topics
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_in, sent_by
 from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES, Edge, edge_of

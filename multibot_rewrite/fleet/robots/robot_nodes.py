@@ -52,11 +52,11 @@ from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, No
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import Edge
 
 WORLD, BRIDGE = "world", "ros_gz_bridge"

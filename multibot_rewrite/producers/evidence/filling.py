@@ -15,7 +15,7 @@ from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
 
 _ID = re.compile(r"<([a-z_ ]+)>")
 # What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.

@@ -20,7 +20,7 @@ from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines, table, table_of, word
 from multibot_rewrite.producers.evidence.claims import claimed
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 COMMAND, STATE = "command", "state"

@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 MANAGER = "controller_manager"
 # So many names in one line.

@@ -11,9 +11,9 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.hardware import exported
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.records import LaunchGraph, RunningNode
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, Interface
 
 _DESCRIPTION = "robot_description"

@@ -23,7 +23,6 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
@@ -33,6 +32,7 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph,
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import Place
 
 # The name of a file for what a launch file gives itself.

@@ -14,9 +14,9 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
 from multibot_rewrite.producers.launch.unknown_modules import ANY_NAME
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 from multibot_rewrite.system.tool_nodes import is_viewer
 

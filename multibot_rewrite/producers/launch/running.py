@@ -31,7 +31,6 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
@@ -55,6 +54,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.system.records import PUBLISHES, TOPIC

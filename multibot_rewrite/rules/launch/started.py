@@ -17,7 +17,6 @@ from multibot_rewrite.base.rosnames import expand, resolve_bound
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import RunningNode
@@ -28,6 +27,7 @@ from multibot_rewrite.rules.launch.declaration import (
     launch_rule,
 )
 from multibot_rewrite.rules.launch.joints import read_by_joints
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import SERVICE
 
 _START = "start ros2_control_node there, or load gz_ros2_control in the description"

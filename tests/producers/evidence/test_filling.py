@@ -15,7 +15,7 @@ from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.nodes import nodes_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 
 def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
