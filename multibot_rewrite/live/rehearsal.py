@@ -21,7 +21,6 @@ from multibot_rewrite.spelling.records import Rules, Run, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
 from multibot_rewrite.spelling.way_checks import (
-    RunningNode,
     bound_to,
     is_stand_in,
     running_nodes,
@@ -91,15 +90,15 @@ def stub_nodes(
         if not end.when:
             names.setdefault(run.full_name, []).append((end, name))
     spaces = {(it.robot, it.node): it.namespace for it in table.runs}
-    for it in running_nodes(table, left_out):
-        node, own = it.node, names.get(it.node.full_name, [])
+    for _, node in running_nodes(table, left_out):
+        own = names.get(node.full_name, [])
         space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
         yield (
             node.robot,
             StubNode(
                 node.code_name,
-                tuple(ros_arguments(space, other, _rules(it, own))),
-                tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
+                tuple(ros_arguments(space, other, _rules(node, own))),
+                tuple(ros_arguments(node.process_namespace, "", node.process_rules)),
                 tuple(dict.fromkeys(_stub_endpoint(*it, types) for it in own)),
                 tuple(edges.get((node.robot, node.node), ())),
             ),
@@ -139,16 +138,15 @@ def _as_started(node: Run, host: str | None) -> tuple[str, str]:
     return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
-def _rules(running: RunningNode, names: Iterable[tuple[Endpoint, str]]) -> Rules:
+def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     """The rules of a node; a controller manager that stands in for its controllers has theirs."""
-    node = running.node
     theirs = {end.name for end, _ in names if is_stand_in(node, end)}
     if not theirs:
-        return running.rules
+        return node.rules
     bare = bound_to(node, ())
     full = {resolve_bound(it, TOPIC, bare) for it in theirs}
-    own = (it for it in running.rules if resolve_bound(it[0], TOPIC, bare) not in full)
-    return (*own, *running.handed_on)
+    own = (it for it in node.rules if resolve_bound(it[0], TOPIC, bare) not in full)
+    return (*own, *node.handed_on)
 
 
 def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> StubEndpoint:

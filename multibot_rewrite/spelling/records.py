@@ -9,8 +9,9 @@ from typing import TypeAlias
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
-from multibot_rewrite.system.parameters import Value
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.parameters import ANY_NAME, Value
+from multibot_rewrite.system.records import NOWHERE, Place
+from multibot_rewrite.system.tool_nodes import is_viewer
 
 # A remap rule, as rcl takes it: what it matches, and what comes in its place.
 Rule: TypeAlias = tuple[str, str]
@@ -46,12 +47,20 @@ class GivenNode(NamedTuple):
     like: str = ""
 
 
+NOTHING: Mapping[str, Given] = {}
+
+
 class Run(NamedTuple):
-    """A node as it runs: its robot (empty for a node of all robots), its name in its stack, its
-    namespace and name, its remap rules in order, and what is known of it.
+    """A node as it runs: its robot (empty for a node of all robots, or where that is not known), its
+    name in its stack or in its code, its namespace and name, its remap rules in the order in which rcl
+    takes them, and what is known of it with its parameters.
 
     ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its whole
-    process. ``names`` are its ends with their names under the rules.
+    process. ``names`` are its ends with their names under the rules. ``process`` tells the processes
+    apart; helper nodes in it have ``process_rules`` and run in ``process_namespace``, controllers that
+    no stack names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
+    files that a parameter names, ``untold`` parameters whose values only a run tells. ``program`` is
+    its package and executable, started with ``arguments`` at ``place``.
     """
 
     robot: str
@@ -63,6 +72,16 @@ class Run(NamedTuple):
     written: bool = False
     process_wide: bool = False
     names: Names = ()
+    process: str = ""
+    process_namespace: str = ""
+    process_rules: Rules = ()
+    handed_on: Rules = ()
+    values: Mapping[str, Given] = NOTHING
+    texts: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
+    program: str = ""
+    arguments: tuple[str, ...] = ()
+    place: Place = NOWHERE
 
     @property
     def full_name(self) -> str:
@@ -78,6 +97,25 @@ class Run(NamedTuple):
     def other_name(self) -> str:
         """Its name if it is another than that in its code, else empty."""
         return self.name if self.name != self.code_name else ""
+
+    @property
+    def has_fact(self) -> bool:
+        """Is known what it does?"""
+        return self.fact != UNKNOWN
+
+    @property
+    def is_known(self) -> bool:
+        """Is known what it does, or that it only looks on?"""
+        return self.has_fact or is_viewer(self.name)
+
+    def value(self, name: str) -> object:
+        """What a parameter is set to; None where nothing sets it."""
+        given = self.values.get(name)
+        return given.value if given else None
+
+    def is_untold(self, name: str) -> bool:
+        """Does only a run tell what a parameter is set to, or if anything sets it?"""
+        return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 
 class Table(NamedTuple):

@@ -18,7 +18,6 @@ from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import (
-    UNKNOWN,
     Endpoint,
     FrameParameter,
     NodeFacts,
@@ -100,9 +99,9 @@ def _without_controllers(run: Run) -> Run:
 def joined(table: Table, other: Table) -> Table:
     """Two tables of different robots as one; nodes for all robots are in it once."""
     # Two descriptions may know other things of a node for all robots.
-    runs: dict[Run, Run] = {}
+    runs: dict[object, Run] = {}
     for it in (*table.runs, *other.runs):
-        runs.setdefault(it._replace(fact=UNKNOWN, names=()), it)
+        runs.setdefault((it.robot, it.node, it.full_name, it.rules), it)
     made = Table(table.layout, tuple(runs.values()), (), table.release)
     # The first robot of all is another one than the first of each.
     each = (it for it in (*table.problems, *other.problems) if it.code != NOT_TAKEN.code)

@@ -31,19 +31,6 @@ from multibot_rewrite.spelling.ways import (
 from multibot_rewrite.system.records import ACTION, PUBLISHES, TOPIC
 
 
-class RunningNode(NamedTuple):
-    """A node as it is started: the rules that it has, and the namespace and rules that its process
-    has, which are those of a helper node in it. ``handed_on`` are the rules of controllers that it
-    loads and that no stack names."""
-
-    node: Run
-    way: str
-    rules: Rules
-    process_namespace: str
-    process_rules: Rules
-    handed_on: Rules = ()
-
-
 class _Standing(NamedTuple):
     """The rules by robot and taker, and those that hold for the whole process of the simulator."""
 
@@ -53,8 +40,9 @@ class _Standing(NamedTuple):
     controllers: ControllerWay
 
 
-def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[RunningNode]:
-    """Every node with its rules; those that stand at one of the ways ``left_out`` are missing."""
+def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
+    """Where the rules of each node stand, and the node with the rules that rcl has for it and its
+    process; those that stand at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(
@@ -65,7 +53,7 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[Runn
     )
     # A component's first delivery is its own, the second that of its helper nodes.
     first = {key_of(it.node): it for it in reversed(meant)}
-    yield from (_running(it, standing) for it in reversed(first.values()))
+    yield from ((it, _running(it, standing)) for it in reversed(first.values()))
 
 
 def _of_simulator(given: Iterable[Delivery]) -> Rules:
@@ -73,7 +61,7 @@ def _of_simulator(given: Iterable[Delivery]) -> Rules:
     return next((it.rules for it in given if it.node.process_wide), ())
 
 
-def _running(it: Delivery, standing: _Standing) -> RunningNode:
+def _running(it: Delivery, standing: _Standing) -> Run:
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
         # A tf listener that its code makes has the arguments of the manager's process alone.
@@ -86,20 +74,24 @@ def _running(it: Delivery, standing: _Standing) -> RunningNode:
             ),
             *own,
         )
-        return RunningNode(node, it.way, rules, node.namespace, process)
+        return _in_process(node, rules, node.namespace, process)
     if it.way == PLUGIN:
         rules, wide = _of_plugin(node, own, standing), standing.world
         given = own if standing.controllers.forwarded else ()
         handed_on = wide if standing.controllers.process_wide else given
-        return RunningNode(node, it.way, rules, node.namespace, wide, handed_on)
+        return _in_process(node, rules, node.namespace, wide)._replace(handed_on=handed_on)
     taker = standing.nodes.get((node.robot, it.taker), node)
     container = standing.nodes.get((node.robot, taker.fact.container))
     if container is None:
-        return RunningNode(node, it.way, own, taker.namespace, own)
+        return _in_process(node, own, taker.namespace, own)
     process = standing.rules.get((node.robot, container.node), ())
     # What a component makes has the arguments of the process as well, the component has not.
     rules = own if it.way == COMPONENT else (*own, *process)
-    return RunningNode(node, it.way, rules, container.namespace, process)
+    return _in_process(node, rules, container.namespace, process)
+
+
+def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
+    return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
 
 
 def _of_plugin(node: Run, own: Rules, standing: _Standing) -> Rules:
@@ -150,14 +142,14 @@ def not_taken(table: Table) -> Iterator[Finding]:
         key = run.robot, run.full_name
         names[key] = (*names.get(key, ()), *own)
     owners = cache(partial(_owners, table))
-    for running in _worth_a_look(some):
-        if running.node.process_wide or running.rules != running.node.rules:
-            own = names.get((running.node.robot, running.node.full_name), ())
-            if running.node.process_wide and not of_manager:
+    for it, running in _worth_a_look(some):
+        if running.process_wide or running.rules != it.node.rules:
+            own = names.get((running.robot, running.full_name), ())
+            if running.process_wide and not of_manager:
                 own = tuple(it for it in own if it[0].role != PUBLISHES)
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
-                yield _finding(running, list(wrong), table.release)
+                yield _finding(it, list(wrong), table.release)
 
 
 def _robots_worth_a_look(table: Table) -> set[str]:
@@ -184,42 +176,41 @@ def _owners(table: Table) -> dict[str, set[str]]:
     return owners
 
 
-def _worth_a_look(table: Table) -> Iterator[RunningNode]:
+def _worth_a_look(table: Table) -> Iterator[tuple[Delivery, Run]]:
     """What descriptions decide, of all robots; of the stack's nodes, which all have alike, two."""
     seen: Counter[str] = Counter()
-    for it in running_nodes(table):
+    for it, running in running_nodes(table):
         seen[it.node.node] += 1
         if it.node.fact.plugin or it.node.fact.is_controller or seen[it.node.node] <= ENOUGH:
-            yield it
+            yield it, running
 
 
 def _wrong(
     names: Names,
-    running: RunningNode,
+    running: Run,
     owners: Callable[[], Mapping[str, set[str]]],
 ) -> Iterator[str]:
     """Those called otherwise than the table says: as in the code, or like something of a robot."""
-    node = running.node
-    own, theirs, bare = (bound_to(node, it) for it in (running.rules, running.handed_on, ()))
+    own, theirs, bare = (bound_to(running, it) for it in (running.rules, running.handed_on, ()))
     for end, name in names:
         kind = TOPIC if end.kind == ACTION else end.kind
-        given = theirs if is_stand_in(node, end) else own
+        given = theirs if is_stand_in(running, end) else own
         found = resolve_bound(end.name, kind, given)
         if found == name:
             continue
         is_bare = found == resolve_bound(end.name, kind, bare)
-        if is_bare or node.robot not in owners().get(found, {node.robot}):
+        if is_bare or running.robot not in owners().get(found, {running.robot}):
             yield end.name
 
 
-def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
-    node, names = running.node, ", ".join(kept)
+def _finding(it: Delivery, kept: list[str], release: str) -> Finding:
+    node, names = it.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
     hint = f"give its rules to the process of {node.fact.host or node.name}"
     if node.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
         hint = "name their stack, and start each with its spawner's --controller-ros-args"
-    elif running.way == PLUGIN:
+    elif it.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
         if node.namespace != "/":

@@ -53,12 +53,12 @@ def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, s
 def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
     """With the rules that it has in its process, as rcl reads them."""
     table = made(release, stack)
-    running = {it.node.node: it for it in running_nodes(table) if it.node.robot == "robot1"}
+    running = {it.node: it for _, it in running_nodes(table) if it.robot == "robot1"}
 
     def name(node: str, topic: str, kind: str = "topic") -> str:
         it = running[node]
         rules = (parse_remap(f"{source}:={target}") for source, target in it.rules)
-        bound = bind(it.node.name, it.node.namespace, filter(None, rules))
+        bound = bind(it.name, it.namespace, filter(None, rules))
         return resolve_bound(topic, kind, bound)
 
     behaviors, costmap = "behavior_server", "local_costmap/local_costmap"

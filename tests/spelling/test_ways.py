@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.way_checks import RunningNode, is_stand_in, running_nodes
+from multibot_rewrite.spelling.way_checks import is_stand_in, running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -48,9 +48,9 @@ def stands(made: Table, node: str) -> list[tuple[str, str, tuple[tuple[str, str]
     return [(it.way, it.taker, it.rules) for it in found]
 
 
-def running(made: Table, node: str, *left_out: str) -> RunningNode:
-    found = running_nodes(made, left_out)
-    return next(it for it in found if (it.node.robot, it.node.node) == ("robot2", node))
+def running(made: Table, node: str, *left_out: str) -> Run:
+    found = (it for _, it in running_nodes(made, left_out))
+    return next(it for it in found if (it.robot, it.node) == ("robot2", node))
 
 
 def test_each_release_has_one_way_for_controllers() -> None:

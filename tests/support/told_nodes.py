@@ -63,8 +63,8 @@ def _known(fleet: LoadedFleet) -> Iterator[tuple[str, StubNode]]:
     """All nodes of the plan by full name."""
     table = fleet.planned.table
     made = stub_nodes(table, fleet.planned.edges)
-    for it, (_, stub) in zip(running_nodes(table, ()), made, strict=True):
-        yield it.node.full_name, stub
+    for (_, it), (_, stub) in zip(running_nodes(table, ()), made, strict=True):
+        yield it.full_name, stub
 
 
 def _process(

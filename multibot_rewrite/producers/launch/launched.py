@@ -20,10 +20,11 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_frames
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place, System
 
 _WORLDS = (".sdf", ".world", ".model")
@@ -57,7 +58,7 @@ class Launched(NamedTuple):
     release."""
 
     graph: LaunchGraph
-    nodes: tuple[RunningNode, ...]
+    nodes: tuple[Run, ...]
     spawned: tuple[Spawned, ...]
     models: Models
     simulated: tuple[InSimulator, ...]

@@ -12,12 +12,12 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.launch.declaration import (
     at,
     launch_rule,
 )
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 
@@ -27,7 +27,7 @@ class _Row(NamedTuple):
     ros: str
     gz: str
     inwards: bool
-    node: RunningNode
+    node: Run
 
 
 def _rows(launched: Launched) -> Iterator[_Row]:
