@@ -13,7 +13,7 @@ from typing import TypeAlias
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
@@ -23,6 +23,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
+from multibot_rewrite.spelling.of_runs import with_names
 from multibot_rewrite.spelling.records import Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
@@ -32,7 +33,6 @@ from multibot_rewrite.spelling.table_checks import (
 )
 from multibot_rewrite.spelling.targets import expanded, placed, target_of
 from multibot_rewrite.spelling.way_checks import NOT_TAKEN, is_stand_in, not_taken
-from multibot_rewrite.system.records import ACTION, TOPIC
 
 NOTHING: Mapping[str, Sequence[Run]] = {}
 # The full name of a robot's node, by its name in the stack.
@@ -220,23 +220,6 @@ def _below(name: str, naming: Naming, others: Places) -> str:
         return ""
     relative = not name.startswith("/") and place.count("/") == 1
     return f"{place.lstrip('/') if relative else place}/{rest}"
-
-
-def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
-    """The rules as rcl reads them."""
-    found = (parse_remap(f"{source}:={target}") for source, target in rules)
-    return tuple(rule for rule in found if rule is not None)
-
-
-def with_names(run: Run) -> Run:
-    """The run with the names of its ends."""
-    bound = bind(run.name, run.namespace, parsed(run.rules))
-    bare = bind(run.name, run.namespace, ())
-    names = []
-    for end in (it for it in run.fact.endpoints if "<" not in it.name):
-        kind = TOPIC if end.kind == ACTION else end.kind
-        names.append((end, resolve_bound(end.name, kind, bare if end.fixed else bound)))
-    return run._replace(names=tuple(names))
 
 
 def plugin_nodes(reading: Reading, robot: str) -> Iterator[Run]:

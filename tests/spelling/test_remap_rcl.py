@@ -13,6 +13,7 @@ from rcl_names import INSTALL, ask
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
@@ -68,7 +69,7 @@ def test_every_name_leads_where_the_table_says(table: Table) -> None:
             for name in named_ends(table)
             if (name.robot, name.node) == (node.robot, full) and not name.endpoint.fixed
         ]
-        asked = [(kind_of(name.endpoint.kind), name.endpoint.name) for name in names]
+        asked = [(kind_of(it.endpoint.kind), in_code(it.endpoint, node.namespace)) for it in names]
         cases.append(
             {
                 "ask": "started",
@@ -83,6 +84,13 @@ def test_every_name_leads_where_the_table_says(table: Table) -> None:
         wanted.append([full, *(name.name for name in names)])
     assert len(cases) > 30
     assert ask(cases) == wanted
+
+
+def in_code(end: Endpoint, namespace: str) -> str:
+    """What the node asks for: a costmap's filter joins its topic with the namespace above
+    (nav2_costmap_2d lyrical layer.cpp joinWithParentNamespace)."""
+    above = namespace.rpartition("/")[0]
+    return f"{above}/{end.name.lstrip('/')}" if end.above else end.name
 
 
 def kind_of(kind: str) -> str:

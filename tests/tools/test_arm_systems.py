@@ -28,8 +28,8 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.table import parsed
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

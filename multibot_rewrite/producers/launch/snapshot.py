@@ -14,12 +14,10 @@ from contextlib import suppress
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
+from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
-from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.declared import is_known
-from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
@@ -54,12 +52,12 @@ from multibot_rewrite.producers.launch.running import (
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
 from multibot_rewrite.producers.transforms import lookups_of
+from multibot_rewrite.spelling.of_runs import ends_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
-    ACTION,
     PUBLISHES,
-    SERVICE,
+    RUNS,
     SIM_TIME,
     SUBSCRIBES,
     TOPIC,
@@ -250,49 +248,14 @@ def _tf_topics(it: Run) -> Iterator[str]:
 def _part(it: Run, inside: Sent) -> _Part:
     bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
-    helper = bound_of(it.name, it.process_namespace, it.process_rules)
-    own = _endpoints(it, name, bound, helper)
-    ends = [*own, *_bridged(it, name, bound)]
+    bound_of(it.name, it.process_namespace, it.process_rules)
+    own = () if is_bridge(it) else ends_of(with_names(it))
+    ends = [*(end for end in own if end.sure == RUNS), *_bridged(it, name, bound)]
     if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
         name, tuple(dict.fromkeys(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
     )
-
-
-def _endpoints(it: Run, name: str, bound: BoundNode, helper: BoundNode) -> Iterator[End]:
-    for end in it.fact.endpoints if not is_bridge(it) else ():
-        if not end.when and end.name and "<" not in end.name:
-            full = _full(it, end, helper if end.helper else bound)
-            type_ = chosen_type(end.types, it.value) or end.type
-            who = f"{name}{end.by}"
-            yield End(
-                end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
-            )
-
-
-def _full(it: Run, end: Endpoint, bound: BoundNode) -> str:
-    """The name that an endpoint has; that of one beside another is made of the other's
-    (image_transport camera_common.cpp getCameraInfoTopic)."""
-    if not end.beside:
-        return _resolved(end._replace(name=_below_namespace_above(it, end)), bound)
-    above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
-    return f"{above}/{end.name.rpartition('/')[2]}"
-
-
-def _below_namespace_above(it: Run, end: Endpoint) -> str:
-    """The name of an endpoint that its node resolves in the namespace above its own, else its name."""
-    if not end.above or str(it.value(end.parameter) or "").startswith("/"):
-        return end.name
-    return expand(end.name.lstrip("/"), it.namespace.rpartition("/")[0] or "/", "")
-
-
-def _resolved(end: Endpoint, bound: BoundNode) -> str:
-    """An action is services and topics with names of their own; a rule for its name reaches none."""
-    if end.kind == ACTION:
-        part = resolve_bound(f"{end.name}/_action/send_goal", SERVICE, bound)
-        return part.removesuffix("/_action/send_goal")
-    return resolve_bound(end.name, end.kind, bound)
 
 
 def _bridged(it: Run, name: str, bound: BoundNode) -> Iterator[End]:
