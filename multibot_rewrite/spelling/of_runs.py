@@ -13,7 +13,6 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
-from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.records import Rule, Run
 from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, End, Sure
@@ -74,7 +73,7 @@ def ends_of(run: Run) -> Iterator[End]:
             end.kind,
             end.role,
             name,
-            chosen_type(end.types, run.value) or end.type,
+            end.type,
             "",
             f"{run.full_name}{end.by}",
             None,

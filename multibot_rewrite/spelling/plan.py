@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.spelling.of_runs import ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, Sure, System, place_of
@@ -192,12 +193,10 @@ def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, .
 
 def _planned(table: Table) -> Iterator[End]:
     """The ends that do not depend on parameters."""
-    for run, end, name in table.ends:
-        if end.when or (end.helper and not end.by):
-            continue
-        if end.role and name not in SENT_BY_EVERY_NODE:
-            own = (f"{run.full_name}{end.by}", end.kind, end.role, name)
-            yield planned_end(*own, end.type, end.name, end.also)
+    for run in table.runs:
+        for (fact, _), end in zip(run.names, ends_of(run), strict=True):
+            if (fact.by or not fact.helper) and end.sure == RUNS and end.role:
+                yield from [end] * (end.name not in SENT_BY_EVERY_NODE)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:
