@@ -73,3 +73,30 @@ def test_a_row_may_bring_the_frames_of_the_simulator_elsewhere(layout: str, name
         if layout != "frames-per-robot":
             (line,) = (it for it in said.splitlines() if "MG406" in it)
             assert "warning" in line and "ros_gz_bridge" in line and "bring it to tf, too" in line
+
+
+CAMERA = """<gazebo reference="lidar_link"><sensor name="cam" type="camera"><topic>camera/image</topic>
+<camera><camera_info_topic>camera/camera_info</camera_info_topic></camera>
+<gz_frame_id>lidar_link</gz_frame_id></sensor></gazebo></robot>"""
+SEEN = """\
+perception:
+  ros__parameters:
+    image_topic: camera/image
+    topics: [camera/image, /{}/image]
+"""
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_robot_may_be_called_as_a_part_of_all(layout: str) -> None:
+    """camera/image is the topic of a camera, also of the robot that is called camera. A word that is no
+    part of a robot still tells of one."""
+    robots = [{"name": "camera"}, {"name": "rex", "pose": {"x": 3}}]
+    data = {"layout": layout, "description": "rover.urdf", "robots": robots}
+    data["companions"] = {"params": ["seen.yaml"]}
+    files = {"rover.urdf": ROVER.replace("</robot>", CAMERA)}
+    said, _ = built(data, {**files, "seen.yaml": SEEN.format("camera")})
+    assert "MB863" not in said
+    Path("seen.yaml").write_text(SEEN.format("rex"))
+    code, said = run("build", "fleet.yaml", "-o", "other")
+    assert code == 1
+    assert "seen.yaml:4:" in said and "error: MB863" in said

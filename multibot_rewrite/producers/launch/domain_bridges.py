@@ -61,7 +61,8 @@ def _ends(it: RunningNode, notes: list[LaunchNote]) -> Iterator[End]:
 
 def _words(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
     """Split the arguments of a bridge: the domains that options give, as a file has them; the files."""
-    options, paths, left = {}, [], list(words)
+    options: dict[str, object] = {}
+    paths, left = [], list(words)
     while left:
         word = left.pop(0)
         if not word.startswith("-"):
