@@ -100,3 +100,27 @@ def test_a_robot_may_be_called_as_a_part_of_all(layout: str) -> None:
     code, said = run("build", "fleet.yaml", "-o", "other")
     assert code == 1
     assert "seen.yaml:4:" in said and "error: MB863" in said
+
+
+JOINT_STATES = """<gazebo><plugin name="jsp" filename="libgazebo_ros_joint_state_publisher.so">
+<ros>{}</ros><joint_name>left_wheel_joint</joint_name></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize(
+    "rule",
+    [
+        "<remapping>__node:=other</remapping>",
+        "<remapping>__ns:=/below</remapping>",
+        "<argument>__node:=other</argument>",
+    ],
+)
+def test_a_plugin_of_gazebo_classic_may_name_its_node_by_a_rule(rule: str, layout: str) -> None:
+    """rcl takes __node and __ns before any other rule (rcl node.c, rcl_remap_node_name); gazebo_ros
+    node.cpp hands both elements on as arguments."""
+    text = KINDS["classic rover"].text.replace("ROBOT", "rover")
+    robots = [{"name": "a"}, {"name": "b", "pose": {"x": 3}}]
+    data = {"distro": "humble", "layout": layout, "description": "rover.urdf", "robots": robots}
+    files = {"rover.urdf": text.replace("</robot>", JOINT_STATES.format(rule))}
+    for said in built(data, files):
+        assert not {code for code in ("MR103", "MG101", "MG108") if code in said}, said

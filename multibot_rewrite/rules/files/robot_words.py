@@ -106,7 +106,7 @@ def _at_an_end(token: str, words: Iterable[str]) -> str:
 def _tells(word: str, name: str) -> bool:
     """Does a robot's word that is a segment of a name tell of the robot? A word for parts of any robot
     does where it is there twice: camera/image is a topic of every camera."""
-    return word not in PARTS or f"{word}/{word}" in name
+    return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 
 def _glued(token: str, words: Iterable[str], declared: frozenset[str]) -> str:
