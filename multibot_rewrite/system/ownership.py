@@ -13,6 +13,7 @@ from multibot_rewrite.system.records import System
 # What may separate a robot's name from the rest of a segment.
 SEPARATORS = "_-."
 NO_TAGS: Mapping[str, str] = {}
+NO_WORDS: frozenset[str] = frozenset()
 
 
 class NameOwnership(NamedTuple):
@@ -35,7 +36,7 @@ class NameOwnership(NamedTuple):
     robot_is_last: bool
     tags: Mapping[str, str] = NO_TAGS
     levels: int = 1
-    plain_names: frozenset[str] = frozenset()
+    plain_names: frozenset[str] = NO_WORDS
 
     def robot(self, name: str) -> str:
         """The robot that a name belongs to, or an empty string."""
@@ -268,12 +269,11 @@ def frame_ownership(plan: System) -> NameOwnership:
     # lidar_link of a robot link has no robot's name where others of its frames have none.
     last = _is_last(it for it in tagged if is_glued or it[1] in it[0].split("/"))
     draft = NameOwnership(_of_one_robot((*declared, *others)), {}, robots, frozenset(), last, tags)
-    plain = {draft.without_robot(*pair) for pair in declared}
+    plain = frozenset(draft.without_robot(*pair) for pair in declared)
+    any_rest = is_glued or not plain
     return draft._replace(
         ambiguous_words=frozenset(robots.keys() & _words(plain)),
-        plain_names=frozenset()
-        if is_glued or not plain
-        else plain.union(USUAL_FRAMES, SENT_FRAMES),
+        plain_names=NO_WORDS if any_rest else plain.union(USUAL_FRAMES, SENT_FRAMES),
     )
 
 

@@ -591,12 +591,12 @@ def test_how_sure_it_is_that_a_launch_file_leaves_a_tree_in_pieces(
     _, graph = read_example(lines)
     seen = index(graph, whose_by_guess(guess_robots(graph)))
     found = Finding("MG406", "error", "m", names=("odom", "base_link"))
-    made = _spawned(spawned, known)
+    made = _launch_of(spawned, known)
     assert as_sure(found, made, seen).level == becomes
     assert as_sure(found._replace(level="note"), made, seen).level == "note"
 
 
-def _spawned(text: str, known: Knowledge) -> Launched:
+def _launch_of(text: str, known: Knowledge) -> Launched:
     spawn = started("ros_gz_sim", "create", "create", arguments=("-name", "r", "-string", text))
     return launched(LaunchGraph((spawn,) if text else (), ()), known)
 
@@ -617,7 +617,7 @@ def test_a_velocity_behind_the_name_of_its_robot_moves_it_as_well(known: Knowled
     )
     seen = index(graph, whose_by_plan(plan))
     found = Finding("MG406", "error", "m", robot="r1", names=("odom/r1", "base_link/r1"))
-    made = _spawned(MOVED.format(GZ_DRIVE.format("/r1")), known)
+    made = _launch_of(MOVED.format(GZ_DRIVE.format("/r1")), known)
     assert as_sure(found, made, seen).level == "error"
 
 
