@@ -559,7 +559,7 @@ CLASSIC_DRIVE = (
 )
 JOINTS = """<gazebo><plugin filename="gz-sim-joint-state-publisher-system"
 name="gz::sim::systems::JointStatePublisher"/></gazebo>"""
-UNKNOWN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
+ODD_PLUGIN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
 
 
 @pytest.mark.parametrize(
@@ -572,7 +572,7 @@ UNKNOWN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
         (LOOSE + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
         # A sensor or what tells the joints moves nothing, and what is not known may send the odometry.
         (LOOSE + BODY, MOVED.format(JOINTS), "warning"),
-        (LOOSE + BODY, MOVED.format(UNKNOWN), "warning"),
+        (LOOSE + BODY, MOVED.format(ODD_PLUGIN), "warning"),
         # Somebody may bring it to tf: a filter, a relay.
         (
             LOOSE + BODY + SENT.format("odom -> base_link").replace("/tf", "/sim/tf"),
