@@ -684,6 +684,19 @@ CAUSES = {
         ),
         lambda fleet: fleet.data.get("use_sim_time") is True and not simulated(fleet),
     ),
+    # gazebo_ros node.hpp: all nodes of gzserver are in the context of its process.
+    "a plugin of Gazebo Classic has another domain": Cause(
+        lambda data, _: (
+            data.update(
+                domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])},
+                distro="humble",
+            ),
+            _first(data).update(description="classic_rover.urdf", simulator="gazebo"),
+        ),
+        lambda fleet: (
+            "domains" in fleet.data and any(kind == "classic rover" for _, kind in simulated(fleet))
+        ),
+    ),
     "a manager in a simulator has another domain": Cause(
         lambda data, _: (
             data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),

@@ -13,7 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
-from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
+from multibot_rewrite.rules.check import ABSENCE, absences, doubts
+from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.pair import demands, endpoints, frame_names, nodes
 from multibot_rewrite.rules.system import (
@@ -66,7 +67,7 @@ def not_as_planned(
     nodes that the launch file is to start. What the build has ``told`` is said as it was told. Robots
     that are ``real`` have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
-    found = check(planned, seen._replace(environment=Environment()))
+    found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
         return
     by_plan = index(planned, whose_by_plan(planned))

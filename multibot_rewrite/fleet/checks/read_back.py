@@ -94,10 +94,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         found = launched(graph, _known(plan))
         seen = found.system
         real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
-        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings, real)]
+        whole, started = found.with_bridged, made.starts.nodes
+        wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        started = made.starts.nodes
         by_plan = whose_by_plan(made.planned)
         of_launch = _of_launch(found, by_plan, codes, _given_elsewhere(made.planned, started))
         alone = [

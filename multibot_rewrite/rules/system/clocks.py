@@ -15,7 +15,7 @@ from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, nodes_of
 from multibot_rewrite.system.records import TOPIC, without_clock
-from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
 _TIMED = (
@@ -56,7 +56,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     ends = seen.by_name.get((TOPIC, CLOCK))
     found: dict[str, list[str]] = defaultdict(list)
     for node in nodes_of(ends.subscribers) if ends else ():
-        if not is_viewer(node) and not is_tool(node):
+        if not is_viewer(node) and not seen.is_tool(node):
             found[seen.robot(node)].append(node)
     return found
 

@@ -59,7 +59,7 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         found = next(iter(roots))
         robot = robot or only(robots_of(seen, tree.senders))
         message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
-        cause = no_odometry(odom, found)
+        cause = no_odometry(seen, robot, odom, found)
         yield tf_tree_in_pieces.finding(message, cause, robot=robot, names=(odom, own[0], found))
 
 
@@ -183,9 +183,18 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def no_odometry(odom: str, root: str) -> str:
-    """The cause of a tree in pieces: nothing is sent below an odometry frame."""
+def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
+    """The cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
+    if other := _sent_elsewhere(seen, robot, odom, root):
+        return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
+
+
+def _sent_elsewhere(seen: Index, robot: str, odom: str, root: str) -> Edge | None:
+    """Return the transform that a tree lacks where it is on another topic of the robot."""
+    sent = (it for it in seen.system.edges if (it.parent, it.child) == (odom, root))
+    own = (it for it in sent if it.sure != OFF and it.publishers)
+    return next((it for it in own if seen.robot(it.topic) == robot), None)
 
 
 def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
@@ -198,11 +207,14 @@ def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
-    by a plugin in a simulator a driver that is started apart may send the odometry; pieces without the
-    usual frames may be meant."""
-    odometry = any({*found.names} & {*it} for it in loose_odometry(seen))
-    alone = (*told_not_to(seen), *_by_frames(seen))
-    return (moved or not odometry) and any(it.robot == found.robot for it in alone)
+    by a plugin in a simulator a driver that is started apart may send the odometry, and what is sent on
+    another topic of the robot somebody may bring to its tree; pieces without the usual frames may be
+    meant."""
+    loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
+    lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
+    if (loose and not moved) or any(_sent_elsewhere(seen, found.robot, *it) for it in lacking):
+        return False
+    return any(it.robot == found.robot for it in (*told_not_to(seen), *_by_frames(seen)))
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:
