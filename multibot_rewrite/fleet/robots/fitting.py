@@ -20,7 +20,7 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
+from multibot_rewrite.knowledge.conditions import chosen_type, holds, parse_condition, verdict
 from multibot_rewrite.knowledge.records import (
     MANAGER,
     MOVE_GROUP,
@@ -155,7 +155,7 @@ def fitted(
     those that the build starts: what no file sets of them is the build's to set, too."""
     offered = _with_controllers(has.offered, nodes)
     settled = [
-        _settled(_rooted(_as_listed(_hearing(it, nodes, offered), spec), has.root))
+        _settled(_rooted(_as_listed(_hearing(_by_sensor(it, offered), nodes, offered), spec), has.root))
         if it.name in free
         else it._replace(usual=())
         for it in nodes
@@ -204,6 +204,22 @@ def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
             if it.ros_type in SENSED and it.direction == DIRECTIONS["in"] and not it.is_free:
                 found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
     return found
+
+
+def _by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
+    """Return the node with the parameters by which it uses a sensor that its robot has one of."""
+    chosen = next((it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1), None)
+    if chosen is None:
+        return node
+    changed = node._replace(usual=(*node.usual, *chosen))
+    value_of = lookup(changed, _values(changed))
+    ends = (
+        it._replace(when="" if holds(it.when, value_of) else it.when)
+        for it in node.endpoints
+        if (not it.when or verdict(it.when, value_of) is not False)
+        and holds(it.condition, value_of)
+    )
+    return changed._replace(endpoints=tuple(ends))
 
 
 def _hearing(
