@@ -229,9 +229,7 @@ def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
             "process_rules": [f"{old}:={new}" for old, new in it.rules],
             "node_rules": [],
             "use_process_rules": True,
-            "names": [
-                asked(it, end) for end in it.ends if "<" not in end.name
-            ],
+            "names": [asked(it, end) for end in it.ends if "<" not in end.name],
         }
         for it in nodes
     ]

@@ -96,9 +96,7 @@ SIMPLE = "moveit_simple_controller_manager"
 CAMERAS = {
     "sensor_data": ("sensor_data",),
     "rgbd": ("rgbd_image",),
-    "stereo": (
-        *("left/image_rect", "right/image_rect", "left/camera_info", "right/camera_info"),
-    ),
+    "stereo": (*("left/image_rect", "right/image_rect", "left/camera_info", "right/camera_info"),),
     "depth": ("rgb/image", "depth/image", "rgb/camera_info"),
     "rgb": ("rgb/image", "rgb/camera_info"),
 }
@@ -151,10 +149,7 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
 def synchronised(values: Mapping[str, Any]) -> set[str]:
     """The topics that rtabmap waits for before it does anything, as its parameters say: by default a
     colour and a depth image with odometry."""
-    on = {"depth", "rgb", "odom"}
-    for it in (*CAMERAS, *SCANS, *BESIDE):
-        given = values.get(f"subscribe_{it}")
-        on = on | {it} if given is True else on - {it} if given is False else on
+    on = subscribed(values)
     camera = next((it for it in CAMERAS if it in on), "")
     of_camera = CAMERAS.get(camera, ())
     if camera == "rgbd" and values.get("rgbd_cameras") == 0:
@@ -163,6 +158,23 @@ def synchronised(values: Mapping[str, Any]) -> set[str]:
     # It knows the odometry from tf where it has the name of its frame.
     without = {"odom"} if values.get("odom_frame_id") else set()
     return {*of_camera, *scans, *({*BESIDE} & (on - without))}
+
+
+def subscribed(values: Mapping[str, Any]) -> set[str]:
+    """What its parameters ask rtabmap to subscribe to, whether or not that counts."""
+    on = {"depth", "rgb", "odom"}
+    for it in (*CAMERAS, *SCANS, *BESIDE):
+        given = values.get(f"subscribe_{it}")
+        on = on | {it} if given is True else on - {it} if given is False else on
+    return on
+
+
+def is_exact(values: Mapping[str, Any]) -> bool:
+    """Whether rtabmap takes messages of one and the same stamp alone: by default of scans without a
+    camera, and of stereo cameras."""
+    given, on = values.get("approx_sync"), subscribed(values)
+    by_default = "stereo" in on or (on.isdisjoint(CAMERAS) and not on.isdisjoint(SCANS))
+    return by_default if given is None else given is False
 
 
 def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:

@@ -67,8 +67,7 @@ ARMS = {
     "system": Arm(
         "robot_state",
         "gazebo",
-        plugins=SYSTEMS
-        + '<plugin filename="gz-sim-joint-state-publisher-system" '
+        plugins=SYSTEMS + '<plugin filename="gz-sim-joint-state-publisher-system" '
         'name="gz::sim::systems::JointStatePublisher"/>',
     ),
 }

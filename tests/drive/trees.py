@@ -8,12 +8,14 @@ from typing import Any, NamedTuple
 
 TF = "tf2_msgs/msg/TFMessage"
 ODOMETRY = "nav_msgs/msg/Odometry"
+# The frame of the odometry that a node hears, beside its parameters.
+HEARD = "frame of odometry"
 # Parent and child by parameter, and the parameter that switches it off (amcl_node.cpp,
 # slam_toolbox_common.cpp, rtabmap_slam/src/CoreWrapper.cpp).
 SENT = {
     "amcl": ("global_frame_id", "odom_frame_id", "tf_broadcast"),
     "slam_toolbox": ("map_frame", "odom_frame", ""),
-    "rtabmap": ("map_frame_id", "odom_frame_id", "publish_tf"),
+    "rtabmap": ("map_frame_id", HEARD, "publish_tf"),
 }
 DEFAULTS = {
     "slam_toolbox": {"map_frame": "map", "odom_frame": "odom", "base_frame": "base_footprint"},
@@ -31,7 +33,7 @@ LOOKED_UP = {
     "local_costmap": ("global_frame", "robot_base_frame"),
     "global_costmap": ("global_frame", "robot_base_frame"),
     "ekf_filter_node": ("base_link_frame", "odom_frame"),
-    "rtabmap": ("frame_id", "odom_frame_id"),
+    "rtabmap": ("frame_id", HEARD),
 }
 
 
@@ -61,11 +63,12 @@ def moving_of(topic: str) -> str:
 def with_odometry(node: Any, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Any:
     """The node with the frame of the odometry that it hears: what places the map against it and has no
     name for it takes that (rtabmap_slam/src/CoreWrapper.cpp, odomFrameId_)."""
-    if node.what != "rtabmap" or node.values.get("odom_frame_id"):
+    if node.what != "rtabmap":
         return node
     heard = [it.name for it in ends if it[1:3] == (node.fqn, "subscribes") and it.type == ODOMETRY]
-    found = next((it for topic in heard for it in begun(topic, nodes, ends, gz, bridges)), "")
-    return node._replace(values={**node.values, "odom_frame_id": found})
+    found = [it for topic in heard for it in begun(topic, nodes, ends, gz, bridges)]
+    given = node.values.get("odom_frame_id")
+    return node._replace(values={**node.values, HEARD: given or next(iter(found), "")})
 
 
 def begun(topic: str, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Iterator[str]:

@@ -14,7 +14,18 @@ import programs
 from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
-from trees import LOOKED_UP, ODOMETRY, TF, Edge, connected, is_static, moving_of, static_of, whole
+from trees import (
+    LOOKED_UP,
+    ODOMETRY,
+    SENT,
+    TF,
+    Edge,
+    connected,
+    is_static,
+    moving_of,
+    static_of,
+    whole,
+)
 from twins import Fault, models_twice, sent_twice, topics_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -245,8 +256,11 @@ def is_posed(fleet: Fleet, robot: str) -> bool:
 def waits(fleet: Fleet, robot: str) -> Iterator[Fault]:
     """What rtabmap synchronises, and of which a part never comes: it drops the rest, too. Where its
     robot has nothing of the kind, no other setting would do."""
-    for node in (it.fqn for it in fleet.nodes if it.robot == robot and it.what == "rtabmap"):
-        ends = [it for it in fleet.ends if it.node == node]
+    for it in (it for it in fleet.nodes if it.robot == robot and it.what == "rtabmap"):
+        node, ends = it.fqn, [end for end in fleet.ends if end.node == it.fqn]
+        if programs.is_exact(it.values) and len(programs.synchronised(it.values)) > 1:
+            why = f"{node} takes a scan and odometry of one stamp alone: approx_sync is not true"
+            yield Fault(robot, "sees", why)
         had = {name for kind in SYNCHRONISED for name in offered(fleet, robot, kind)}
         had -= {it.name for it in ends if it.role == "publishes"}
         parts = {it for it in ends if it.role == "subscribes" and it.sure}
@@ -365,6 +379,8 @@ def unknown_frames(
     fleet: Fleet, robot: str, node: Node, topic: str, near: list[Edge]
 ) -> Iterator[Fault]:
     names = [node.values.get(key) for key in LOOKED_UP.get(node.what, ())]
+    # What places the map against odometry looks that up where others send it.
+    near = [it for it in near if node.what not in SENT or it.node != node.fqn]
     own = {it.child for it in near if it.robot == robot or it.robot == fleet.models.get(robot)}
     for name in dict.fromkeys(str(it) for it in names if it):
         if not any(connected(near, name, link) for link in own):

@@ -65,6 +65,13 @@ OF_DESCRIPTIONS = {
 }
 
 
+# A description and a stack -> the codes of warnings about what the description lacks.
+LACKING = {
+    # Its one sensor is a colour camera: no scanner, no depth.
+    ("sdf", "rtabmap"): {"MG303"},
+}
+
+
 class Cell(NamedTuple):
     """Two robots of a description with one stack."""
 
@@ -183,7 +190,7 @@ def faults(cell: Cell, folder: Path) -> list[str]:
     wrong = [str(it) for it in found if it.level == ERROR and it.code not in known]
     wrong += [f"no {code}" for code in sorted(wanted - errors)]
     if not wanted:
-        own = OF_DESCRIPTIONS[cell.robot]
+        own = OF_DESCRIPTIONS[cell.robot] | LACKING.get(cell[:2], set())
         wrong += [str(it) for it in found if it.level != ERROR and it.code not in own]
     return wrong
 

@@ -64,9 +64,16 @@ def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
         if len(frames) == 2:
             parent, child = (it.removeprefix(MODEL) for it in frames)
             found.append(edge_of(parent, child))
-    reading = read(source.source, source.file, member.vocabulary)
-    nodes = (node for node, _ in plugin_nodes(reading, ""))
-    return (*found, *(it for node in nodes for it in sent_by(node, "")))
+    return (*found, *(it for node in _plugins(member) for it in sent_by(node, "")))
+
+
+def _plugins(member: Member) -> Iterator[NodeFacts]:
+    """Yield the nodes that plugins of the description are, with the names that their own rules give."""
+    reading = read(member.source.source, member.source.file, member.vocabulary)
+    for node, table in plugin_nodes(reading, ""):
+        names = {it.source: it.target for it in table.rules}
+        ends = (it._replace(remapped=names.get(it.name, "")) for it in node.endpoints)
+        yield node._replace(endpoints=tuple(ends))
 
 
 def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
@@ -155,7 +162,9 @@ def fitted(
     those that the build starts: what no file sets of them is the build's to set, too."""
     offered = _with_controllers(has.offered, nodes)
     settled = [
-        _settled(_rooted(_as_listed(_hearing(_by_sensor(it, offered), nodes, offered), spec), has.root))
+        _settled(
+            _rooted(_as_listed(_hearing(_by_sensor(it, offered), nodes, offered), spec), has.root)
+        )
         if it.name in free
         else it._replace(usual=())
         for it in nodes
@@ -203,6 +212,10 @@ def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
             # One that the description does not name comes where it is read.
             if it.ros_type in SENSED and it.direction == DIRECTIONS["in"] and not it.is_free:
                 found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
+        for node in _plugins(member):
+            for end in node.endpoints:
+                if end.role == PUBLISHES and end.type in SENSED and not end.when:
+                    found.setdefault(end.type, []).append(_topic(node, end))
     return found
 
 
