@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two arms of one description move by their own trajectories, whatever moves their joints: what a client
-sends to a controller arrives there and at no other arm's, and joint states are those of its own arm."""
+"""Two arms of one description move by their own trajectories, whatever moves their joints: what a
+client sends to a controller arrives there and at no other arm's, and joint states are those of its own
+arm."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rtabmap waits for, as setupCallbacks of rtabmap_sync's CommonDataSubscriber.cpp has it, and what a
-robot does whose rtabmap waits in vain."""
+"""What rtabmap waits for, as setupCallbacks of rtabmap_sync's CommonDataSubscriber.cpp has it, and what
+a robot does whose rtabmap waits in vain."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@
 """What a fleet would do: starts, drives, sees, plans, and one tree of transforms, for each robot.
 
 A robot drives where each topic that its reader or its Nav2 sends commands on reaches its own drive and
-no other's, and each trajectory of its MoveIt its own controllers; it sees where what its nodes read is sent by its own sensors; it plans where each frame that
-its nodes look up is in one tree with its own links.
+no other's, and each goal of its MoveIt its own controllers; it sees where what its nodes read is sent
+by its own sensors; it plans where each frame that its nodes look up is in one tree with its own links.
 """
 
 from __future__ import annotations

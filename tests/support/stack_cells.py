@@ -118,9 +118,10 @@ def refused(cell: Cell) -> set[str]:
 
 
 def shares_rules(release: str, layout: str) -> bool:
-    """Do controllers in a simulator get the rules of its first robot, where each needs its own? On Humble
-    the plugins hand theirs to rclcpp::init, which counts once a process (ign_ros2_control_plugin.cpp,
-    gazebo_ros2_control_plugin.cpp), so that two robots publish on one /joint_states/NAME."""
+    """Do controllers in a simulator get the rules of its first robot, where each needs its own? On
+    Humble the plugins hand theirs to rclcpp::init, which counts once a process
+    (ign_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp), so that two robots publish on one
+    /joint_states/NAME."""
     return release == "humble" and layout == "postfix"
 
 
