@@ -183,6 +183,7 @@ class NodeFacts(NamedTuple):
     prefix_switch: str = ""
     unmanaged: str = ""
     usual: tuple[tuple[str, str | float], ...] = ()
+    by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
 
     @property
     def kind(self) -> str:

@@ -64,6 +64,7 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         values |= {"": it["arguments"]} if it["arguments"] else {}
         ends = tuple(programs.opened(what, values, given.release))
         ends += tuple(programs.muxed(values)) if what == "twist_mux" else ()
+        ends += tuple(programs.executed(values)) if what == "move_group" else ()
         yield Node(who, what, name, space, plain, values, ends)
         costmap = programs.COSTMAPS.get(what)
         if costmap:

@@ -20,7 +20,7 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
+from multibot_rewrite.knowledge.conditions import chosen_type, holds, parse_condition, verdict
 from multibot_rewrite.knowledge.records import (
     MANAGER,
     MOVE_GROUP,
@@ -64,9 +64,16 @@ def _driven(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
         if len(frames) == 2:
             parent, child = (it.removeprefix(MODEL) for it in frames)
             found.append(edge_of(parent, child))
-    reading = read(source.source, source.file, member.vocabulary)
-    nodes = (node for node, _ in plugin_nodes(reading, ""))
-    return (*found, *(it for node in nodes for it in sent_by(node, "")))
+    return (*found, *(it for node in _plugins(member) for it in sent_by(node, "")))
+
+
+def _plugins(member: Member) -> Iterator[NodeFacts]:
+    """Yield the nodes that plugins of the description are, with the names that their own rules give."""
+    reading = read(member.source.source, member.source.file, member.vocabulary)
+    for node, table in plugin_nodes(reading, ""):
+        names = {it.source: it.target for it in table.rules}
+        ends = (it._replace(remapped=names.get(it.name, "")) for it in node.endpoints)
+        yield node._replace(endpoints=tuple(ends))
 
 
 def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
@@ -155,7 +162,9 @@ def fitted(
     those that the build starts: what no file sets of them is the build's to set, too."""
     offered = _with_controllers(has.offered, nodes)
     settled = [
-        _settled(_rooted(_as_listed(_hearing(it, nodes, offered), spec), has.root))
+        _settled(
+            _rooted(_as_listed(_hearing(_by_sensor(it, offered), nodes, offered), spec), has.root)
+        )
         if it.name in free
         else it._replace(usual=())
         for it in nodes
@@ -203,7 +212,27 @@ def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
             # One that the description does not name comes where it is read.
             if it.ros_type in SENSED and it.direction == DIRECTIONS["in"] and not it.is_free:
                 found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
+        for node in _plugins(member):
+            for end in node.endpoints:
+                if end.role == PUBLISHES and end.type in SENSED and not end.when:
+                    found.setdefault(end.type, []).append(_topic(node, end))
     return found
+
+
+def _by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
+    """Return the node with the parameters by which it uses a sensor that its robot has one of."""
+    chosen = next((it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1), None)
+    if chosen is None:
+        return node
+    changed = node._replace(usual=(*node.usual, *chosen))
+    value_of = lookup(changed, _values(changed))
+    ends = (
+        it._replace(when="" if holds(it.when, value_of) else it.when)
+        for it in node.endpoints
+        if (not it.when or verdict(it.when, value_of) is not False)
+        and holds(it.condition, value_of)
+    )
+    return changed._replace(endpoints=tuple(ends))
 
 
 def _hearing(
