@@ -220,26 +220,38 @@ def models_of(given: Reader) -> Iterator[tuple[str, str]]:
 
 
 def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
-    """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it."""
+    """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it, and
+    what a helper opens is in the namespace of the process."""
+    parts = [
+        (f"{at}", it, place, ends)
+        for at, it in enumerate(nodes)
+        for helper, place in ((False, (it.namespace, it.rules)), (True, it.process))
+        if (ends := [end for end in it.ends if "<" not in end.name and is_in(it, end) == helper])
+    ]
     cases = [
         {
             "ask": "started",
             "node": it.name,
-            "namespace": it.namespace,
-            "process_rules": [f"{old}:={new}" for old, new in it.rules],
+            "namespace": space,
+            "process_rules": [f"{old}:={new}" for old, new in rules],
             "node_rules": [],
             "use_process_rules": True,
-            "names": [asked(it, end) for end in it.ends if "<" not in end.name],
+            "names": [asked(it, end) for end in ends],
         }
-        for it in nodes
+        for _, it, (space, rules), ends in parts
     ]
     answers = rcl_names.ask(cases)
     return {
-        (f"{at}", end.role, end.name): name.removesuffix(GOAL)
-        for at, (it, answer) in enumerate(zip(nodes, answers, strict=True))
+        (at, end.role, end.name): name.removesuffix(GOAL)
+        for (at, _, _, ends), answer in zip(parts, answers, strict=True)
         if answer
-        for end, name in zip([e for e in it.ends if "<" not in e.name], answer[1:], strict=True)
+        for end, name in zip(ends, answer[1:], strict=True)
     }
+
+
+def is_in(node: Node, end: programs.Opened) -> bool:
+    """Does a helper in a process of several nodes open it?"""
+    return end.helper and node.process is not None
 
 
 def asked(node: Node, end: programs.Opened) -> list[str]:

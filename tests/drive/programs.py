@@ -107,12 +107,14 @@ SYNCHRONISED = {*(it for own in CAMERAS.values() for it in own), *SCANS, *BESIDE
 
 
 class Opened(NamedTuple):
-    """One end: what the code calls it, and whether something else decides that it is opened."""
+    """One end: what the code calls it, whether something else decides that it is opened, and whether a
+    node of its own in the process opens it, which has neither its name nor its namespace."""
 
     role: str
     name: str
     type: str
     sure: bool = True
+    helper: bool = False
 
 
 @cache
@@ -143,7 +145,8 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
             continue
         met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
         if False not in met:
-            yield Opened(row["role"], name, row["type"], "<" not in name and None not in met)
+            sure = "<" not in name and None not in met
+            yield Opened(row["role"], name, row["type"], sure, row["way"] == "helper")
 
 
 def synchronised(values: Mapping[str, Any]) -> set[str]:
