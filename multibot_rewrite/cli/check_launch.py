@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *(placed(as_sure(it, made, seen.whose), made) for it in seen.findings))
+    every = (*found, *placed((as_sure(it, made, seen.whose) for it in seen.findings), made))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 

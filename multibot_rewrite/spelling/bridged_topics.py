@@ -118,14 +118,17 @@ def bridged_topics(
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return [_fitting(it, names) for it in dict.fromkeys(bridged)], list(dict.fromkeys(left))
+    ends: dict[str, list[EndpointName]] = defaultdict(list)
+    for name in (it for it in names if not it.endpoint.when):
+        ends[name.robot].append(name)
+    fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
+    return fitting, list(dict.fromkeys(left))
 
 
-def _fitting(topic: BridgedTopic, names: Iterable[EndpointName]) -> BridgedTopic:
+def _fitting(topic: BridgedTopic, ends: Sequence[EndpointName]) -> BridgedTopic:
     """Return the topic with the name and type that the nodes at its end have, where the bridge can
-    convert that type."""
+    convert that type; ``ends`` are those of its robot."""
     role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
-    ends = [it for it in names if it.robot == topic.robot and not it.endpoint.when]
     sides = [it for it in ends if it.endpoint.role == role]
     if topic.is_free and all(it.name != topic.ros for it in sides):
         sent = {it.name for it in ends if it.endpoint.role not in (role, "")}

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -95,3 +96,16 @@ class Table(NamedTuple):
     names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]
     release: str
+
+    def by_robot(self, robots: Iterable[str]) -> dict[str, Table]:
+        """Return the nodes and names of each of the robots as a table without problems."""
+        nodes: dict[str, list[NodeTable]] = defaultdict(list)
+        names: dict[str, list[EndpointName]] = defaultdict(list)
+        for node in self.nodes:
+            nodes[node.robot].append(node)
+        for name in self.names:
+            names[name.robot].append(name)
+        return {
+            it: self._replace(nodes=tuple(nodes[it]), names=tuple(names[it]), problems=())
+            for it in robots
+        }

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from counted_steps import growth
+from counted_steps import growth, steps
 from fleet_folder import fleet_folder
 from growing import GROWING, description
+from paths import ROOT
 
 from multibot_rewrite import MultibotError, load_fleet, rewrite, rewrite_file
 from multibot_rewrite.base import nearest
@@ -26,6 +27,13 @@ SMALL, LARGE = 100, 400
 REMEMBERED = (nearest._nearest,)
 # As much may be made once, and found again by halving.
 SLACK = 1.15
+MANY = """
+layout: tf-per-robot
+distro: jazzy
+stack: nav2
+description: {}
+robots: [{}]
+"""
 ONE_LAYOUT = """
 layout: frames-per-robot
 distro: jazzy
@@ -74,6 +82,28 @@ def test_cost_of_a_fleet_grows_with_the_links_in_a_chain(tmp_path: Path) -> None
 
     assert prepared(SMALL)() == 0
     assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "bound"), [("robot{}", 1.015), ("robot_{}", 1.06)])
+def test_each_further_robot_costs_the_same(name: str, bound: float, tmp_path: Path) -> None:
+    """The nodes, topics and bridges of all robots were looked through once for each of them. Of names
+    within each other (robot and robot_1) all robots are read back, and some names are compared."""
+    rover = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
+
+    def cost(count: int) -> int:
+        folder = tmp_path / str(count)
+        folder.mkdir()
+        names = [name.format(at) for at in range(1, count)]
+        rows = ", ".join(
+            f"{{name: {it}, pose: {{y: {at}}}}}" for at, it in enumerate(["robot", *names])
+        )
+        path = fleet_folder(folder, MANY.format(rover, rows))
+        return steps(lambda: main(["build", str(path), "-o", str(tmp_path / "out"), "--quiet"]))
+
+    cost(4)
+    few, more, most = map(cost, (10, 20, 30))
+    assert (most - more) / (more - few) < bound
 
 
 @pytest.mark.parametrize("turned", [False, True])

@@ -4,7 +4,8 @@ remap table, for what no description starts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from types import MappingProxyType
 
@@ -76,7 +77,11 @@ def _meetings(
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """What each robot has, first by its description."""
-    found = {it.robot: [*_of_description(it, table)] for it in members}
+    made = {(it.robot, it.full_name) for it in table.nodes if it.home.of_hardware}
+    ruled: dict[str, set[str]] = defaultdict(set)
+    for end in (it for it in table.names if (it.robot, it.node) in made):
+        ruled[end.robot].add(end.endpoint.name)
+    found = {it.robot: [*_of_description(it, ruled[it.robot])] for it in members}
     for it in table.nodes:
         if it.robot and not it.home.written:
             found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
@@ -88,16 +93,12 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     return found
 
 
-def _of_description(it: Member, table: Table) -> Iterator[RuntimeName]:
-    """Yield what a robot has by its description alone: the table has the rules of the nodes that its
-    hardware makes."""
-    made = {
-        node.full_name for node in table.nodes if node.robot == it.robot and node.home.of_hardware
-    }
-    ends = {end.endpoint.name for end in table.names if end.node in made}
+def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
+    """Yield what a robot has by its description alone: the table has rules for the names of the nodes
+    that its hardware makes, which are ``ruled``."""
     for name in it.reading.names:
-        ruled = name.tag == "ros2_control" and name.name in ends
-        if not (ruled or name.of_controllers):
+        is_ruled = name.tag == "ros2_control" and name.name in ruled
+        if not (is_ruled or name.of_controllers):
             yield name
 
 

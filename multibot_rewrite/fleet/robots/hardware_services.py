@@ -16,10 +16,10 @@ MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))
 
 def moved_services(plan: FleetPlan) -> Iterator[Finding]:
     """Yield the absolute services of hardware that have the robot's name now, one finding a robot."""
-    table = plan.fleet.table
-    hardware = {it.full_name for it in table.nodes if it.home.of_hardware}
+    tables = plan.fleet.table.by_robot(it.spec.namespace for it in plan.robots)
+    hardware = {it.full_name for it in plan.fleet.table.nodes if it.home.of_hardware}
     for robot in plan.robots:
-        own = [it for it in table.names if it.node in hardware and it.robot == robot.spec.namespace]
+        own = [it for it in tables[robot.spec.namespace].names if it.node in hardware]
         served = [it for it in own if it.endpoint.role == SERVES and it.endpoint.name[0] == "/"]
         moved = [(it.endpoint.name, it.name) for it in served if it.name != it.endpoint.name]
         if moved:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
@@ -85,17 +86,18 @@ def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> I
         yield it._replace(level=INCONCLUSIVE, hint=_LEFT) if is_left else it
 
 
-def placed(it: Finding, launched: Launched) -> Finding:
-    """A finding about a system where the launch file starts the node that it is about."""
-    if it.file:
-        return it
+def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:
+    """Yield findings about a system where the launch file starts the nodes that they are about."""
     nodes = {node.full_name: node.place for node in launched.nodes}
-    about = [it.node, *_ends(it, launched.system), *_of_robot(it.robot, nodes)]
-    place = next((nodes[name] for name in about if name in nodes), None)
-    if place is None or not place.file:
-        return it
-    hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
-    return it._replace(file=place.file, line=place.line, column=place.column or 1, hint=hint)
+    for it in findings:
+        about = chain((it.node,), _ends(it, launched.system), _of_robot(it.robot, nodes))
+        place = None if it.file else next((nodes[name] for name in about if name in nodes), None)
+        if place is None or not place.file:
+            yield it
+            continue
+        hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
+        line, column = place.line, place.column or 1
+        yield it._replace(file=place.file, line=line, column=column, hint=hint)
 
 
 def _ends(it: Finding, system: System) -> Iterator[str]:

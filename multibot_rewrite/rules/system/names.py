@@ -92,7 +92,7 @@ def _published_instead(
     same = [
         it.name
         for it in _published(seen).get(end.type, ())
-        if it.name in published and nodes_of(it.publishers) != (end.node,)
+        if it.name in published and any(one.node != end.node for one in it.publishers)
     ]
     below = _without_own_name(end)
     hidden = (it for it in same if it == below or _hides(published[it], end.name))
@@ -135,6 +135,10 @@ def _written_out(node: str, name: str) -> Iterator[str]:
 def _hides(ends: Ends, meant: str) -> bool:
     """Is it the other name below its publisher's own name, or with its namespace twice?"""
     space, _, last = meant.rpartition("/")
+    if not ends.name.endswith(f"/{last}"):
+        return False
+    if not ends.name.startswith(f"{space}/"):
+        return _is_doubled(ends.name, meant)
     own = (f"{space}/{last_word(node)}/{last}" for node in nodes_of(ends.publishers))
     return ends.name in own or _is_doubled(ends.name, meant)
 

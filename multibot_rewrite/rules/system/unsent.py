@@ -35,11 +35,11 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     """That another robot has it from a node of the same system is not for a driver outside of it."""
-    wanted = {seen.plain(it) for it in names} if robot else ()
     elsewhere = {
-        seen.plain(it): it
-        for it in _given(seen)
-        if seen.plain(it) in wanted and _of_its_kind(seen, it, robot)
+        seen.plain(wanted): it
+        for wanted in (names if robot else ())
+        for it in _given(seen).get(seen.plain(wanted), ())
+        if _of_its_kind(seen, it, robot)
     }
     lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
     rest = tuple(it for it in names if it not in lacked)
@@ -77,10 +77,14 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
     return found
 
 
-def _given(seen: Index) -> Iterator[str]:
+@once
+def _given(seen: Index) -> Mapping[str, Sequence[str]]:
+    """Return the names that something sends, by what they are without the robot's name."""
+    found: dict[str, list[str]] = defaultdict(list)
     for (_, name), ends in seen.by_name.items():
         if ends.publishers or ends.servers:
-            yield name
+            found[seen.plain(name)].append(name)
+    return found
 
 
 def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:
