@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
@@ -19,7 +19,16 @@ from multibot_rewrite.rules.system.instead import (
     sent_instead,
 )
 from multibot_rewrite.rules.system.slips import alike
-from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
+from multibot_rewrite.system.index import (
+    TF,
+    Ends,
+    Index,
+    at_work,
+    nodes_of,
+    once,
+    robots_of,
+    spaces,
+)
 from multibot_rewrite.system.records import (
     ACTION,
     RUNS,
@@ -85,7 +94,7 @@ def _published_instead(
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     if not owner and robot:
         # Its own robot has it: whether or not others read it as well.
-        own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
+        own = (it for it in _by_plain(seen).get((robot, end.name), ()) if it in published)
         return next((it for it in own if published[it].type == end.type), "")
     if not owner and (mine := _of_a_robot_without(seen, end, published)):
         return mine
@@ -106,10 +115,28 @@ def _published_instead(
 
 def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) -> str:
     """The topic of the one robot that lacks a node of this name, which runs without a namespace."""
-    there = {seen.robot(it) for it in seen.nodes if seen.plain(it) == end.node}
-    without = [it for it in seen.robots if it not in there]
-    name = f"/{without[0]}{end.name}" if len(without) == 1 and len(there) > 1 else ""
+    there = _with_node(seen).get(end.node, set())
+    without = [it for it in seen.robots if it not in there] if len(there) > 1 else []
+    name = f"/{without[0]}{end.name}" if len(without) == 1 else ""
     return name if name in published and published[name].type == end.type else ""
+
+
+@once
+def _with_node(seen: Index) -> Mapping[str, Set[str]]:
+    """The robots that have a node, by its name without theirs."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for it in seen.nodes:
+        found[seen.plain(it)].add(seen.robot(it))
+    return found
+
+
+@once
+def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
+    """The published topics of each robot, by their name without it."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for it in (one for own in _published(seen).values() for one in own):
+        found[seen.robot(it.name), seen.plain(it.name)].append(it.name)
+    return found
 
 
 @once
@@ -259,17 +286,26 @@ def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:
     return next(iter(own), "") or next(iter(near), "") or above or alike(end.name, served, end.type)
 
 
-def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
+def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
     if seen.robot(name):
         return ""
-    ends = {seen.plain(it): it for it in known if seen.robot(it)}
-    rests = (at for at in range(2, len(name)) if name[at] == "/")
-    for at in rests:
-        other, space = ends.get(name[at:]), name[:at]
-        if other and not any(it.name.startswith(f"{space}/") for it in seen.system.nodes):
+    for at in (at for at in range(2, len(name)) if name[at] == "/"):
+        alike_, space = _of_robots(seen).get(name[at:], ()), name[:at]
+        other = next((it for it in reversed(alike_) if it in known), "")
+        if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
     return ""
+
+
+@once
+def _of_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+    """The names of robots, by their name without a robot's."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for _, name in seen.by_name:
+        if seen.robot(name):
+            found[seen.plain(name)].append(name)
+    return found
 
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))

@@ -49,9 +49,12 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         return
     frames = unique(it for edge in tree.edges for it in (edge.parent, edge.child))
     plain = {it: seen.plain_frame(it) for it in frames}
+    bases: dict[str, list[str]] = defaultdict(list)
+    for it in (it for it in frames if plain[it] in BODY_FRAMES):
+        bases[seen.frame_robot(it)].append(it)
     for odom in (it for it in frames if plain[it] == "odom"):
         robot = seen.frame_robot(odom)
-        own = [it for it in frames if plain[it] in BODY_FRAMES and seen.frame_robot(it) == robot]
+        own = bases[robot]
         roots = {root_of(it, above) for it in own}
         # In a circle there is no root.
         if not own or root_of(odom, above) in {*roots, *above}:
