@@ -20,7 +20,7 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
-from multibot_rewrite.rules.system.slips import alike
+from multibot_rewrite.rules.system.slips import Spelled, alike
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
@@ -59,15 +59,19 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
-    obeyed = defaultdict(list)
+    obeyed, plainly = defaultdict(list), defaultdict(list)
     unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
     for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
+            plainly[ends.type, seen.plain(name)].append(name)
+    spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
         same = obeyed[ends.type]
-        robots = [it for it in same if seen.plain(it) == name]
-        meant = next(iter(robots), "") or alike(name, same, ends.type) or _of_a_mux(seen, ends)
+        robots = plainly[ends.type, name]
+        spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
+        near = next(iter(robots), "") or alike(name, spelled[ends.type], ends.type)
+        meant = near or _of_a_mux(seen, ends)
         meant = meant or _of_a_person(seen, ends, same)
         if meant:
             yield _unread(seen, ends, meant, len(robots))

@@ -112,14 +112,12 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
     """The robot whose name a joint has, as its frames have it, or as its own messages do."""
     if found := seen.frame_robot(joint):
         return found
-    own = _that_send(seen).get(joint, ())
-    named = (
+    named = [
         it
-        for it in (seen.robots if own else ())
-        for mark in SEPARATORS
-        if joint.startswith(f"{it}{mark}") or joint.endswith(f"{mark}{it}")
-    )
-    return next((it for it in named if it in own), "")
+        for it in _that_send(seen).get(joint, ())
+        if any(joint.startswith(f"{it}{m}") or joint.endswith(f"{m}{it}") for m in SEPARATORS)
+    ]
+    return min(filter(None, named), default="")
 
 
 @once
