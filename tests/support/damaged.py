@@ -531,7 +531,7 @@ def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[s
             found.append("printed something")
         if file not in text:
             found.append(f"does not name {file}")
-        if lines and len(lines[0]) > 500:
+        if lines and len(lines[0]) > 1100:
             found.append(f"a line of {len(lines[0])} characters")
     if (
         done.code in (1, 2)

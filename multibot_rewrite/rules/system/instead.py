@@ -135,7 +135,9 @@ def _data(seen: Index, end: End) -> Ends | None:
     # One that merges need not have all; what is not the robot's own may be of nobody's.
     if _has_another(seen, end) or seen.robot(end.name) != seen.robot(end.node):
         return None
-    given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
+    mine = seen.robot(end.node) or seen.robot(end.name)
+    sent = _sent(seen).get((kind, mine), ()) if kind else ()
+    given = [it for it in sent if _is_offered(seen, it, end)]
     # A second camera that is off is no other name of the first one.
     given = [it for it in given if _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)]
     unread = [it for it in given if not at_work(it.subscribers)]
@@ -183,12 +185,13 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
 
 
 @once
-def _sent(seen: Index) -> Mapping[str, Sequence[Ends]]:
-    """The topics with a publisher, by the kind of their data."""
-    found: dict[str, list[Ends]] = defaultdict(list)
+def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
+    """The topics with a publisher, by the kind of their data and the robots of these."""
+    found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     for it in seen.topics:
-        if it.publishers and (kind := words.kind_of_data(it.name, it.type)):
-            found[kind].append(it)
+        kind = words.kind_of_data(it.name, it.type) if it.publishers else ""
+        for robot in {seen.robot(one.node) for one in it.publishers} if kind else ():
+            found[kind, robot].append(it)
     return found
 
 
