@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import os
 import random
 import shutil
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
 from fleet_folder import fleet_folder, mixed
+from growing_files import message
 from paths import FIXTURES
 
 from multibot_rewrite.cli import urdf_lint, urdf_postfix
@@ -114,7 +117,9 @@ BUILD = ("multibot", "build", "fleet.yaml", "-o", "out", "--quiet")
 
 
 def _companion(file: str) -> Place:
-    own = ("urdf-postfix", file, "robot1", "-o", "out")
+    of_arm = file in ("limits.yaml", "arm.srdf")
+    urdf = () if file == "tree.xml" else ("--urdf", "arm.urdf.xacro" if of_arm else "rover.urdf")
+    own = ("urdf-postfix", file, "robot1", *urdf, "-o", "out")
     return Place(file, (BUILD, own, ("urdf-lint", file)))
 
 
@@ -200,15 +205,6 @@ PLACES = (
         "urdf-lint.toml", (("urdf-lint", "rover.urdf", "--config", "urdf-lint.toml", "-o", "out"),)
     ),
 )
-MESSAGE = """\
-nodes:
-- name: /robot1/driver
-  publishers:
-  - name: /robot1/scan
-    type: {name: sensor_msgs/msg/LaserScan, hash: {version: 1, value: [1, 2]}}
-    qos: {history: 1, depth: 5, reliability: 1, durability: 2, deadline: {sec: 0, nanosec: 0}, lifespan: {sec: 0, nanosec: 0}, liveliness: 1, liveliness_lease_duration: {sec: 0, nanosec: 0}}
-  subscriptions: []
-"""
 
 
 def whole_folder(folder: Path) -> Path:
@@ -230,7 +226,7 @@ def whole_folder(folder: Path) -> Path:
         "tree.xml": TREE,
         "urdf-lint.toml": TOML,
         "nodes.yaml": NODES,
-        "message.yaml": MESSAGE,
+        "message.yaml": message(1),
     }.items():
         (folder / name).write_text(text)
     shutil.copy(GRAPHS / "plan.yaml", folder / "plan.yaml")
@@ -433,8 +429,6 @@ def another_type(chance: random.Random, data: bytes) -> bytes:
     value = yaml.load(data, Loader=yaml.CSafeLoader)
     way = chance.choice(list(paths_in(value)))
     new = with_value(value, way, chance.choice(OTHER_VALUES))
-    import json
-
     text = (
         json.dumps(new)
         if data[:1] == b"{"
@@ -479,6 +473,21 @@ INSTEAD = {
 }
 
 
+def damages(place: Place, many: int) -> Iterator[tuple[str, Callable[[Path], object]]]:
+    """Every damage of a file, each that chance has a part in so many times, by its name."""
+    yield from INSTEAD.items()
+    kinds = {**TEXTUAL}
+    if place.file.endswith(STRUCTURED):
+        kinds |= dict.fromkeys((f"another type {it}" for it in range(4)), another_type)
+    for name, damage in kinds.items():
+        for at in range(many):
+            yield f"{name}, {at}", partial(_damaged, damage, f"{place.file} {name} {at}")
+
+
+def _damaged(damage: Bytes, seed: str, path: Path) -> None:
+    path.write_bytes(damage(random.Random(seed), path.read_bytes()))
+
+
 class Run(NamedTuple):
     """What a command left behind."""
 
@@ -498,19 +507,9 @@ def run(words: tuple[str, ...]) -> Run:
     return Run(code, *(it.buffer.getvalue().decode() for it in (out, err)))  # type: ignore[attr-defined]
 
 
-NOISE = (
-    "Traceback",
-    "Errno",
-    "<class",
-    "object at 0x",
-    "XML_PARSE_HUGE",
-    "KeyError",
-    "TypeError",
-    "AttributeError",
-    "IndexError",
-    "internal error",
-    "fault of the tool",
-)
+NOISE = ("Traceback", "Errno", "<class", "object at 0x", "XML_PARSE_HUGE", "fault of the tool")
+# What Python says of a fault in a program, which a launch file is.
+OF_PYTHON = ("KeyError", "TypeError", "AttributeError", "IndexError")
 CODES = {0, 1, 2, 3}
 
 
@@ -520,7 +519,8 @@ def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[s
     if done.code not in CODES:
         found.append(f"exit code {done.code}")
     text = done.out + done.err
-    found += [f"says {it}" for it in NOISE if it in text]
+    noise = NOISE if ".launch." in file else (*NOISE, *OF_PYTHON)
+    found += [f"says {it}" for it in noise if it in text]
     if done.code == 2:
         lines = done.err.splitlines()
         if len(lines) != 1:

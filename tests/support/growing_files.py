@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+
+from fleet_folder import ARM
+from paths import FIXTURES
 
 # File -> its text, for a number of what it is large in.
 Files = Callable[[int], Mapping[str, str]]
@@ -26,19 +29,19 @@ def generate_launch_description():
 ROVER = '<robot name="rover"><link name="base_link"/></robot>\n'
 NODE = 'Node(package="demo_nodes_cpp", executable="talker", name="n#"),\n'
 XML_NODE = '<node pkg="demo_nodes_cpp" exec="talker" name="n#"/>\n'
+_TALKER = "'ros2', 'run', 'demo_nodes_cpp', 'talker', '--ros-args'"
 YAML_NODE = "- node: {pkg: demo_nodes_cpp, exec: talker, name: n#}\n"
 
 
-class Growing(NamedTuple):
-    """A command, and the files that it reads."""
-
-    command: tuple[str, ...]
-    files: Files
-
-
 def each(count: int, text: str) -> str:
-    """The text for 0, 1, 2 ..., the number in place of ``#``, the next one in place of ``@``."""
-    return "".join(text.replace("#", str(at)).replace("@", str(at + 1)) for at in range(count))
+    """The text for 0, 1, 2 ..., the number in place of ``#``, the next one in place of ``@``;
+    ``##`` is a #."""
+    return "".join(_numbered(text, at) for at in range(count))
+
+
+def _numbered(text: str, at: int) -> str:
+    plain = text.replace("##", "\0").replace("#", str(at)).replace("@", str(at + 1))
+    return plain.replace("\0", "#")
 
 
 def within(count: int, before: str, inner: str, after: str) -> str:
@@ -104,7 +107,7 @@ def _with_params(count: int) -> Mapping[str, str]:
 
 
 def _shared_params(count: int) -> Mapping[str, str]:
-    node = 'Node(package="demo_nodes_cpp", executable="talker", name="n#", parameters=[[ThisLaunchFileDir(), "/p.yaml"]]),\n'
+    node = NODE.replace("),", ', parameters=[[ThisLaunchFileDir(), "/p.yaml"]]),')
     sections = each(count, "n#:\n  ros__parameters: {frame_id: f#}\n")
     return {"a.launch.py": LAUNCH_PY.format(each(count, node)), "p.yaml": sections}
 
@@ -112,7 +115,7 @@ def _shared_params(count: int) -> Mapping[str, str]:
 LAUNCHED: Mapping[str, Files] = {
     "py nodes": _python(lambda n: each(n, NODE)),
     "py nodes of robots": _python(lambda n: each(n, NODE.replace("),", ', namespace="robot#"),'))),
-    "py comments": _python(lambda n: NODE + each(n, "# comment # (of [many\n")),
+    "py comments": _python(lambda n: NODE + each(n, "## comment # (of [many\n")),
     "py groups": _python(lambda n: each(n, f"GroupAction([PushRosNamespace('r#'), {NODE}]),")),
     "py nested groups": _python(
         lambda n: within(n // 5, "GroupAction([PushRosNamespace('r#'), ", NODE, "]),")
@@ -152,7 +155,7 @@ LAUNCHED: Mapping[str, Files] = {
     "py processes": _python(
         lambda n: each(
             n,
-            "ExecuteProcess(cmd=['ros2', 'run', 'demo_nodes_cpp', 'talker', '--ros-args', '-r', '__node:=n#']),",
+            f"ExecuteProcess(cmd=[{_TALKER}, '-r', '__node:=n#']),",
         )
     ),
     "py words of a process": _python(
@@ -165,7 +168,8 @@ LAUNCHED: Mapping[str, Files] = {
     "py static transforms": _python(
         lambda n: each(
             n,
-            "Node(package='tf2_ros', executable='static_transform_publisher', name='s#', arguments=['--frame-id', 'f#', '--child-frame-id', 'f@']),",
+            "Node(package='tf2_ros', executable='static_transform_publisher', name='s#',"
+            " arguments=['--frame-id', 'f#', '--child-frame-id', 'f@']),",
         )
     ),
     "py conditions": _python(
@@ -231,7 +235,7 @@ LAUNCHED: Mapping[str, Files] = {
     "xml chain of includes": lambda n: _chain_of_includes(n // 5),
     "xml one include": _same_include,
     "yaml nodes": _yaml(lambda n: each(n, YAML_NODE)),
-    "yaml comments": _yaml(lambda n: YAML_NODE + each(n, "# part # of [many\n")),
+    "yaml comments": _yaml(lambda n: YAML_NODE + each(n, "## part # of [many\n")),
     "yaml remaps": _yaml(
         lambda n: YAML_NODE.replace("n#}", "n#, remap: [" + each(n, "{from: a#, to: b#},") + "]}")
     ),
@@ -244,7 +248,8 @@ LAUNCHED: Mapping[str, Files] = {
     "yaml groups": _yaml(
         lambda n: each(
             n,
-            "- group: [{push_ros_namespace: {namespace: r#}}, {node: {pkg: demo_nodes_cpp, exec: talker, name: n#}}]\n",
+            "- group: [{push_ros_namespace: {namespace: r#}},"
+            " {node: {pkg: demo_nodes_cpp, exec: talker, name: n#}}]\n",
         )
     ),
 }
@@ -305,9 +310,7 @@ def _edge(child: str, parent: str, static: bool = False, sender: str = "/n0") ->
 
 def snapshot(nodes: Iterable[str], ends: Iterable[object], edges: Iterable[object] = ()) -> str:
     """A saved graph."""
-    environment = json.loads(
-        (Path(__file__).parents[2] / "fixtures/graphs/healthy.json").read_text()
-    )["environment"]
+    environment = json.loads((FIXTURES / "graphs" / "healthy.json").read_text())["environment"]
     return json.dumps(
         {
             "schema": 2,
@@ -405,3 +408,127 @@ GRAPHS: Mapping[str, Callable[[int], str]] = {
         ["/" + "a" * 100 * n], [_end("/" + "a" * 100 * n, "/" + "b" * 100 * n)]
     ),
 }
+
+
+def graph_of(name: str, count: int, folder: Path) -> Path:
+    """The graph as a file."""
+    path = folder / f"{count}.json"
+    path.write_text(GRAPHS[name](count))
+    return path
+
+
+# ---- fleets
+
+TWO = "robots: [{name: a}, {name: b}]\n"
+COMMON = f"layout: frames-per-robot\ndescription: rover.urdf\n{TWO}"
+
+
+def _of_rover(key: str, file: str, text: Callable[[int], str]) -> Files:
+    """A fleet of two rovers with one file that grows; the name of the file with __ for its dot."""
+    named = file.replace("__", ".")
+    fleet = f"{COMMON}companions: {{{key}: {named}}}\n"
+    return lambda n: {"fleet": fleet, file: text(n)}
+
+
+def _semantic(inner: str) -> Files:
+    robots = (f"  - {{name: {it}, description: rover.urdf, srdf: rover.srdf}}\n" for it in "ab")
+    fleet = f"robots:\n{''.join(robots)}"
+    return lambda n: {
+        "fleet": fleet,
+        "rover__srdf": f'<robot name="rover">{each(n, inner)}</robot>',
+    }
+
+
+_LUA = 'x# = "odom", -- [[ a\\ntracking_frame = "lidar_link",\\n'
+FLEETS: Mapping[str, Files] = {
+    "robots": lambda n: {
+        "fleet": "layout: both\nstack: nav2\ndescription: rover.urdf\nrobots:\n"
+        + each(n // 8, "- {name: robot#}\n")
+    },
+    "comments": lambda n: {"fleet": each(n, "## comment # {of [many\n") + COMMON},
+    "shared topics": lambda n: {"fleet": COMMON + "shared_topics:\n" + each(n, "- /t#\n")},
+    "shared frames": lambda n: {"fleet": COMMON + "shared_frames:\n" + each(n, "- t#\n")},
+    "arguments": lambda n: {
+        "fleet": "robots:\n- {name: a, description: arm.urdf.xacro, srdf: arm.srdf, arguments: {"
+        + each(n, "x#: y, ")
+        + "}}\n",
+        "arm__urdf__xacro": ARM.replace(
+            "<xacro:arg", each(n, '<xacro:arg name="x#" default="1"/>') + "<xacro:arg", 1
+        ),
+    },
+    "Lua": _of_rover(
+        "lua",
+        "slam__lua",
+        lambda n: "a = {" + each(n, _LUA) + "}",
+    ),
+    "displays": _of_rover(
+        "rviz",
+        "one_robot__rviz",
+        lambda n: (
+            "Visualization Manager:\n  Displays:\n"
+            + each(
+                n, "    - {Class: rviz_default_plugins/LaserScan, Name: d#, Topic: {Value: /s#}}\n"
+            )
+        ),
+    ),
+    "nodes of parameters": _of_rover(
+        "params", "params__yaml", lambda n: each(n, "n#:\n  ros__parameters:\n    topic: s#\n")
+    ),
+    "parameters": _of_rover(
+        "params",
+        "params__yaml",
+        lambda n: "amcl:\n  ros__parameters:\n" + each(n, "    x#_frame: base_link\n"),
+    ),
+    "bridged topics": _of_rover(
+        "bridge",
+        "bridge__yaml",
+        lambda n: each(
+            n,
+            "- {ros_topic_name: s#, gz_topic_name: s#, direction: GZ_TO_ROS,"
+            " ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan}\n",
+        ),
+    ),
+    "pairs of an SRDF": _semantic(
+        '<disable_collisions link1="base_link" link2="lidar_link" reason="Never"/>\n'
+    ),
+    "groups of an SRDF": _semantic('<group name="g#"><joint name="lidar_joint"/></group>\n'),
+}
+MESSAGE = """\
+- name: /n#
+  publishers:
+  - name: /t#
+    type: {name: std_msgs/msg/String, hash: {version: 1, value: [0]}}
+    qos: {history: 1, depth: 5, reliability: 1, durability: 2, liveliness: 1,
+      deadline: {sec: 0, nanosec: 0}, lifespan: {sec: 0, nanosec: 0},
+      liveliness_lease_duration: {sec: 0, nanosec: 0}}
+  subscriptions: []
+  service_servers: []
+  service_clients: []
+  action_servers: []
+  action_clients: []
+"""
+
+
+def message(count: int) -> str:
+    """What ``ros2 topic echo`` prints of a rosgraph_msgs/Graph."""
+    return f"nodes:\n{each(count, MESSAGE)}"
+
+
+# ---- graphs in the lines of the examples of rules
+
+_ROBOT, _NAME = re.compile(r"robot(\d+)"), re.compile(r"(^|\s)/(\w+)")
+_OF_ALL = ("tf", "tf_static", "clock", "map")
+
+
+def copies(example: str, count: int) -> str:
+    """The example for so many other robots and nodes, each of its lines once."""
+    lines = (line for at in range(count) for line in _copy(example, at).splitlines())
+    return "\n".join(dict.fromkeys(lines))
+
+
+def _copy(example: str, at: int) -> str:
+    def named(it: re.Match[str]) -> str:
+        kept = it[2] in _OF_ALL or _ROBOT.fullmatch(it[2])
+        return it[0] if kept else f"{it[1]}/{it[2]}_{at}"
+
+    return _NAME.sub(named, _ROBOT.sub(lambda it: f"robot{int(it[1]) + 10 * at}", example))
