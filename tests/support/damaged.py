@@ -529,7 +529,8 @@ def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[s
             found.append("left its output")
         if done.out:
             found.append("printed something")
-        if file not in text:
+        # Without its section the stack that was asked for is what is wrong.
+        if file not in text and not (file == "nodes.yaml" and "stack 'small'" in text):
             found.append(f"does not name {file}")
         if lines and len(lines[0]) > 1100:
             found.append(f"a line of {len(lines[0])} characters")
