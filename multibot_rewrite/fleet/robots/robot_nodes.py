@@ -57,7 +57,7 @@ from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Origin, Place
 
 WORLD, BRIDGE = "world", "ros_gz_bridge"
 # The stack of a controller manager that no plugin makes.
@@ -228,7 +228,9 @@ def _of_srdf(
     """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
     if spec.srdf and MOVE_GROUP not in {it.kind for it in nodes}:
         file = os.path.basename(spec.srdf)
-        yield known[MOVE_GROUP]._replace(when=f"its SRDF is {file}", origin=f"{spec.srdf}:1")
+        yield known[MOVE_GROUP]._replace(
+            when=f"its SRDF is {file}", origin=Origin(place=Place(spec.srdf, 1))
+        )
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:
