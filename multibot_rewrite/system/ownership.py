@@ -236,10 +236,14 @@ def frame_ownership(plan: System) -> NameOwnership:
     robots = {tags.get(robot.name, robot.name): robot.name for robot in plan.robots}
     last = _is_last((frame, tags.get(robot, robot)) for frame, robot in declared)
     exact = _of_one_robot((*declared, *others))
-    draft = NameOwnership(exact, {}, robots, frozenset(), last, tags)
-    # All robots have the same description: the first robot's frames are enough.
+    # Robots with a tf topic each may have the same frames, whatever these are called.
+    common = {frame for frame, _ in declared} - exact.keys()
+    draft = NameOwnership(
+        {**exact, **dict.fromkeys(common, "")}, {}, robots, frozenset(), last, tags
+    )
+    # Of robots with one description the first robot's frames are enough.
     plain = (draft.without_robot(*pair) for pair in declared if pair[1] == declared[0][1])
-    return draft._replace(ambiguous_words=frozenset(robots.keys() & _words(plain)))
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & _words({*plain, *common})))
 
 
 def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
