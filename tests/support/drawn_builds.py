@@ -126,7 +126,8 @@ def _meaning(it: FleetFile) -> dict[str, object]:
     policy = make_naming(**it.policy)
     places = {"file": "", "files": (), "world_place": (), "shared_places": ()}
     apart = it.apart._replace(place=("", 1))
-    return it._replace(policy={}, robots=(), apart=apart, **places)._asdict() | {
+    cell = it.cell._replace(place="") if it.cell else None
+    return it._replace(policy={}, robots=(), apart=apart, cell=cell, **places)._asdict() | {
         "robots": robots, "policy": policy,
     }  # fmt: skip
 
@@ -225,6 +226,23 @@ def judge_many(
             judge(fleet, Path(folder), one_of == WHOLE - 1)
 
     each()
+
+
+def drawn_by(strategy: st.SearchStrategy[DrawnFleet], count: int, start: int) -> list[DrawnFleet]:
+    """So many fleets, by a seed; they are not built."""
+    found: list[DrawnFleet] = []
+
+    @seed(start)
+    @settings(
+        max_examples=count, database=None, deadline=None, phases=(Phase.generate,),
+        suppress_health_check=[*HealthCheck],
+    )  # fmt: skip
+    @given(strategy)
+    def each(fleet: DrawnFleet) -> None:
+        found.append(fleet)
+
+    each()
+    return found
 
 
 if __name__ == "__main__":

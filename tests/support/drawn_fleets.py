@@ -620,6 +620,19 @@ def _part_somewhere_else(data: Data) -> None:
     ]
 
 
+def _keep_groups(data: Data) -> None:
+    for key in ("domains", "crossing", "relayed", "shape", "params_style"):
+        data.pop(key, None)
+    data |= {"layout": "frames-per-robot", "cell": {}, "groups": "keep"}
+    for at, row in enumerate(data["robots"]):
+        row |= {
+            "description": "arm.urdf",
+            "srdf": "arm.srdf",
+            "stack": ["moveit"],
+            "pose": {"x": at},
+        }
+
+
 # Causes that are in keys of the fleet file alone.
 FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]] = {
     "poses in no shared frame": (lambda data: data.update(world="nosuch_frame"), has_no_such_world),
@@ -656,6 +669,17 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
             _first(data).pop("stack", None),
         ),
         has_no_adapter,
+    ),
+    "groups of one name in a cell": (
+        _keep_groups,
+        lambda data: "cell" in data and data.get("groups") == "keep",
+    ),
+    "a cell of arms that have no SRDF": (
+        lambda data: (
+            data.update(layout="frames-per-robot", cell={}),
+            _first(data).pop("srdf", None),
+        ),
+        lambda data: "cell" in data and any("srdf" not in row for row in data["robots"]),
     ),
     "operators without a keystore": (
         lambda data: data.update(zenoh={"router": "tcp/10.0.0.1:7447", "operators": ["/boss"]}),

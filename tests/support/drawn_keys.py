@@ -123,7 +123,10 @@ def _written(draw: st.DrawFn, data: Data, _: dict[str, str]) -> None:
     if maybe(draw, 3):
         data["installed"] = "/opt/fleet"
     if maybe(draw, 4):
-        data["groups"] = draw(st.sampled_from(("keep", "rename")))
+        # The arms of a cell have groups of their own.
+        data["groups"] = (
+            draw(st.sampled_from(("keep", "rename"))) if "cell" not in data else "rename"
+        )
 
 
 def style(data: Data) -> str:
@@ -148,10 +151,10 @@ def _known(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         files["worlds/lake.sdf"] = WORLD
         data["simulator_world"] = "worlds/lake.sdf"
     for row, own in stacks_of(data):
-        if not own and "cell" not in data and maybe(draw, 1):
+        if not own and "cell" not in data and maybe(draw, 2):
             files["launch/bringup.launch.xml"] = LAUNCH
             row["launch"] = ["launch/bringup.launch.xml"]
-            data |= {"launch_roots": ["launch"]} if maybe(draw) else {}
+            data |= {"launch_roots": ["launch"]} if draw(st.booleans()) else {}
 
 
 def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
@@ -174,6 +177,8 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         if {"nav2", "navigation"} & {*own} and maybe(draw, 4):
             files["trees/main.xml"] = TREE
             companions = {**companions, "behavior_trees": ["trees/main.xml"]}
+        if maybe(draw, 1) and row.get("simulator") == "gazebo":
+            row["use_sim_time"] = True
         if maybe(draw, 1):
             files["config/cartographer.lua"] = LUA
             companions = {**companions, "lua": ["config/cartographer.lua"]}

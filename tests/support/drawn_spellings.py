@@ -24,7 +24,9 @@ SHORT = {
     "frame-prefix": "L5",
 }
 OF_ALL = ("description", "join", "srdf", "arguments", "stack", "simulator")
-PATHS = ("description", "srdf", "simulated", "simulator_world", "nodes", "vocabulary")
+PATHS = (
+    *("description", "srdf", "simulated", "simulator_world", "nodes", "vocabulary", "launch_roots"),
+)
 FILES = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 
 
