@@ -87,7 +87,7 @@ class NameOwnership(NamedTuple):
         if places and len(segments) > 1:
             del segments[places[-1 if self.robot_is_last else 0]]
         else:
-            segments = [_without_tag(segment, tag) for segment in segments]
+            segments = [_without_tag(it, tag, self.robot_is_last) for it in segments]
         return slash + "/".join(segments)
 
 
@@ -189,13 +189,16 @@ def _ends(segment: str) -> Iterator[str]:
             yield segment[at + 1 :]
 
 
-def _without_tag(segment: str, tag: str) -> str:
-    after, before = segment.removeprefix(tag), segment.removesuffix(tag)
-    if after != segment and after.startswith(tuple(SEPARATORS)):
-        return after.lstrip(SEPARATORS)
-    if before != segment and before.endswith(tuple(SEPARATORS)):
-        return before.rstrip(SEPARATORS)
-    return segment
+def _without_tag(segment: str, tag: str, is_last: bool) -> str:
+    """Return the segment without the tag: of ``robot_state_publisher_robot`` that where tags are."""
+    before, after = segment.removesuffix(tag), segment.removeprefix(tag)
+    ends = {True: (before, before.rstrip(SEPARATORS)), False: (after, after.lstrip(SEPARATORS))}
+    found = (
+        rest
+        for with_separator, rest in (ends[is_last], ends[not is_last])
+        if with_separator not in (segment, rest)
+    )
+    return next(found, segment)
 
 
 def without_tag_once(name: str, tag: str) -> Iterator[str]:

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 from drawn_builds import judge, run
-from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, Data, DrawnFleet
+from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, SRDF, Data, DrawnFleet
 from paths import ROBOTS
 
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.plan_file import read_plan
 
-GZ, CART, XACRO = "gz rover", "plain cart", "xacro rover"
+GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 
 
 def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
@@ -29,6 +29,7 @@ def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
         for at, (row, kind) in enumerate(zip(robots, each, strict=True))
     ]
     more = {"nav.yaml": NAV_PARAMS, "one.rviz": RVIZ, "arm/one.rviz": RVIZ}
+    more["arm.srdf"] = SRDF.replace("ROBOT", "arm")
     data = {"distro": "jazzy", "affix": "prefix", **keys, "robots": rows}
     return DrawnFleet(data, {**files, **more}, each)
 
@@ -73,6 +74,17 @@ CASES = {
     ),
     "costmaps without namespaces, behind a prefix": fleet(
         f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", stack="navigation"
+    ),
+    "a robot called as a node begins": fleet(
+        f"{CART}, {CART}", {"name": "robot"}, {"name": "r2"}, layout="postfix", affix="postfix",
+        stack="localization",
+    ),
+    "a robot called as frames of all end": fleet(
+        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", stack="localization",
+    ),
+    "arms of a cell send one topic of joint states": fleet(
+        f"{ARM}, {ARM}", {"name": "left"}, {"name": "right"}, layout="frames-per-robot", cell={},
+        stack=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
     ),
     "an argument that is the robot's name": fleet(
         f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
