@@ -824,7 +824,11 @@ CAUSES = {
         ),
         lambda fleet: (
             fleet.data["layout"] in ("tf-per-robot", "frame-prefix")
-            and any(row.get("description") == "world.urdf" for row, _ in simulated(fleet))
+            and any(
+                '<robot name="world"' in fleet.files.get(path, "")
+                for row, _ in simulated(fleet)
+                for path in described_by(row)
+            )
         ),
     ),
     # A start pose is given to no robot that maps: slam_toolbox says where it is.

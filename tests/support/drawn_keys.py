@@ -151,10 +151,10 @@ def _known(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         files["worlds/lake.sdf"] = WORLD
         data["simulator_world"] = "worlds/lake.sdf"
     for row, own in stacks_of(data):
-        if not own and "cell" not in data and maybe(draw, 2):
+        if not own and "cell" not in data and maybe(draw, 3):
             files["launch/bringup.launch.xml"] = LAUNCH
             row["launch"] = ["launch/bringup.launch.xml"]
-            data |= {"launch_roots": ["launch"]} if draw(st.booleans()) else {}
+            data |= {"launch_roots": ["launch"]} if maybe(draw, 7) else {}
 
 
 def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
@@ -168,7 +168,7 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         own |= {"domain": 5} if maybe(draw, 3) and "domains" not in data else {}
         data["zenoh"] = own
     all_navigate = all({*NAVIGATING} & {*own} for _, own in stacks_of(data))
-    if all_navigate and data["layout"] in BRINGUP and draw(st.booleans()):
+    if all_navigate and data["layout"] in BRINGUP and data.get("domains") and maybe(draw, 8):
         data["free_fleet"] = {"router": "tcp/10.0.0.1:7447", "map": "L1"}
         if draw(st.booleans()):
             data["free_fleet"]["charger"] = "{robot}_dock"
@@ -234,9 +234,11 @@ def started_for_each(data: Data) -> bool:
 
 
 def has_no_adapter(data: Data) -> bool:
-    """Has the adapter of Open-RMF nothing to ask? It reads each robot's own tf, and sends goals."""
+    """Has the adapter of Open-RMF nothing to ask? It reads each robot's own tf and sends goals, by a
+    bridge in the domain of each."""
     navigate = all({*NAVIGATING} & {*own} for _, own in stacks_of(data))
-    return "free_fleet" in data and (data["layout"] not in BRINGUP or not navigate)
+    served = navigate and data["layout"] in BRINGUP and "domains" in data
+    return "free_fleet" in data and not served
 
 
 def has_no_certificates(data: Data) -> bool:
