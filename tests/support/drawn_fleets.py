@@ -679,7 +679,9 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
             data.update(layout="frames-per-robot", cell={}),
             _first(data).pop("srdf", None),
         ),
-        lambda data: "cell" in data and any("srdf" not in {**data, **row} for row in data["robots"]),
+        lambda data: (
+            "cell" in data and any("srdf" not in {**data, **row} for row in data["robots"])
+        ),
     ),
     "operators without a keystore": (
         lambda data: data.update(zenoh={"router": "tcp/10.0.0.1:7447", "operators": ["/boss"]}),

@@ -98,7 +98,9 @@ def _pattern(rows: list[Data]) -> Data | None:
 def _at_the_top(data: Data) -> None:
     """What most robots have, for all of them: another one has its own."""
     rows = data["robots"]
-    for key in OF_ALL:
+    # Of one for all and another one at a robot that of the robot counts: both at one robot are a fault.
+    has_both = any({"description", "join"} <= row.keys() for row in rows)
+    for key in (it for it in OF_ALL if not (has_both and it in ("description", "join"))):
         _raise(data, rows, key, nothing=[] if key == "stack" else None)
     top: Data = {}
     for kind in FILES:
