@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.spelling.records import NodeRule, NodeTable, Pairs
 from multibot_rewrite.spelling.targets import expanded, target_of
-from multibot_rewrite.system.records import SERVICE, TOPIC, place_of
+from multibot_rewrite.system.records import SERVICE, TOPIC
 
 # A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"
@@ -65,7 +65,7 @@ def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) ->
     """
     others = [_names(*pair) for pair in controllers or ()]
     known = _of_managers(release)
-    by_file = any(place_of(node.origin).line for node, _ in controllers or ())
+    by_file = any(node.origin.place.line for node, _ in controllers or ())
     for node, table in pairs:
         own = _names(node, table)
         wide = table.home.process_wide

@@ -97,7 +97,7 @@ class NameOwnership(NamedTuple):
         if places and len(segments) > 1:
             del segments[places[-1 if self.robot_is_last else 0]]
         else:
-            segments = [_without_tag(segment, tag) for segment in segments]
+            segments = [_without_tag(it, tag, self.robot_is_last) for it in segments]
         return slash + "/".join(segments)
 
 
@@ -199,13 +199,16 @@ def _ends(segment: str) -> Iterator[str]:
             yield segment[at + 1 :]
 
 
-def _without_tag(segment: str, tag: str) -> str:
-    after, before = segment.removeprefix(tag), segment.removesuffix(tag)
-    if after != segment and after.startswith(tuple(SEPARATORS)):
-        return after.lstrip(SEPARATORS)
-    if before != segment and before.endswith(tuple(SEPARATORS)):
-        return before.rstrip(SEPARATORS)
-    return segment
+def _without_tag(segment: str, tag: str, is_last: bool) -> str:
+    """Return the segment without the tag: of ``robot_state_publisher_robot`` that where tags are."""
+    before, after = segment.removesuffix(tag), segment.removeprefix(tag)
+    ends = {True: (before, before.rstrip(SEPARATORS)), False: (after, after.lstrip(SEPARATORS))}
+    found = (
+        rest
+        for with_separator, rest in (ends[is_last], ends[not is_last])
+        if with_separator not in (segment, rest)
+    )
+    return next(found, segment)
 
 
 def without_tag_once(name: str, tag: str) -> Iterator[str]:
@@ -268,8 +271,11 @@ def frame_ownership(plan: System) -> NameOwnership:
     is_glued = not loose.issuperset(tag for _, tag in tagged)
     # lidar_link of a robot link has no robot's name where others of its frames have none.
     last = _is_last(it for it in tagged if is_glued or it[1] in it[0].split("/"))
-    draft = NameOwnership(_of_one_robot((*declared, *others)), {}, robots, frozenset(), last, tags)
-    plain = frozenset(draft.without_robot(*pair) for pair in declared)
+    exact = _of_one_robot((*declared, *others))
+    # Robots with a tf topic each may have the same frames, whatever these are called.
+    common = dict.fromkeys({frame for frame, _ in declared} - exact.keys(), "")
+    draft = NameOwnership({**exact, **common}, {}, robots, frozenset(), last, tags)
+    plain = frozenset((*(draft.without_robot(*pair) for pair in declared), *common))
     any_rest = is_glued or not plain
     return draft._replace(
         ambiguous_words=frozenset(robots.keys() & _words(plain)),
@@ -280,7 +286,7 @@ def frame_ownership(plan: System) -> NameOwnership:
 def _is_glued(name: str, tag: str) -> bool:
     """Does the tag begin or end the name without being a segment of it, as in robot1_base_link?"""
     at_an_end = name.startswith(tag) or name.endswith(tag)
-    return at_an_end and tag not in name.split("/") and _without_tag(name, tag) != name
+    return at_an_end and tag not in name.split("/") and _without_tag(name, tag, True) != name
 
 
 def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:

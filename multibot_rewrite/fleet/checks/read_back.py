@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.description.readback.meeting import COMMAND, DATA
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.build import Outputs
@@ -103,7 +104,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         alone = [
             it
             for it in of_launch
-            if it.robot not in real or not is_for_driver(it, made.planned, started)
+            if not _is_shared(it, made.planned)
+            and (it.robot not in real or not is_for_driver(it, made.planned, started))
         ]
         wrong += _not_open(alone, made)
         switch = _switch(plan) if any(it.code == NO_MANAGER.code for it in wrong) else ""
@@ -125,6 +127,11 @@ def _of_launch(
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
+
+
+def _is_shared(it: Finding, planned: System) -> bool:
+    """Does a finding say that robots share a topic which the fleet file shares?"""
+    return it.code in (COMMAND, DATA) and {*it.names} <= {*planned.shared_topics}
 
 
 def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:

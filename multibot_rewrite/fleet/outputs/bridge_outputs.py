@@ -32,6 +32,7 @@ from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
@@ -39,8 +40,6 @@ from multibot_rewrite.spelling.bridged_topics import (
     as_yaml,
     bridged_topics,
 )
-
-BRIDGE = "bridge.yaml"
 
 
 class GroupBridges(NamedTuple):
@@ -114,7 +113,7 @@ def _for_all(
         return
     text, findings = merge_bridges(shared, [it for it in topics if not it.robot])
     yield from findings
-    yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
+    yield OutputFile(BRIDGE_FILE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
 
 
 NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-urdf",))

@@ -25,7 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import EndpointName, NodeTable
 from multibot_rewrite.spelling.targets import placed, target_of
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
 _RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")
@@ -110,7 +110,8 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     table = fleet.table
     nodes = (*table.nodes, *(it.table for it in made))
     names = (*table.names, *(name for it in made for name in _names(it)))
-    origins = {it.table.full_name: "relayed of the fleet file" for it in made}
+    origin = Origin(place=Place("relayed of the fleet file"))
+    origins = {it.table.full_name: origin for it in made}
     return fleet._replace(
         table=table._replace(nodes=nodes, names=names), origins={**fleet.origins, **origins}
     )
