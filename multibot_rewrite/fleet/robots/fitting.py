@@ -20,11 +20,11 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.fleet.robots.mux import COMMANDS, own_mux, through_a_mux, topic_of, topics_of
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import (
     MANAGER,
     MOVE_GROUP,
-    TWIST_MUX,
     Endpoint,
     NodeFacts,
 )
@@ -46,7 +46,6 @@ SENSED = (
     *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/NavSatFix"),
     *("sensor_msgs/msg/PointCloud2", ODOMETRY),
 )
-COMMANDS = (PLAIN, STAMPED)
 RVIZ = "rviz2"
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
@@ -160,38 +159,13 @@ def fitted(
         else it._replace(usual=())
         for it in nodes
     ]
-    settled = list(_driving(_through_a_mux(settled, own), own))
+    muxes = own_mux(settled, own)
+    usual = dict(one for it in nodes if it.name in muxes for one in it.usual)
+    settled = [*_driving(through_a_mux(_driving(settled, muxes), own, usual), own)]
     choices = {it.node.name: it for it in _choices(settled, own, free, given, known)}
     wanted = _wanted(tuple(choices.values()), free, settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]
     return tuple(_without_second_senders(typed, free, has.sent))
-
-
-def _through_a_mux(nodes: Sequence[NodeFacts], added: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes, those that would send commands beside a twist_mux with its first free input as
-    their topic: otherwise the drive obeys both at once."""
-    mux = next((it for it in nodes if it.kind == TWIST_MUX and it.name in added), None)
-    if mux is None:
-        return nodes
-    sent = {_topic(it, end) for it in nodes for end in _commands(it, PUBLISHES)}
-    inputs = [_topic(mux, it) for it in _commands(mux, SUBSCRIBES)]
-    free = [it for it in inputs if it not in sent]
-    chosen = {_topic(mux, it) for it in _commands(mux, PUBLISHES)} if free else ()
-    others = {it.name for it in nodes if it is not mux} & {*added}
-    return [_moved(it, chosen, free[0]) if it.name in others and chosen else it for it in nodes]
-
-
-def _moved(node: NodeFacts, topics: Collection[str], to: str) -> NodeFacts:
-    """Return the node with the commands that it sends on one of the topics on another one."""
-    beside = {it for it in _commands(node, PUBLISHES) if _topic(node, it) in topics}
-    ends = (it._replace(remapped=to) if it in beside else it for it in node.endpoints)
-    return node._replace(endpoints=tuple(ends)) if beside else node
-
-
-def _commands(node: NodeFacts, role: str) -> tuple[Endpoint, ...]:
-    """The ends with velocities that a node has for certain."""
-    ends = (it for it in node.endpoints if it.role == role and not it.when)
-    return tuple(it for it in ends if it.type in (PLAIN, STAMPED))
 
 
 def _offered(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
@@ -210,26 +184,17 @@ def _hearing(
     node: NodeFacts, nodes: Iterable[NodeFacts], offered: Mapping[str, Sequence[str]]
 ) -> NodeFacts:
     """The node with the robot's only topic of a sensor where it would hear one that nobody sends."""
-    sent = _topics(nodes, PUBLISHES)
+    sent = topics_of(nodes, PUBLISHES)
     ends = []
     for end in node.endpoints:
         topics = offered.get(end.type, ()) if end.role == SUBSCRIBES and not end.when else ()
         lost = (
-            len(topics) == 1 and "<" not in end.name and _topic(node, end) not in {*topics, *sent}
+            len(topics) == 1 and "<" not in end.name and topic_of(node, end) not in {*topics, *sent}
         )
         # No file says the name that its stack has.
         named = end.named_from or end.name
         ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)
     return node._replace(endpoints=tuple(ends)) if offered else node
-
-
-def _topic(node: NodeFacts, end: Endpoint) -> str:
-    return (end.remapped or end.name).replace("~", node.name, 1).strip("/")
-
-
-def _topics(nodes: Iterable[NodeFacts], role: str) -> set[str]:
-    ends = ((node, it) for node in nodes for it in node.endpoints if it.role == role)
-    return {_topic(*it) for it in ends if not it[1].when}
 
 
 def _with_controllers(
@@ -249,7 +214,9 @@ def _of_controllers(nodes: Iterable[NodeFacts], role: str, types: Collection[str
     """The topics of these types that controllers surely have."""
     ends = ((node, it) for node in _controllers(nodes) for it in node.endpoints)
     return [
-        _topic(*it) for it in ends if it[1].role == role and it[1].type in types and not it[1].when
+        topic_of(*it)
+        for it in ends
+        if it[1].role == role and it[1].type in types and not it[1].when
     ]
 
 
@@ -258,14 +225,18 @@ def _driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeF
     drives = _of_controllers(nodes, SUBSCRIBES, COMMANDS)
     if len(drives) != 1:
         return nodes
-    heard = _topics(nodes, SUBSCRIBES)
-    return [_sending(it, heard, drives[0]) if it.name in own else it for it in nodes]
+    return [
+        _sending(it, topics_of((one for one in nodes if one is not it), SUBSCRIBES), drives[0])
+        if it.name in own
+        else it
+        for it in nodes
+    ]
 
 
 def _sending(node: NodeFacts, heard: Collection[str], drive: str) -> NodeFacts:
     ends = (
         it._replace(remapped=drive)
-        if it.role == PUBLISHES and it.type in COMMANDS and _topic(node, it) not in heard
+        if it.role == PUBLISHES and it.type in COMMANDS and topic_of(node, it) not in heard
         else it
         for it in node.endpoints
     )
@@ -374,7 +345,7 @@ def _wanted(
 ) -> str:
     """The type of the robot's commands: what a file sets, what its bridge or driver takes, what the
     nodes of its files have, and what all nodes have; else the plain one."""
-    topics = {_topic(it.node, end) for it in choices for end in _either(it.node)}
+    topics = {topic_of(it.node, end) for it in choices for end in _either(it.node)}
     said = [it.type for it in choices if it.is_set]
     rows = [
         end.type
@@ -386,7 +357,7 @@ def _wanted(
         end.type
         for node in nodes
         for end in node.endpoints
-        if end.role == SUBSCRIBES and not (end.when or end.also) and _topic(node, end) in topics
+        if end.role == SUBSCRIBES and not (end.when or end.also) and topic_of(node, end) in topics
     ]
     fixed = [it for it in (*said, *rows, *heard) if it in (PLAIN, STAMPED)]
     of_files = [it.type for it in choices if it.node.name not in free]
