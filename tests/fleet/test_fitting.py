@@ -229,7 +229,9 @@ def muxed(folder: Path, *inputs: str) -> str:
     lines = [
         f"      {it.replace(': ', ': {topic: ')}, timeout: 0.5, priority: 1}}" for it in inputs
     ]
-    head = "twist_mux:\n  ros__parameters:\n    use_stamped: false\n    topics:\n"
+    head = "twist_mux:\n  ros__parameters:\n    use_stamped: false\n"
+    head += "    locks: {stop: {topic: stop, timeout: 0.0, priority: 255}}\n"
+    head += "    topics:\n" if inputs else ""
     (folder / "mux.yaml").write_text(head + "\n".join(lines) + "\n")
     return "simulator: gazebo\ncompanions: {params: mux.yaml}"
 
@@ -255,6 +257,7 @@ def test_a_mux_without_an_input_for_a_planner_gets_the_stacks(tmp_path: Path) ->
         (("nav: cmd_vel_nav", "pad: joy_cmd"), "joy_cmd", "key_vel"),
         (("joystick: manual", "keyboard: typed"), "manual", "typed"),
         (("keys: a", "tracker: b"), "joy_vel", "a"),
+        ((), "joy_vel", "key_vel"),
     ],
 )
 def test_a_joystick_sends_to_an_input_of_the_users_mux(

@@ -25,6 +25,7 @@ from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import (
     MANAGER,
     MOVE_GROUP,
+    TWIST_MUX,
     Endpoint,
     NodeFacts,
 )
@@ -161,7 +162,9 @@ def fitted(
     ]
     muxes = own_mux(settled, own)
     usual = dict(one for it in nodes if it.name in muxes for one in it.usual)
-    settled = [*_driving(through_a_mux(_driving(settled, muxes), own, usual), own)]
+    if muxes:
+        settled = [*through_a_mux(_driving(settled, muxes), own, usual, known[TWIST_MUX])]
+    settled = [*_driving(settled, own)]
     choices = {it.node.name: it for it in _choices(settled, own, free, given, known)}
     wanted = _wanted(tuple(choices.values()), free, settled, spec)
     typed = [_typed(it, choices.get(it.name), wanted) for it in settled]

@@ -46,15 +46,15 @@ def own_mux(nodes: Iterable[NodeFacts], added: Collection[str]) -> tuple[str, ..
 
 
 def through_a_mux(
-    nodes: Sequence[NodeFacts], added: Collection[str], usual: Usual
+    nodes: Sequence[NodeFacts], added: Collection[str], usual: Usual, of_package: NodeFacts
 ) -> Sequence[NodeFacts]:
     """Return the nodes, ``added`` ones that send commands beside the twist_mux with an input of it.
 
-    ``usual`` are the stack's own parameters of the twist_mux. Where the user's file has no input for a
-    sender, the twist_mux gets the stack's.
+    ``usual`` are the stack's own parameters of the twist_mux, ``of_package`` is what its code has.
+    Where the user's file has no input for a sender, the twist_mux gets the stack's.
     """
     node = next((it for it in nodes if it.name in own_mux(nodes, added)), None)
-    if node is None or not _inputs(node, usual):
+    if node is None:
         return nodes
     outputs = frozenset(topic_of(node, it) for it in _commands(node, PUBLISHES))
     others = [it for it in nodes if it.name != node.name]
@@ -73,7 +73,7 @@ def through_a_mux(
     wanted = {(name, topic): _role(topic, usual) for name, topic in lost}
     places = _places(dict.fromkeys(wanted.values()), mux, sent)
     lacking = [it for it, topic in places.items() if not topic and _name_of_topic(it) in usual]
-    node = _with_inputs(node, lacking, usual)
+    node = _with_inputs(node, lacking, usual, of_package)
     places |= {it: str(usual[_name_of_topic(it)]) for it in lacking}
     moves = {key: places[role] for key, role in wanted.items()}
     return [node if it.name == node.name else _moved(it, moves) for it in nodes]
@@ -140,13 +140,15 @@ def _name_of_topic(role: str) -> str:
     return f"{_INPUT.format(role)}topic"
 
 
-def _with_inputs(node: NodeFacts, roles: Iterable[str], usual: Usual) -> NodeFacts:
+def _with_inputs(
+    node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
+) -> NodeFacts:
     """Return the twist_mux with inputs that the stack has, beside those of the user's file."""
-    like = next(_commands(node, SUBSCRIBES))
+    (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]
         name = _name_of_topic(role)
-        end = like._replace(name=str(usual[name]), remapped="", parameter=name)
+        end = like._replace(name=str(usual[name]), fixed="", parameter=name)
         node = node._replace(endpoints=(*node.endpoints, end), usual=(*node.usual, *values))
     return node
 
