@@ -186,3 +186,35 @@ def test_an_input_that_is_called_as_the_commands_of_nav2_has_them(tmp_path: Path
     heard = {it[2] for it in nodes["/robot1/twist_mux"] if it[0] == "subscribes"}
     assert ("/robot1/twist_mux", "/robot1/drive/cmd_vel") in sent
     assert ("/robot1/collision_monitor", "/robot1/cmd_vel") in sent and "/robot1/cmd_vel" in heard
+
+
+REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
+BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
+
+
+@pytest.mark.parametrize("layout", ["postfix", "both"])
+@pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
+@pytest.mark.parametrize(
+    ("robot", "codes"), [(DRIVEN, {"MF843"}), (REAL, set()), (BARE, {"MG723"})]
+)
+def test_a_manager_that_no_stack_starts_is_one_finding(
+    robot: str, codes: set[str], stack: str, layout: str,
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """In layouts without namespaces the manager is the robot's by its name, whoever starts it."""
+    text = f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: {stack}\n"
+    more = "description: driven.urdf\n"
+    assert build(tmp_path, text + more, driven_urdf=robot) == bool(codes)
+    errors = [it for it in capsys.readouterr().err.splitlines() if " error: " in it]
+    assert {it.split(" error: ")[1].split()[0] for it in errors} == codes
+    assert len(errors) == len(codes)
+    assert all("add ros2_control to `stack:`" in it for it in errors if "MG723" in it)
+    if codes:
+        return
+    manager = "/controller_manager_robot1" if layout == "postfix" else "/robot1/controller_manager"
+    plan = (tmp_path / "out" / "plan.yaml").read_text()
+    assert f"[calls, service, {manager}/load_controller," in plan
+    launch = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert ("'-c', f'controller_manager_{name}'" in launch.replace('"', "'")) == (
+        layout == "postfix"
+    )
