@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.companions import companions_of
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.searching import Found
