@@ -14,8 +14,8 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 
 class Home(NamedTuple):
     """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
-    ``NodeFacts``, ``apart`` and ``of_hardware``. ``written`` is true for a plugin of a description,
-    ``process_wide`` if its rules hold for its whole process."""
+    ``NodeFacts``, ``apart`` and ``of_hardware``; ``host_name`` is what its host is called. ``written``
+    is true for a plugin of a description, ``process_wide`` if its rules hold for its whole process."""
 
     host: str = ""
     container: str = ""
@@ -24,6 +24,7 @@ class Home(NamedTuple):
     process_wide: bool = False
     apart: bool = False
     of_hardware: bool = False
+    host_name: str = ""
 
     @property
     def is_controller(self) -> bool:

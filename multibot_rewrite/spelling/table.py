@@ -138,9 +138,9 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
             )
             for rule in rules
         )
-        yield NodeTable(
-            robot, node, namespace.replace(PROBE, robot), name.replace(PROBE, robot), own, home
-        )
+        places = (it.replace(PROBE, robot) for it in (namespace, name, home.host_name))
+        above, called, host_name = places
+        yield NodeTable(robot, node, above, called, own, home._replace(host_name=host_name))
 
 
 def node_table(
@@ -167,9 +167,9 @@ def node_table(
             why = TOGETHER if target == f"/{source}" else why
             match = expand(source, namespace, name)
             rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
-    home = Home(
-        node.host, node.container, node.plugin, apart=node.apart, of_hardware=node.of_hardware
-    )
+    host_name = others.get(node.host, node.host).rpartition("/")[2]
+    home = Home(node.host, node.container, node.plugin, host_name=host_name)
+    home = home._replace(apart=node.apart, of_hardware=node.of_hardware)
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
 
 
@@ -235,8 +235,11 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """The full names of a robot's nodes, by their names in the stack."""
-    found = {it.name: placed(robot, it.name, naming, it.apart) for it in nodes if not it.shared}
+    """Return the full names of a robot's nodes, by their names in the stack, and of the hosts of
+    those: the controller manager may be made by what is not in the stack."""
+    own = [it for it in nodes if not it.shared]
+    found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
+    found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}
     return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
 
 

@@ -108,8 +108,9 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             and (it.robot not in real or not is_for_driver(it, made.planned, started))
         ]
         wrong += _not_open(alone, made)
-        switch = _switch(plan) if any(it.code == NO_MANAGER.code for it in wrong) else ""
-        wrong = [_with_switch(it, switch) if switch else it for it in wrong]
+        if any(it.code == NO_MANAGER.code for it in wrong):
+            remedy = _remedy(plan)
+            wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
@@ -145,24 +146,18 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
     ]
 
 
-def _switch(plan: FleetPlan) -> str:
-    """Return the argument of a description, with its value, that loads the plugin of a simulator with a
-    controller manager; empty for none."""
+def _remedy(plan: FleetPlan) -> str:
+    """Return what to write where nothing starts a controller manager: the argument of a description
+    with which a simulator's plugin makes one, else the stack that has one."""
     for it in (it.spec for it in plan.robots):
         given = filled(it.arguments, it.name)
-        found = switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED)
-        if found:
-            return f"{found[0]}: {found[1]!r}"
-    return ""
-
-
-def _with_switch(it: Finding, switch: str) -> Finding:
-    if it.code != NO_MANAGER.code:
-        return it
-    hint = (
-        f"write arguments: {{{switch}}} for the description, whose plugin starts it; or {it.hint}"
+        if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
+            name, value = found
+            first = f"write arguments: {{{name}: {value!r}}} for the description"
+            return f"{first}, whose plugin starts it; or add ros2_control to `stack:`"
+    return (
+        "add ros2_control to `stack:`, which starts it; or load gz_ros2_control in the description"
     )
-    return it._replace(hint=hint)
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:
