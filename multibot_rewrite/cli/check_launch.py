@@ -18,8 +18,8 @@ from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
-from multibot_rewrite.rules.check import check as compared
 from multibot_rewrite.rules.check import side_by_side
+from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
 
 
@@ -38,13 +38,13 @@ def run(options: argparse.Namespace) -> int:
         found += not_read(made.graph)
     if plan is not None:
         whose = side_by_side(plan, made.system)[1]
-        sure = (as_sure(it, made, whose) for it in compared(plan, made.system))
+        sure = (as_sure(it, made, whose) for it in check_view(plan, made.with_bridged))
         judged = [*as_one_of_several(sure, plan, made.system)]
         return check.conclude(options, plan, made.system, judged, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *(placed(as_sure(it, made, seen.whose), made) for it in seen.findings))
+    every = (*found, *placed((as_sure(it, made, seen.whose) for it in seen.findings), made))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 

@@ -35,13 +35,24 @@ from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
+from multibot_rewrite.spelling.plan import expect, named_frames, planned_end, vacuous
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SIM_TIME, Edge, End, Parameter, System, Topic
+from multibot_rewrite.system.records import (
+    NO_ORIGIN,
+    SIM_TIME,
+    Edge,
+    End,
+    Node,
+    Origin,
+    Parameter,
+    Place,
+    System,
+    Topic,
+)
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
@@ -53,7 +64,7 @@ FRAME_PREFIX = "frame_prefix"
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
+    description of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
     ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
@@ -68,8 +79,8 @@ class Fleet(NamedTuple):
     naming: Naming
     edges: Edges
     facts: tuple[NodeFacts, ...]
-    sources: dict[str, str]
-    origins: dict[str, str]
+    sources: dict[str, Place]
+    origins: dict[str, Origin]
     tags: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
@@ -176,10 +187,10 @@ def facts_of(
     return tuple(found)
 
 
-def _origin(node: NodeFacts, stack: str) -> str:
+def _origin(node: NodeFacts, stack: str) -> Origin:
     # Without its folder: a plan is the same from every working directory.
     file = os.path.basename(node.interface)
-    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
+    return Origin(f"{stack}, described in {file}" if file else stack)
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
@@ -224,20 +235,20 @@ def _read(members: Sequence[Member]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(path for it in members for path in it.read))
 
 
-def _sources(members: Sequence[Member]) -> dict[str, str]:
+def _sources(members: Sequence[Member]) -> dict[str, Place]:
     """The places of the plugins in the source: inserted text moves the lines of the result."""
     found = {}
     for it in members:
         for node in it.reading.nodes:
             line = line_of(it.source, "plugin", node.number)
-            found[node.full_name] = f"{it.source.file}:{line}"
+            found[node.full_name] = Place(it.source.file, line)
     return found
 
 
-def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
-    """By full name: the file or stack that names a node."""
-    known = {it.name: it.origin for it in facts}
-    return {it.full_name: origin for it in table.runs if (origin := known.get(it.node, ""))}
+def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, Origin]:
+    """Return by full name the file or stack that names a node."""
+    named = {it.name: it.origin for it in facts if it.origin != NO_ORIGIN}
+    return {it.full_name: named[it.node] for it in table.runs if it.node in named}
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
@@ -284,7 +295,7 @@ def planned(fleet: Fleet) -> System:
         fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
     )
     whole = plan._replace(
-        nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
+        nodes=tuple(_named(it, fleet) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
         release=fleet.table.release,
         gaps=fleet.gaps,
@@ -293,6 +304,10 @@ def planned(fleet: Fleet) -> System:
         domains=fleet.apart.domains,
     )
     return with_bridges(whole, fleet.apart.crossing) if whole.domains else whole
+
+
+def _named(node: Node, fleet: Fleet) -> Node:
+    return node._replace(**fleet.origins.get(node.name, NO_ORIGIN)._asdict())
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:

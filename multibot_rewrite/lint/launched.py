@@ -28,6 +28,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.described import in_use, may_stop
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
@@ -175,7 +176,7 @@ def _told(it: Run) -> Iterator[_Told]:
         path = os.path.realpath(str(given.value))
         yield _Told(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
     if text := told_rows(it):
-        yield _Told("bridge.yaml", text, expands(it), it.place)
+        yield _Told(BRIDGE_FILE, text, expands(it), it.place)
 
 
 def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:

@@ -211,6 +211,13 @@ def _all_in(finding: Finding, loose: Set[str]) -> bool:
 
 def _is_meant(plan: Index, seen: Index, finding: Finding) -> bool:
     """Whether all who do with its names what it is about are planned to."""
+    key, memo = (finding.code, finding.names), seen.memo.setdefault(_is_meant, {})
+    if key not in memo:
+        memo[key] = _are_meant(plan, seen, finding)
+    return bool(memo[key])
+
+
+def _are_meant(plan: Index, seen: Index, finding: Finding) -> bool:
     roles = RULES[finding.code].options["meant"]
     ends = [end for name in finding.names for end in ends_of(seen, name)]
     about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]

@@ -20,6 +20,7 @@ from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.bridge_rows import (
     PLUGINS,
     SENSORS,
@@ -118,14 +119,17 @@ def bridged_topics(
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return [_fitting(it, runs) for it in dict.fromkeys(bridged)], list(dict.fromkeys(left))
+    ends: dict[str, list[tuple[Endpoint, str]]] = defaultdict(list)
+    for run in runs:
+        ends[run.robot] += (it for it in run.names if not it[0].when)
+    fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
+    return fitting, list(dict.fromkeys(left))
 
 
-def _fitting(topic: BridgedTopic, runs: Iterable[Run]) -> BridgedTopic:
+def _fitting(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> BridgedTopic:
     """Return the topic with the name and type that the nodes at its end have, where the bridge can
-    convert that type."""
+    convert that type; ``ends`` are those of its robot."""
     role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
-    ends = [it for run in runs if run.robot == topic.robot for it in run.names if not it[0].when]
     sides = [it for it in ends if it[0].role == role]
     if topic.is_free and all(name != topic.ros for _, name in sides):
         sent = {name for end, name in ends if end.role not in (role, "")}

@@ -12,15 +12,24 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.of_runs import ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
-from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, Sure, System, place_of
+from multibot_rewrite.system.records import (
+    MAY,
+    NOWHERE,
+    RUNS,
+    End,
+    Node,
+    Place,
+    Robot,
+    Sure,
+    System,
+)
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.collect import Inventory
 
 NOTHING: Mapping[str, Sequence[str]] = {}
-NOWHERE: Mapping[str, str] = {}
-# What names a node, if no file does.
-STACK = "stack "
+NO_WORDS: Mapping[str, str] = {}
+NO_PLACES: Mapping[str, Place] = {}
 
 
 def planned_end(
@@ -34,13 +43,6 @@ def planned_end(
 ) -> End:
     """An end of which nothing is known that only a running system shows."""
     return End(kind, role, name, type_, "", node, None, "", code_name, also)
-
-
-def from_text(node: Node, origin: str) -> Node:
-    """The node with what names it: a text such as ``stack nav2``, or a place."""
-    if origin.startswith(STACK):
-        return node._replace(stack=origin.removeprefix(STACK))
-    return node._replace(place=place_of(origin))
 
 
 def robot_words(plan: System) -> dict[str, str]:
@@ -64,14 +66,14 @@ def expect(
     frames: Mapping[str, Sequence[str]],
     facts: Sequence[NodeFacts] = (),
     named: Mapping[str, Sequence[str]] = NOTHING,
-    sources: Mapping[str, str] = NOWHERE,
-    words: Mapping[str, str] = NOWHERE,
+    sources: Mapping[str, Place] = NO_PLACES,
+    words: Mapping[str, str] = NO_WORDS,
     maybe_real: Container[str] = (),
 ) -> System:
     """The plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
-    ``facts`` describe the nodes that every robot runs, ``sources`` has ``file:line`` of the plugin of a
+    ``facts`` describe the nodes that every robot runs, ``sources`` has the place of the plugin of a
     node. ``words`` has the name of a robot in its frames, where that is another one than its name;
     plugins of ``maybe_real`` robots may be missing.
     """
@@ -145,12 +147,12 @@ def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple
     return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
 
 
-def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, str]) -> Iterator[Node]:
+def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, Place]) -> Iterator[Node]:
     """Each node with its plugin, and its way and taker, where it has no --ros-args of its own."""
     ways = dict(_ways(table))
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
-        yield it._replace(way=way, taker=taker, plugin=place_of(sources.get(it.name, "")))
+        yield it._replace(way=way, taker=taker, plugin=sources.get(it.name, NOWHERE))
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:

@@ -10,7 +10,7 @@ from typing import Any
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.spelling.plan import STACK, from_text, vacuous
+from multibot_rewrite.spelling.plan import vacuous
 from multibot_rewrite.spelling.plan_rows import (
     OR,
     check_keys,
@@ -37,12 +37,14 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
     Node,
+    Origin,
     Parameter,
     Robot,
     System,
     Topic,
     alternatives,
     nodes_by_robot,
+    origin_of,
     place_of,
 )
 
@@ -119,7 +121,7 @@ def _by_node_value(plan: System) -> dict[str, dict[str, str]]:
     return {
         SOURCES: {it.name: str(it.plugin) for it in plan.nodes if it.plugin.file},
         FROM: {
-            it.name: f"{STACK}{it.stack}" if it.stack else str(it.place)
+            it.name: str(Origin(it.stack, it.place))
             for it in plan.nodes
             if it.stack or it.place.file
         },
@@ -195,7 +197,9 @@ def _told(
             continue
         way, _, taker = ways.get(it.name, "").partition(" ")
         demand = demands.get(it.name)
-        yield from_text(it, origins.get(it.name, ""))._replace(
+        origin = origin_of(origins.get(it.name, ""))
+        yield it._replace(
+            **origin._asdict(),
             lifecycle=demand.lifecycle if demand else "",
             host=demand.host if demand else "",
             way=way,

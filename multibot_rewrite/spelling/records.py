@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -56,7 +57,8 @@ class Run(NamedTuple):
     takes them, and what is known of it with its parameters.
 
     ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its whole
-    process. ``names`` are its ends with their names under the rules. ``process`` tells the processes
+    process. ``names`` are its ends with their names under the rules, ``host_name`` is what the node is
+    called whose process it is in. ``process`` tells the processes
     apart; helper nodes in it have ``process_rules`` and run in ``process_namespace``, controllers that
     no stack names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
     files that a parameter names, ``untold`` parameters whose values only a run tells. ``program`` is
@@ -72,6 +74,7 @@ class Run(NamedTuple):
     written: bool = False
     process_wide: bool = False
     names: Names = ()
+    host_name: str = ""
     process: str = ""
     process_namespace: str = ""
     process_rules: Rules = ()
@@ -130,3 +133,10 @@ class Table(NamedTuple):
     def ends(self) -> Iterator[tuple[Run, Endpoint, str]]:
         """Every end, with its node and its full name."""
         yield from ((run, end, name) for run in self.runs for end, name in run.names)
+
+    def by_robot(self, robots: Iterable[str]) -> dict[str, Table]:
+        """Return the nodes of each of the robots as a table without problems."""
+        runs: dict[str, list[Run]] = defaultdict(list)
+        for run in self.runs:
+            runs[run.robot].append(run)
+        return {it: self._replace(runs=tuple(runs[it]), problems=()) for it in robots}

@@ -114,6 +114,7 @@ def _copy(run: Run, robot: str) -> Run:
         robot=robot,
         namespace=run.namespace.replace(PROBE, robot),
         name=run.name.replace(PROBE, robot),
+        host_name=run.host_name.replace(PROBE, robot),
         rules=tuple(
             (old.replace(PROBE, robot), new.replace(PROBE, robot)) for old, new in run.rules
         ),
@@ -142,7 +143,9 @@ def run_of(
     for endpoint in (it for it in node.endpoints if not it.fixed):
         for source, target in _targets(endpoint, place):
             rules.setdefault(expand(source, namespace, name), (source, target))
-    return with_names(Run(robot, node.name, namespace, name, tuple(rules.values()), node))
+    made = Run(robot, node.name, namespace, name, tuple(rules.values()), node)
+    host_name = others.get(node.host, node.host).rpartition("/")[2]
+    return with_names(made._replace(host_name=host_name))
 
 
 class _Place(NamedTuple):
@@ -206,8 +209,11 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """The full names of a robot's nodes, by their names in the stack."""
-    found = {it.name: placed(robot, it.name, naming, it.apart) for it in nodes if not it.shared}
+    """Return the full names of a robot's nodes, by their names in the stack, and of the hosts of
+    those: the controller manager may be made by what is not in the stack."""
+    own = [it for it in nodes if not it.shared]
+    found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
+    found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}
     return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
 
 

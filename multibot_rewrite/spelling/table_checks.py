@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import expanded, target_of
-from multibot_rewrite.system.records import SERVICE, TOPIC, place_of
+from multibot_rewrite.system.records import SERVICE, TOPIC
 
 # A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"
@@ -67,7 +67,7 @@ def useless_rules(
     """
     others = [*map(_names, controllers or ())]
     known = _of_managers(release)
-    by_file = any(place_of(it.fact.origin).line for it in controllers or ())
+    by_file = any(it.fact.origin.place.line for it in controllers or ())
     for run in runs:
         own, wide, node = _names(run), run.process_wide, run.node
         asked = [own, *(others if wide else ())]

@@ -163,7 +163,6 @@ def started(table: Table) -> Iterator[Started]:
     """
     given = deliveries(table)
     rules = rules_by_taker(given)
-    names = {it.node.robot: it.node.name for it in given if it.node.node == MANAGER}
     controllers = (it.node for it in given if it.node.fact.is_controller)
     # The node that a stack has for the spawner of a controller is that spawner.
     spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
@@ -175,7 +174,7 @@ def started(table: Table) -> Iterator[Started]:
             continue
         if node.fact.is_controller:
             taken = own if it.way == SPAWNER else ()
-            yield Started(node, SPAWNER, taken, names.get(node.robot, MANAGER))
+            yield Started(node, SPAWNER, taken, node.host_name or MANAGER)
         elif it.way in STARTED and (node.robot, node.node) not in spawners:
             yield Started(node, it.way, own)
 

@@ -168,3 +168,53 @@ def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
     text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
     assert build(tmp_path, f"{text}companions: {{rviz: {RVIZ}}}\n") == 0
     assert is_as_planned(tmp_path)
+
+
+def test_an_input_that_is_called_as_the_commands_of_nav2_has_them(tmp_path: Path) -> None:
+    """The controller obeys a topic of its own, so that cmd_vel is free for an input of the mux."""
+    mux = (
+        "twist_mux: {ros__parameters: {use_stamped: true, topics: {"
+        "navigation: {topic: cmd_vel, timeout: 0.5, priority: 1},"
+        " joystick: {topic: joy_vel, timeout: 0.5, priority: 2}}}}\n"
+    )
+    text = "layout: tf-per-robot\ndistro: jazzy\nstack: [navigation, teleop]\n"
+    more = "description: driven.urdf\ncompanions: {params: [controllers.yaml, mux.yaml]}\n"
+    files = {"driven_urdf": DRIVEN, "controllers_yaml": CONTROLLERS, "mux_yaml": mux}
+    assert build(tmp_path, text + more, **files) == 0
+    nodes = yaml.safe_load((tmp_path / "out/plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    sent = {(name, it[2]) for name, ends in nodes.items() for it in ends if it[0] == "publishes"}
+    heard = {it[2] for it in nodes["/robot1/twist_mux"] if it[0] == "subscribes"}
+    assert ("/robot1/twist_mux", "/robot1/drive/cmd_vel") in sent
+    assert ("/robot1/collision_monitor", "/robot1/cmd_vel") in sent and "/robot1/cmd_vel" in heard
+
+
+REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
+BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
+
+
+@pytest.mark.parametrize("layout", ["postfix", "both"])
+@pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
+@pytest.mark.parametrize(
+    ("robot", "codes"), [(DRIVEN, {"MF843"}), (REAL, set()), (BARE, {"MG723"})]
+)
+def test_a_manager_that_no_stack_starts_is_one_finding(
+    robot: str, codes: set[str], stack: str, layout: str,
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """In layouts without namespaces the manager is the robot's by its name, whoever starts it."""
+    text = f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: {stack}\n"
+    more = "description: driven.urdf\n"
+    assert build(tmp_path, text + more, driven_urdf=robot) == bool(codes)
+    errors = [it for it in capsys.readouterr().err.splitlines() if " error: " in it]
+    assert {it.split(" error: ")[1].split()[0] for it in errors} == codes
+    assert len(errors) == len(codes)
+    assert all("add ros2_control to `stack:`" in it for it in errors if "MG723" in it)
+    if codes:
+        return
+    manager = "/controller_manager_robot1" if layout == "postfix" else "/robot1/controller_manager"
+    plan = (tmp_path / "out" / "plan.yaml").read_text()
+    assert f"[calls, service, {manager}/load_controller," in plan
+    launch = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert ("'-c', f'controller_manager_{name}'" in launch.replace('"', "'")) == (
+        layout == "postfix"
+    )

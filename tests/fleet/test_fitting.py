@@ -224,14 +224,74 @@ def test_nav2_sends_to_an_input_of_twist_mux(
     assert last in sent_on(out, "/robot1/nav_vel")
 
 
-def test_a_mux_without_a_free_input_moves_nobody(tmp_path: Path) -> None:
-    """Its inputs are those of the user's file, and each has its sender."""
-    (tmp_path / "p.yaml").write_text(
-        "twist_mux: {ros__parameters: {topics: {joy: {topic: joy_vel, timeout: 0.5, priority: 1}}}}\n"
-    )
-    text = "distro: jazzy\nsimulator: gazebo\nstack: [nav2, teleop]\ncompanions: {params: p.yaml}"
+def muxed(folder: Path, *inputs: str) -> str:
+    """The key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
+    lines = [
+        f"      {it.replace(': ', ': {topic: ')}, timeout: 0.5, priority: 1}}" for it in inputs
+    ]
+    head = "twist_mux:\n  ros__parameters:\n    use_stamped: false\n"
+    head += "    locks: {stop: {topic: stop, timeout: 0.0, priority: 255}}\n"
+    head += "    topics:\n" if inputs else ""
+    (folder / "mux.yaml").write_text(head + "\n".join(lines) + "\n")
+    return "simulator: gazebo\ncompanions: {params: mux.yaml}"
+
+
+def test_a_mux_without_an_input_for_a_planner_gets_the_stacks(tmp_path: Path) -> None:
+    """Nav2 and the mux are both added: beside each other the drive would obey two. twist_mux.cpp lists
+    the parameters below ``topics``, whichever file or argument has them."""
+    text = f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, 'joy: joy_vel')}"
     out = built(tmp_path, text)
-    assert {"collision_monitor", "twist_mux"} <= {*sent_on(out, "/robot1/cmd_vel")}
+    assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
+    assert "collision_monitor" in sent_on(out, "/robot1/nav_vel")
+    assert planned(out, "/robot1/twist_mux", "subscribes", "/robot1/nav_vel")
+    launch = (out / "fleet.launch.py").read_text()
+    assert "'topics.navigation.topic': 'nav_vel'" in launch.replace('"', "'")
+    assert "'topics.joystick.topic'" not in launch.replace('"', "'")
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+@pytest.mark.parametrize(
+    ("inputs", "stick", "keys"),
+    [
+        (("navigation: cmd_vel", "joystick: cmd_vel_joy"), "cmd_vel_joy", "key_vel"),
+        (("nav: cmd_vel_nav", "pad: joy_cmd"), "joy_cmd", "key_vel"),
+        (("joystick: manual", "keyboard: typed"), "manual", "typed"),
+        (("keys: a", "tracker: b"), "joy_vel", "a"),
+        ((), "joy_vel", "key_vel"),
+    ],
+)
+def test_a_joystick_sends_to_an_input_of_the_users_mux(
+    inputs: tuple[str, ...], stick: str, keys: str, layout: str, tmp_path: Path
+) -> None:
+    """An input that is called as what the drive obeys would be heard by the mux that sends it."""
+    own = f"distro: jazzy\nstack: teleop\n{muxed(tmp_path, *inputs)}"
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{own}\n{ROBOTS}\n")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    ends = {
+        (name.strip("/").replace("robot1", "").strip("/_"), role): topics
+        for name, its in plan.items()
+        for role in ("publishes", "subscribes")
+        if (topics := [it[2].replace("robot1", "").strip("/") for it in its if it[0] == role])
+    }
+    assert stick in ends["teleop_twist_joy_node", "publishes"]
+    assert keys in ends["teleop_twist_keyboard", "publishes"]
+    assert {stick, keys} <= {*ends["twist_mux", "subscribes"]}
+    assert "cmd_vel" in ends["twist_mux", "publishes"]
+    assert "cmd_vel" not in ends["twist_mux", "subscribes"]
+
+
+@pytest.mark.parametrize("topic", ["cmd_vel", "cmd_vel_nav", "cmd_vel_smoothed"])
+def test_nav2_reaches_a_mux_whose_input_is_called_as_a_topic_of_nav2(
+    topic: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The mux is to hear the last of Nav2's nodes, and not what its smoother or monitor reads."""
+    inputs = f"navigation: {topic}", "joystick: cmd_vel_joy"
+    out = built(tmp_path, f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
+    assert not {"MG312", "MG315", "MG329"} & {*capfd.readouterr().err.split()}
+    assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
+    assert "collision_monitor" in sent_on(out, f"/robot1/{topic}_in")
 
 
 def test_a_static_transform_without_frames_is_left_out(tmp_path: Path) -> None:

@@ -18,7 +18,6 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.spelling.plan import (
     expect,
-    from_text,
     named_frames,
     planned_end,
     tf_topic,
@@ -43,10 +42,11 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Node,
+    Origin,
     Place,
     System,
     edge_of,
+    origin_of,
 )
 
 SCAN = Endpoint(TOPIC, PUBLISHES, "scan", "a/msg/Scan", also=("a/msg/Old",))
@@ -116,7 +116,9 @@ def test_a_node_says_where_its_rules_stand() -> None:
     )
     plugins = {"a": [gz]}
     table = build_table(["a"], facts, naming, plugins, release=NEWEST_LTS)
-    found = expect(table, naming, {"a": []}, facts, sources={"/a/gz": "r.urdf:7"}, maybe_real=["a"])
+    found = expect(
+        table, naming, {"a": []}, facts, sources={"/a/gz": Place("r.urdf", 7)}, maybe_real=["a"]
+    )
     assert {it.name: (it.way, it.taker) for it in found.nodes if it.way} == {
         "/a/hosted": ("host", "/a/driver"),
         "/a/c": ("component", ""),
@@ -127,9 +129,23 @@ def test_a_node_says_where_its_rules_stand() -> None:
     assert [it.sure for it in real.nodes if it.name == "/a/gz"] == [RUNS]
 
 
-def test_where_a_node_is_named() -> None:
-    assert from_text(Node("/a"), "stack nav2") == Node("/a", stack="nav2")
-    assert from_text(Node("/a"), "a.yaml:3") == Node("/a", place=Place("a.yaml", 3))
+@pytest.mark.parametrize(
+    ("text", "origin"),
+    [
+        ("stack nav2", Origin("nav2")),
+        ("a.yaml:3", Origin(place=Place("a.yaml", 3))),
+        ("./stack of mine.yaml:3", Origin(place=Place("./stack of mine.yaml", 3))),
+        ("", Origin()),
+    ],
+)
+def test_what_names_a_node(text: str, origin: Origin) -> None:
+    assert origin_of(text) == origin
+    assert str(origin) == text
+
+
+def test_a_file_that_is_called_like_a_stack_is_a_place() -> None:
+    text = str(Origin(place=Place("stack of mine.yaml", 3)))
+    assert origin_of(text).place == Place("./stack of mine.yaml", 3)
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ def read_system(text: str) -> Index:
     assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
-    guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
+    guessed = with_frames((GuessedRobot(it, f"/{it}") for it in robots), frames)
     running = [line.removeprefix("running: ") for line in text.splitlines()]
     messages = {name: int(count) for name, count in _words(CAME, running)}
     return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))

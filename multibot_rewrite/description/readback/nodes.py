@@ -72,10 +72,11 @@ class ReadRule(NamedTuple):
 class ReadNode(NamedTuple):
     """The node of a plugin, which is the ``number``-th of the file.
 
-    ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
-    further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
-    parameters of parent and child of a transform it publishes. ``helper`` is a node that it starts
-    beside its own, ``manager`` the full name of the controller manager that it makes, if any.
+    ``name`` and ``namespace`` are those that its rules ``__node`` and ``__ns`` make, ``rules`` the
+    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are parameters
+    with the frames they hold, ``sends`` the parameters of parent and child of a transform it publishes.
+    ``helper`` is a node that it starts beside its own, ``manager`` the full name of the controller
+    manager that it makes, if any.
     """
 
     section: VocabularySection
@@ -110,11 +111,10 @@ def node_of(
     namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
+    # The namespace is the helper's; the node is where its own rules place it.
     helper = f"{namespace.rstrip('/')}/{section.helper}" if section.helper else ""
-    if helper:
-        # The namespace is the helper's; the node is where its own rules place it.
-        name, namespace = bound.node, bound.namespace
-        rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
+    name, namespace = bound.node, bound.namespace
+    rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
     endpoints, bare = _endpoints(plugin, section, bound, rules), _bound(name, namespace, ())
     return ReadNode(

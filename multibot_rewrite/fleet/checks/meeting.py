@@ -4,7 +4,8 @@ remap table, for what no description starts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from types import MappingProxyType
 
@@ -76,7 +77,10 @@ def _meetings(
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """What each robot has, first by its description."""
-    found = {it.robot: [*_of_description(it, table)] for it in members}
+    ruled: dict[str, set[str]] = defaultdict(set)
+    for run in (it for it in table.runs if it.fact.of_hardware):
+        ruled[run.robot] |= {end.name for end, _ in run.names}
+    found = {it.robot: [*_of_description(it, ruled[it.robot])] for it in members}
     for it in table.runs:
         if it.robot and not it.written:
             found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
@@ -88,16 +92,12 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     return found
 
 
-def _of_description(it: Member, table: Table) -> Iterator[RuntimeName]:
-    """Yield what a robot has by its description alone: the table has the rules of the nodes that its
-    hardware makes."""
-    made = {
-        node.full_name for node in table.runs if node.robot == it.robot and node.fact.of_hardware
-    }
-    ends = {end.name for run, end, _ in table.ends if run.full_name in made}
+def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
+    """Yield what a robot has by its description alone: the table has rules for the names of the nodes
+    that its hardware makes, which are ``ruled``."""
     for name in it.reading.names:
-        ruled = name.tag == "ros2_control" and name.name in ends
-        if not (ruled or name.of_controllers):
+        is_ruled = name.tag == "ros2_control" and name.name in ruled
+        if not (is_ruled or name.of_controllers):
             yield name
 
 

@@ -46,7 +46,6 @@ from multibot_rewrite.system.records import (
     Robot,
     System,
     edge_of,
-    place_of,
 )
 
 # Of robots that differ in their names alone two show where they meet.
@@ -114,7 +113,7 @@ def _nodes(
             # A person starts a tool, or nobody does.
             doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
             place = _section(it.node, given.get(it.robot, NO_SECTIONS))
-            plugin = place_of(fleet.sources.get(it.full_name, ""))
+            plugin = fleet.sources.get(it.full_name, NOWHERE)
             place = plugin if plugin != NOWHERE else place
             sure = MAY if doubtful else RUNS
             yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The argument of a xacro that switches between the simulated and the real robot.
 
-Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_gazebo``, ``sim_ignition``: it chooses
+Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_ignition``, ``real_robot``: it chooses
 the hardware class of ``<ros2_control>``, and often the plugins of the simulator.
 """
 
@@ -22,7 +22,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.rules.facts.simulators import SIMULATORS
 
-_NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign)(?:_|$)")
+_NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign|real|hardware|hw|fake|mock)(?:_|$)")
 _OTHER = {"true": "false", "True": "False", "1": "0"}
 _OTHERS = {**_OTHER, **{off: on for on, off in _OTHER.items()}}
 # What classes of simulators and those of vendors for them are called like.

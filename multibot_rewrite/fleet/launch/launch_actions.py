@@ -42,12 +42,13 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
 )
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
 from multibot_rewrite.system.records import PUBLISHES
 
-STATE, BRIDGE = "robot_state_publisher", "bridge.yaml"
+STATE = "robot_state_publisher"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
@@ -303,8 +304,8 @@ def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
     starts = [*_shared(plan, names, known)]
-    if BRIDGE in files:
-        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)))
+    if BRIDGE_FILE in files:
+        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE_FILE)},)))
     return tuple(starts)
 
 

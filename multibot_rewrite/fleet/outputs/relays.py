@@ -25,7 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import placed, target_of
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
 _RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")
@@ -111,7 +111,8 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     check_relayed(file, fleet.naming)
     made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
     runs = (*fleet.table.runs, *(it.run for it in made))
-    origins = {it.run.full_name: "relayed of the fleet file" for it in made}
+    origin = Origin(place=Place("relayed of the fleet file"))
+    origins = {it.run.full_name: origin for it in made}
     return fleet._replace(
         table=fleet.table._replace(runs=runs), origins={**fleet.origins, **origins}
     )

@@ -73,6 +73,8 @@ def not_started(
     packages = {known.nodes[it.known].package for it in nodes if it.known in known.nodes}
     if own and own[0] in packages and naming <= {own}:
         return f"it is an example of {own[0]}, and no launch file of another package names it"
+    if not nodes and own and given and given <= {own[0], ""}:
+        return f"it is for any node, and launch files give it to nodes of {own[0]} alone"
     if not launched or packages or given & {"", *(it.package for it in known.nodes.values())}:
         return ""
     if not nodes:

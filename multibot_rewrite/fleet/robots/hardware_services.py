@@ -16,9 +16,10 @@ MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))
 
 def moved_services(plan: FleetPlan) -> Iterator[Finding]:
     """Yield the absolute services of hardware that have the robot's name now, one finding a robot."""
-    hardware = [it for it in plan.fleet.table.runs if it.fact.of_hardware]
+    tables = plan.fleet.table.by_robot(it.spec.namespace for it in plan.robots)
     for robot in plan.robots:
-        own = (it for run in hardware if run.robot == robot.spec.namespace for it in run.names)
+        runs = (it for it in tables[robot.spec.namespace].runs if it.fact.of_hardware)
+        own = (it for run in runs for it in run.names)
         served = [it for it in own if it[0].role == SERVES and it[0].name[0] == "/"]
         moved = [(end.name, name) for end, name in served if name != end.name]
         if moved:

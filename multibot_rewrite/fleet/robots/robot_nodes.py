@@ -27,16 +27,9 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
-from multibot_rewrite.fleet.robots.fitting import (
-    changed_frames,
-    described,
-    fitted,
-    fitting_frames,
-    free_nodes,
-    sends_too,
-    sent_by_controllers,
-    with_frames,
-)
+from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
+from multibot_rewrite.fleet.robots.fitting.frames import changed_frames, fitting_frames, with_frames
+from multibot_rewrite.fleet.robots.fitting.transforms import sends_too, sent_by_controllers
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -50,6 +43,7 @@ from multibot_rewrite.knowledge.parameters import (
 )
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
+from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.launch.of_robot import without_robot
@@ -57,9 +51,9 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
 from multibot_rewrite.spelling.records import GivenNode
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import Edge, Origin, Place
 
-WORLD, BRIDGE = "world", "ros_gz_bridge"
+WORLD = "world"
 # The stack of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
 BY_ARGUMENT = "an argument of the xacro makes it"
@@ -210,7 +204,7 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
-    of_one = it.name == BRIDGE and not it.shared
+    of_one = it.name == BRIDGE_NODE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 
 
@@ -228,7 +222,9 @@ def _of_srdf(
     """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
     if spec.srdf and MOVE_GROUP not in {it.kind for it in nodes}:
         file = os.path.basename(spec.srdf)
-        yield known[MOVE_GROUP]._replace(when=f"its SRDF is {file}", origin=f"{spec.srdf}:1")
+        yield known[MOVE_GROUP]._replace(
+            when=f"its SRDF is {file}", origin=Origin(place=Place(spec.srdf, 1))
+        )
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

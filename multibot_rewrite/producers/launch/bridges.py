@@ -129,7 +129,7 @@ def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
         yield Row(Endpoint(TOPIC, role, name, full), inside)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
 def _of_text(text: str) -> tuple[Row, ...]:
     return tuple(_written(text))
 

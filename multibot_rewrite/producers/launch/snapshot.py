@@ -22,6 +22,7 @@ from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
 from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
+from multibot_rewrite.producers.launch.domain_bridges import bridged_domains
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator, sensors_of
 from multibot_rewrite.producers.launch.model_caveats import NOT_KNOWN, NOT_WHOLE, of_simulator
@@ -98,7 +99,9 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     parts, refused = _parts(nodes, inside)
     of_plugins = sent_by_plugins(models.found)
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
-    more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
+    bridged = bridged_domains(nodes)
+    every_note = (*graph.notes, *notes, *bridged.notes)
+    more = (*_caveats(every_note, nodes), *_of_bridges(nodes, inside))
     lost = of_simulator(graph, models)
     caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
@@ -113,7 +116,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
     simulated = models_in_simulator(models, known.release)
-    found = Launched(graph, nodes, spawned, models, simulated, system, known.release)
+    found = Launched(graph, nodes, spawned, models, simulated, system, known.release, bridged)
     heard = [*_heard(nodes, sensors_of(simulated))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))

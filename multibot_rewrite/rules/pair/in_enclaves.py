@@ -20,10 +20,17 @@ def enclave_of_another_robot(plan: Index, seen: Index) -> Iterator[Finding]:
         robot = plan.robot_of.get(name, "") if enclave else ""
         if not robot or _is_of(enclave, robot):
             continue
-        other = next((it for it in sorted(plan.declared) if _is_of(enclave, it)), "")
+        other = min((it for it in _parts(enclave) if it in plan.declared), default="")
         if other:
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
+
+
+def _parts(enclave: str) -> Iterator[str]:
+    """The words of a path one after the other, as many as a robot's name may have."""
+    words = enclave.strip("/").split("/")
+    for start in range(len(words)):
+        yield from ("/".join(words[start:end]) for end in range(start + 1, len(words) + 1))
 
 
 def _is_of(enclave: str, robot: str) -> bool:

@@ -125,7 +125,7 @@ def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> Cause | Non
     for odom, root in loose_odometry(seen) if len(roots) == 2 else ():
         if root in roots and seen.frame_robot(odom) in ("", robot.name):
             (other,) = {*roots} - {root}
-            return Cause(no_odometry(odom, other))
+            return Cause(no_odometry(seen, robot.name, odom, other))
     return None
 
 

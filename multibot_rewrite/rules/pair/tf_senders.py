@@ -3,30 +3,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.rules.pair.tf_trees import tf_trees
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.system.index import Index, Sent
+from multibot_rewrite.system.index import Index, Sent, once
 from multibot_rewrite.system.records import Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
 def sent_by_robot(plan: Index, robot: Robot) -> list[Sent]:
     """Those of one robot's nodes."""
-    return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
+    return [*_sent_by_robot(plan).get(robot.name, ())]
+
+
+@once
+def _sent_by_robot(plan: Index) -> Mapping[str, Sequence[Sent]]:
+    found: dict[str, list[Sent]] = defaultdict(list)
+    for it in plan.sent:
+        found[plan.robot_of.get(it.node, "")].append(it)
+    return found
 
 
 def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
+    found = _named(plan, seen).get(tree_topic(robot.tf_topic), ())
+    return (it for it in found if it[0] != robot.name)
+
+
+@once
+def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]:
+    """The transforms with a robot's name on one robot's tf topic, or that several nodes send on one of
+    all, by their topic and each with that robot."""
+    found: dict[str, list[tuple[str, Edge]]] = defaultdict(list)
     for tree in tf_trees(plan, seen):
-        if tree.topic != tree_topic(robot.tf_topic):
-            continue
-        for edge in tree.edges:
-            other = plan.frame_robot(edge.child)
-            if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
-                yield other, edge
+        for edge in (it for it in tree.edges if len(tree.home) == 1 or it.several):
+            if other := plan.frame_robot(edge.child):
+                found[tree.topic].append((other, edge))
+    return found
 
 
 def described_robots(plan: Index, seen: Index, robot: Robot) -> Iterator[str]:

@@ -62,7 +62,9 @@ def _disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) 
 def wrong_tf_topic(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot and topic."""
     children = {tree.topic: {edge.child for edge in tree.edges} for tree in tf_trees(plan, seen)}
-    for tree in tf_trees(plan, seen):
+    # A row of a bridge for another topic than the robot's tf says that this is meant.
+    elsewhere = {it.name for it in plan.system.topics if PUBLISHES in it.bridge}
+    for tree in (it for it in tf_trees(plan, seen) if it.home or it.topic not in elsewhere):
         misplaced: dict[str, list[Edge]] = defaultdict(list)
         for edge in tree.edges:
             robot = _sending_robot(plan, tree, edge.child)
