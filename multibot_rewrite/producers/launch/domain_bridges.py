@@ -16,8 +16,9 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.producers.launch.records import LaunchNote, Run
+from multibot_rewrite.producers.launch.records import LaunchNote
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End, Node
 
 _PROGRAM = f"{DOMAIN_BRIDGE}/{DOMAIN_BRIDGE}"
