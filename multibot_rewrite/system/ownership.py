@@ -59,8 +59,10 @@ class NameOwnership(NamedTuple):
             return self.robots[found]
         found = self._longest(end for segment in segments for end in _ends(segment))
         robot = self.robots.get(found, "")
-        is_known = not self.plain_names or self.without_robot(name, robot) in self.plain_names
-        return robot if is_known else ""
+        once = self.without_robot(name, robot)
+        # It may have the tag at both ends.
+        is_known = not {once, self.without_robot(once, robot)}.isdisjoint(self.plain_names)
+        return robot if is_known or not self.plain_names else ""
 
     def robot_at_its_place(self, name: str) -> str:
         """The robot whose tag is at the end of a name where this plan has them, or an empty string; of

@@ -219,7 +219,7 @@ def models_of(given: Reader) -> Iterator[tuple[str, str]]:
         yield who, words[words.index(SPAWNERS[it["executable"]]) + 1]
 
 
-def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
+def resolve(nodes: list[Node]) -> dict[tuple[str, programs.Opened], str]:
     """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it, and
     what a helper opens is in the namespace of the process."""
     parts = [
@@ -242,7 +242,7 @@ def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
     ]
     answers = rcl_names.ask(cases)
     return {
-        (at, end.role, end.name): name.removesuffix(GOAL)
+        (at, end): name.removesuffix(GOAL)
         for (at, _, _, ends), answer in zip(parts, answers, strict=True)
         if answer
         for end, name in zip(ends, answer[1:], strict=True)
@@ -269,7 +269,7 @@ def above(node: Node, name: str) -> str:
 def ends_of(nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[End]:
     for at, it in enumerate(nodes):
         for end in it.ends:
-            name = resolved.get((f"{at}", end.role, end.name))
+            name = resolved.get((f"{at}", end))
             if name:
                 yield End(it.robot, it.fqn, end.role, name, end.type, end.sure)
 

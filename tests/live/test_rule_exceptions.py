@@ -210,7 +210,7 @@ def test_a_robots_name_that_is_a_word_of_its_frames_is_not_there_twice(
     own = {name: (f"base/{name}", f"arm_upper/{name}") for name in (robot, "other")}
     plan = fleet("/ROBOT/tf", **own)
     frame = f"{robot}_base_{robot}"
-    seen = graph(plan, *below(f"arm_upper/{robot}", frame, topic=f"/{robot}/tf_static"))
+    seen = graph(plan, *below(f"base/{robot}", frame, topic=f"/{robot}/tf_static"))
     assert found(plan, seen) == [(code, robot, (frame,))]
 
 
