@@ -54,17 +54,6 @@ PART_TYPES = {
 PROCESSES = 8
 
 
-class StubEndpoint(NamedTuple):
-    """An endpoint with the name in its node's code; ``helper`` and ``by`` as in ``Endpoint``."""
-
-    kind: str
-    role: str
-    name: str
-    type: str
-    helper: bool
-    by: str = ""
-
-
 class StubNode(NamedTuple):
     """A stub: its name in the code, its arguments for rcl and those of its process, which are a
     helper node's, its endpoints, what it sends on tf."""
@@ -72,7 +61,7 @@ class StubNode(NamedTuple):
     name: str
     arguments: tuple[str, ...]
     process_arguments: tuple[str, ...]
-    endpoints: tuple[StubEndpoint, ...]
+    endpoints: tuple[Endpoint, ...]
     edges: tuple[Edge, ...]
 
 
@@ -109,7 +98,7 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
     """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
     serves, too."""
     rows = [
-        StubEndpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type, False)
+        Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics
         for role in topic.bridge
     ]
@@ -119,9 +108,9 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
 
 def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
     """The nodes of domain_bridge in a plan of one domain."""
-    ends: dict[str, list[StubEndpoint]] = {}
+    ends: dict[str, list[Endpoint]] = {}
     for it in plan.ends:
-        stub = StubEndpoint(it.kind, it.role, it.name, it.type, False)
+        stub = Endpoint(it.kind, it.role, it.name, it.type)
         ends.setdefault(it.node, []).append(stub)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
@@ -149,13 +138,11 @@ def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     return (*own, *node.handed_on)
 
 
-def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> StubEndpoint:
+def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoint:
     kind, role, own, type_, *_ = end
     # A topic without a role is nearly always a sensor's output.
-    return StubEndpoint(
-        *(kind, role or PUBLISHES, own, type_ or types.get(name, "")),
-        *(end.helper, end.by),
-    )
+    made = Endpoint(kind, role or PUBLISHES, own, type_ or types.get(name, ""))
+    return made._replace(helper=end.helper, by=end.by)
 
 
 def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
@@ -185,7 +172,7 @@ def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
 
 def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
     if planned.kind == ACTION and planned.type in replaced:
-        action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
+        action = Endpoint(planned.kind, planned.role, planned.name, planned.type)
         for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
             yield planned_end(planned.node, kind, role, name, type_, code_name)
@@ -213,7 +200,7 @@ def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> Sys
     return it._replace(ends=tuple(map(own, it.ends)), topics=plan.topics)
 
 
-def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
+def action_parts(action: Endpoint) -> Iterator[Endpoint]:
     """The services and topics that make up an action, for an action without its type."""
     roles = {
         (SERVES, SERVICE): SERVES, (SERVES, TOPIC): PUBLISHES,
@@ -222,7 +209,7 @@ def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
     for suffix, kind in ACTION_PARTS:
         type_ = PART_TYPES.get(suffix, SUBSTITUTE_TYPES[kind])
         name = f"{action.name}/{suffix}"
-        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper, action.by)
+        yield action._replace(kind=kind, role=roles[action.role, kind], name=name, type=type_)
 
 
 def substitute_type(kind: str, type_: str) -> str:
@@ -232,7 +219,10 @@ def substitute_type(kind: str, type_: str) -> str:
 
 def to_order(nodes: Iterable[StubNode]) -> tuple[Any, ...]:
     """Stub nodes as plain values, the order of the process that runs them."""
-    return tuple(nodes)
+    return tuple(
+        (*it[:3], [(*end[:4], end.helper, end.by) for end in it.endpoints], it.edges)
+        for it in nodes
+    )
 
 
 def from_order(value: Sequence[Any]) -> list[StubNode]:
@@ -242,7 +232,10 @@ def from_order(value: Sequence[Any]) -> list[StubNode]:
             name,
             tuple(words),
             tuple(process),
-            tuple(StubEndpoint(*end) for end in endpoints),
+            tuple(
+                Endpoint(kind, role, own, type_, helper=helper, by=by)
+                for kind, role, own, type_, helper, by in endpoints
+            ),
             tuple(edge_of(parent, child, static) for child, parent, _, static, *_ in edges),
         )
         for name, words, process, endpoints, edges in value

@@ -16,7 +16,8 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.live.rehearsal import StubEndpoint, StubNode, stub_nodes
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.live.rehearsal import StubNode, stub_nodes
 from multibot_rewrite.spelling.transforms import with_odometry
 from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, edge_of
@@ -134,12 +135,11 @@ def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> StubNode:
     }
     rows = yaml.safe_load(Path(config).read_text())
     ends = tuple(
-        StubEndpoint(
+        Endpoint(
             TOPIC,
             role,
             row["topic_name" if "topic_name" in row else "ros_topic_name"],
             row["ros_type_name"],
-            False,
         )
         for row in rows
         for role in _ROLES[row.get("direction", "BIDIRECTIONAL")]
