@@ -14,7 +14,7 @@ import pytest
 from launched_nodes import AT
 
 from multibot_rewrite.producers.launch.domain_bridges import BridgedDomains, bridged_domains
-from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 FILE = """\
@@ -29,8 +29,8 @@ topics:
 
 
 def bridged(*arguments: str, program: str = "domain_bridge/domain_bridge") -> BridgedDomains:
-    rest = ((), (), "/r", None, {}, "p", arguments, program, AT)
-    return bridged_domains([RunningNode("n", "/r", *rest)])
+    run = Run("", "n", "/r", "n", (), program=program, arguments=arguments, place=AT)
+    return bridged_domains([run])
 
 
 def ends(found: BridgedDomains) -> set[tuple[str, str, str]]:
