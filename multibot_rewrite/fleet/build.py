@@ -183,12 +183,13 @@ def _without_folder(data: bytes, source: str) -> bytes:
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
     """The plan with its places relative to the fleet file: the same from every working directory."""
     folder = os.path.dirname(os.path.abspath(plan.file.file))
-    sources = {node: _from(folder, place) for node, place in fleet.sources.items()}
-    origins = {
-        node: it._replace(place=_from(folder, it.place)) for node, it in fleet.origins.items()
-    }
-    gaps = tuple(_portable(plan, folder, it) for it in fleet.gaps)
-    return expected(fleet._replace(sources=sources, origins=origins, gaps=gaps))
+    made = expected(fleet)
+    nodes = (
+        it._replace(place=_from(folder, it.place), plugin=_from(folder, it.plugin))
+        for it in made.nodes
+    )
+    gaps = (_portable(plan, folder, it) for it in made.gaps)
+    return made._replace(nodes=tuple(nodes), gaps=tuple(gaps))
 
 
 def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFile]:

@@ -36,17 +36,15 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import expect, named_frames, planned_end, vacuous
-from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.records import GivenNode, Run, Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
-    NO_ORIGIN,
     SIM_TIME,
     Edge,
     End,
-    Node,
     Origin,
     Parameter,
     Place,
@@ -63,11 +61,9 @@ FRAME_PREFIX = "frame_prefix"
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description of each plugin's node, ``origins`` of every other node the file or stack
-    that names it. ``tags`` are the robots whose prefix or postfix
-    differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``tags`` the robots whose
+    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read for
+    descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
@@ -79,8 +75,6 @@ class Fleet(NamedTuple):
     naming: Naming
     edges: Edges
     facts: tuple[NodeFacts, ...]
-    sources: dict[str, Place]
-    origins: dict[str, Origin]
     tags: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
@@ -206,15 +200,17 @@ def assemble(
     facts: tuple[NodeFacts, ...],
     naming: Naming,
     release: str,
+    given: Sequence[GivenNode] = (),
 ) -> Fleet:
-    """The fleet of robots that run the same nodes of a release."""
+    """The fleet of robots that run the same nodes of a release, with parameters that are ``given``."""
     inventories = {it.robot: it.inventory for it in members}
-    plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
+    plugins = {it.robot: _plugins(it) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [run.fact for run in plugins[it.robot]]
         edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
-    table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
+    robots = [it.robot for it in members]
+    table = build_table(robots, facts, naming, plugins, given, release=release)
     unread = dict.fromkeys(found for it in members for found in it.unread)
     table = table._replace(problems=(*table.problems, *unread))
     return Fleet(
@@ -223,32 +219,22 @@ def assemble(
         naming,
         edges,
         facts,
-        _sources(members),
-        _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
         _read(members),
         described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
 
 
+def _plugins(member: Member) -> list[Run]:
+    """The plugins' nodes, placed in the source: inserted text moves the lines of the result."""
+    runs, source = plugin_nodes(member.reading, member.robot), member.source
+    lines = (line_of(source, "plugin", it.number) for it in member.reading.nodes)
+    each = zip(runs, lines, strict=True)
+    return [run._replace(place=Place(source.file, line)) for run, line in each]
+
+
 def _read(members: Sequence[Member]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(path for it in members for path in it.read))
-
-
-def _sources(members: Sequence[Member]) -> dict[str, Place]:
-    """The places of the plugins in the source: inserted text moves the lines of the result."""
-    found = {}
-    for it in members:
-        for node in it.reading.nodes:
-            line = line_of(it.source, "plugin", node.number)
-            found[node.full_name] = Place(it.source.file, line)
-    return found
-
-
-def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, Origin]:
-    """Return by full name the file or stack that names a node."""
-    named = {it.name: it.origin for it in facts if it.origin != NO_ORIGIN}
-    return {it.full_name: named[it.node] for it in table.runs if it.node in named}
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
@@ -261,8 +247,6 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             first.naming,
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
-            {**first.sources, **other.sources},
-            {**first.origins, **other.origins},
             {**first.tags, **other.tags},
             tuple(dict.fromkeys((*first.read, *other.read))),
             described={**first.described, **other.described},
@@ -290,12 +274,8 @@ def planned(fleet: Fleet) -> System:
         for robot, found in {**fleet.inventories, **fleet.described}.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    tags, places = fleet.tags, fleet.sources
-    plan = expect(
-        fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
-    )
+    plan = expect(fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
     whole = plan._replace(
-        nodes=tuple(_named(it, fleet) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
         release=fleet.table.release,
         gaps=fleet.gaps,
@@ -306,20 +286,15 @@ def planned(fleet: Fleet) -> System:
     return with_bridges(whole, fleet.apart.crossing) if whole.domains else whole
 
 
-def _named(node: Node, fleet: Fleet) -> Node:
-    return node._replace(**fleet.origins.get(node.name, NO_ORIGIN)._asdict())
-
-
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:
     """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
     puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
-    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
     for it in merged(fleet.table.runs):
         given: dict[str, object] = {}
         if it.robot in clocks and not it.fact.plugin:
             given[SIM_TIME] = clocks[it.robot]
-        if it.robot and it.node in described and fleet.naming.layout.at_run_time:
+        if it.robot and it.fact.package == STATE_PUBLISHER and fleet.naming.layout.at_run_time:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
         for name, value in given.items():
             yield Parameter(it.full_name, name, parameter_text(value))
@@ -327,10 +302,9 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
 
 def _sends(fleet: Fleet) -> Iterator[Edge]:
     """The transforms that nodes' parameters name."""
-    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
     for it in fleet.table.runs:
         edges = fleet.edges.get((it.robot, it.node), ())
-        if edges and it.node not in described:
+        if edges and it.fact.package != STATE_PUBLISHER:
             sender = (it.full_name,)
             yield from (edge._replace(publishers=sender) for edge in edges)
 

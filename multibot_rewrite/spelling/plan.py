@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.of_runs import ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import (
     MAY,
+    NO_ORIGIN,
     NOWHERE,
     RUNS,
     End,
     Node,
-    Place,
     Robot,
     Sure,
     System,
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 
 NOTHING: Mapping[str, Sequence[str]] = {}
 NO_WORDS: Mapping[str, str] = {}
-NO_PLACES: Mapping[str, Place] = {}
 
 
 def planned_end(
@@ -64,20 +62,17 @@ def expect(
     table: Table,
     naming: Naming,
     frames: Mapping[str, Sequence[str]],
-    facts: Sequence[NodeFacts] = (),
     named: Mapping[str, Sequence[str]] = NOTHING,
-    sources: Mapping[str, Place] = NO_PLACES,
     words: Mapping[str, str] = NO_WORDS,
     maybe_real: Container[str] = (),
 ) -> System:
     """The plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
-    ``facts`` describe the nodes that every robot runs, ``sources`` has the place of the plugin of a
-    node. ``words`` has the name of a robot in its frames, where that is another one than its name;
+    ``words`` has the name of a robot in its frames, where that is another one than its name;
     plugins of ``maybe_real`` robots may be missing.
     """
-    usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
+    usual = dict.fromkeys((*_defaults(table), *USUAL_FRAMES))
 
     def robot(name: str) -> Robot:
         word, own = words.get(name, name), tuple(frames.get(name, ()))
@@ -85,11 +80,11 @@ def expect(
         tag = word if word != name else ""
         return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
 
-    own, made = _own_nodes(table, facts, maybe_real), _private_nodes(table)
+    own, made = _own_nodes(table, maybe_real), _private_nodes(table)
     names = dict.fromkeys((*frames, *filter(None, own)))
     nodes = _by_robot(table, own, made, (*names, ""))
     return System(
-        nodes=tuple(_placed(nodes, table, sources)),
+        nodes=tuple(_placed(nodes, table)),
         ends=tuple(dict.fromkeys(_planned(table))),
         robots=tuple(map(robot, names)),
         layout=table.layout,
@@ -114,19 +109,12 @@ def _by_robot(
             yield Node(full, robot=name, sure=sure)
 
 
-def _own_nodes(
-    table: Table, facts: Sequence[NodeFacts], maybe_real: Container[str]
-) -> dict[str, dict[str, Sure]]:
+def _own_nodes(table: Table, maybe_real: Container[str]) -> dict[str, dict[str, Sure]]:
     """By robot: the full names of its nodes, each with whether it runs; those for all robots do."""
-    optional = {node.name for node in facts if node.when}
-    conditional = {
-        (it.robot, it.node)
-        for it in table.runs
-        if it.node in optional or (it.written and it.robot in maybe_real)
-    }
     found: dict[str, dict[str, Sure]] = {}
     for it in table.runs:
-        own, may = found.setdefault(it.robot, {}), (it.robot, it.node) in conditional
+        own = found.setdefault(it.robot, {})
+        may = it.fact.when or (it.written and it.robot in maybe_real)
         own[it.full_name] = MAY if it.robot and may else own.get(it.full_name, RUNS)
     return found
 
@@ -147,12 +135,17 @@ def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple
     return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
 
 
-def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, Place]) -> Iterator[Node]:
-    """Each node with its plugin, and its way and taker, where it has no --ros-args of its own."""
+def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
+    """Each node with its plugin and what else names it, and its way and taker, where it has no
+    --ros-args of its own."""
     ways = dict(_ways(table))
+    plugins = {it.full_name: it.place for it in table.runs if it.written}
+    origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
-        yield it._replace(way=way, taker=taker, plugin=sources.get(it.name, NOWHERE))
+        stack, place = origins.get(it.name, NO_ORIGIN)
+        plugin = plugins.get(it.name, NOWHERE)
+        yield it._replace(way=way, taker=taker, plugin=plugin, stack=stack, place=place)
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
@@ -166,11 +159,11 @@ def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
         yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
 
 
-def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:
+def _defaults(table: Table) -> Iterator[str]:
     """The default frames of parameters; a name in <> stands for another parameter."""
-    for node in facts:
-        names = (frame.default.strip("/") for frame in node.frames)
-        yield from (name for name in names if name and "<" not in name)
+    facts = {id(it.fact): it.fact for it in table.runs if not it.written}
+    names = (frame.default.strip("/") for it in facts.values() for frame in it.frames)
+    yield from (name for name in names if name and "<" not in name)
 
 
 def named_frames(inventory: Inventory) -> tuple[str, ...]:
@@ -196,7 +189,9 @@ def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, .
 def _planned(table: Table) -> Iterator[End]:
     """The ends that do not depend on parameters."""
     for run in table.runs:
-        for (fact, _), end in zip(run.names, ends_of(run), strict=True):
+        # What is planned is not said by a place.
+        bare = run._replace(values={}, place=NOWHERE)
+        for (fact, _), end in zip(run.names, ends_of(bare), strict=True):
             if (fact.by or not fact.helper) and end.sure == RUNS and end.role:
                 yield from [end] * (end.name not in SENT_BY_EVERY_NODE)
 

@@ -24,7 +24,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.spelling.of_runs import with_names
-from multibot_rewrite.spelling.records import Rule, Run, Table
+from multibot_rewrite.spelling.records import GivenNode, Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
     asked_for,
@@ -45,15 +45,17 @@ def build_table(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Sequence[Run]] = NOTHING,
+    given: Iterable[GivenNode] = (),
     *,
     release: str,
 ) -> Table:
     """The remap table of a fleet with its problems; nodes for all robots are in it once.
 
-    ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
+    ``nodes`` run once for each robot, with the parameters that are ``given``; ``plugins`` are those of
+    each robot's rewritten description.
     """
     with gc_paused():
-        made = _build(robots, nodes, naming, plugins, release)
+        made = _build(robots, nodes, naming, plugins, given, release)
         return made._replace(problems=(*made.problems, *not_taken(made)))
 
 
@@ -62,11 +64,17 @@ def _build(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Sequence[Run]],
+    given: Iterable[GivenNode],
     release: str,
 ) -> Table:
     # Made once: the run of another robot differs only in the robot's name.
     others, once = places_of(PROBE, nodes, naming), frozenset(it.name for it in nodes if it.shared)
-    own = [run_of(PROBE, it, naming, others, once) for it in nodes if not it.shared]
+    sections = {it.name: it for it in given}
+    own = [
+        _with_section(run_of(PROBE, it, naming, others, once), sections)
+        for it in nodes
+        if not it.shared
+    ]
     problems = [*unreachable([it.fact for it in own], naming), *useless_rules(own, release)]
     runs = [run_of("", it, naming) for it in nodes if it.shared]
     for robot in robots:
@@ -75,6 +83,12 @@ def _build(
         runs += (_copy(it, robot) for it in own)
         runs += map(with_names, _without_stand_ins(plugins.get(robot, ()), nodes))
     return Table(naming.layout.name, tuple(runs), tuple(problems), release)
+
+
+def _with_section(run: Run, sections: Mapping[str, GivenNode]) -> Run:
+    """The run with what the robot's own files set for it, and where."""
+    found = sections.get(run.node) or sections.get(run.code_name)
+    return run._replace(values=found.values, place=found.place) if found else run
 
 
 def _given_by_plugins(own: Iterable[Run], robot: str, release: str) -> list[Run] | None:

@@ -64,7 +64,7 @@ MAPS = NodeFacts("map_server", "nav2", (OWN._replace(by="_made_*"),), shared=Tru
 def plan(layout: str = "L1", *facts: NodeFacts, **more: object) -> System:
     naming = make_naming(layout)
     table = build_table(["a"], facts, naming, release=NEWEST_LTS)
-    return expect(table, naming, {"a": ["base"]}, facts, **more)  # type: ignore[arg-type]
+    return expect(table, naming, {"a": ["base"]}, **more)  # type: ignore[arg-type]
 
 
 def test_ends_that_hang_on_nothing_are_planned() -> None:
@@ -108,6 +108,7 @@ def test_a_node_says_where_its_rules_stand() -> None:
     naming = make_naming("L1")
     hosted = NodeFacts("hosted", "acme", (Endpoint(TOPIC, PUBLISHES, "/x"),), host="driver")
     gz = Run("a", "gz", "/a", "gz", (), NodeFacts("gz", "p", (), plugin="p"), written=True)
+    gz = gz._replace(place=Place("r.urdf", 7))
     facts = (
         DRIVER,
         hosted,
@@ -116,16 +117,14 @@ def test_a_node_says_where_its_rules_stand() -> None:
     )
     plugins = {"a": [gz]}
     table = build_table(["a"], facts, naming, plugins, release=NEWEST_LTS)
-    found = expect(
-        table, naming, {"a": []}, facts, sources={"/a/gz": Place("r.urdf", 7)}, maybe_real=["a"]
-    )
+    found = expect(table, naming, {"a": []}, maybe_real=["a"])
     assert {it.name: (it.way, it.taker) for it in found.nodes if it.way} == {
         "/a/hosted": ("host", "/a/driver"),
         "/a/c": ("component", ""),
     }
     (made,) = (it for it in found.nodes if it.name == "/a/gz")
     assert (made.sure, made.plugin) == (MAY, Place("r.urdf", 7))
-    real = expect(table, naming, {"a": []}, facts)
+    real = expect(table, naming, {"a": []})
     assert [it.sure for it in real.nodes if it.name == "/a/gz"] == [RUNS]
 
 

@@ -21,7 +21,7 @@ from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.launch.starts import Start
-from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import placed, target_of
@@ -101,7 +101,9 @@ def _run(
     """A node with topics of these full names; ``why`` no rule moves them."""
     ends = ((role, it) for role, own in ((SUBSCRIBES, reads), (PUBLISHES, writes)) for it in own)
     names = ((Endpoint(TOPIC, role, it, TF_TYPE, fixed=why), it) for role, it in ends)
-    return Run(robot, node, *placed(robot, node, naming), (), names=tuple(names))
+    origin = Origin(place=Place("relayed of the fleet file"))
+    fact = NodeFacts(node, "", (), origin=origin)
+    return Run(robot, node, *placed(robot, node, naming), (), fact, names=tuple(names))
 
 
 def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
@@ -111,8 +113,4 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     check_relayed(file, fleet.naming)
     made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
     runs = (*fleet.table.runs, *(it.run for it in made))
-    origin = Origin(place=Place("relayed of the fleet file"))
-    origins = {it.run.full_name: origin for it in made}
-    return fleet._replace(
-        table=fleet.table._replace(runs=runs), origins={**fleet.origins, **origins}
-    )
+    return fleet._replace(table=fleet.table._replace(runs=runs))
