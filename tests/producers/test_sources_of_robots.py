@@ -75,6 +75,7 @@ from multibot_rewrite.system.records import (
     Lookup,
     Parameter,
     Place,
+    Sure,
     edge_of,
 )
 
@@ -106,7 +107,7 @@ def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
         (SUBSCRIBES, "/cmd_vel", RUNS, AT),
         (PUBLISHES, "/a/driver/either", MAY, AT),
         (SUBSCRIBES, "/a/driver/either", MAY, AT),
-        (PUBLISHES, "/a/maybe", MAY, AT),
+        (PUBLISHES, "/a/maybe", Sure("may", "x"), AT),
     ]
     assert {it.node for it in found} == {"/a/driver"}
     assert (found[0].type, found[0].code_name, found[0].also) == (
