@@ -15,7 +15,6 @@ from typing import Any
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
@@ -189,7 +188,7 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
         action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
         for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
-            yield planned_end(planned.node, kind, role, name, type_, code_name)
+            yield End(kind, role, name, type_, node=planned.node, code_name=code_name)
     else:
         also = tuple(replaced.get(type_, type_) for type_ in planned.also)
         yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)

@@ -22,19 +22,6 @@ NOWHERE: Mapping[str, str] = {}
 STACK = "stack "
 
 
-def planned_end(
-    node: str,
-    kind: str,
-    role: str,
-    name: str,
-    type_: str = "",
-    code_name: str = "",
-    also: tuple[str, ...] = (),
-) -> End:
-    """An end of which nothing is known that only a running system shows."""
-    return End(kind, role, name, type_, "", node, None, "", code_name, also)
-
-
 def from_text(node: Node, origin: str) -> Node:
     """The node with what names it: a text such as ``stack nav2``, or a place."""
     if origin.startswith(STACK):
@@ -197,8 +184,8 @@ def _planned(names: Iterable[EndpointName]) -> Iterator[End]:
         if end.when or (end.helper and not end.by):
             continue
         if end.role and name.name not in SENT_BY_EVERY_NODE:
-            own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
-            yield planned_end(*own, end.type, end.name, end.also)
+            what, node = (end.kind, end.role, name.name, end.type), f"{name.node}{end.by}"
+            yield End(*what, node=node, code_name=end.name, also=end.also)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import cast
 
 Reader = Callable[[object], object]
@@ -43,6 +43,19 @@ def read_word(words: tuple[str, ...], value: object) -> object:
     if value not in words:
         raise unexpected(f"one of {', '.join(words)}", value)
     return value
+
+
+def read_policies(policies: Collection[str], value: object) -> object:
+    """The words of policies, in any case; no file has pairs."""
+    if value == ():
+        return value
+    if not isinstance(value, dict):
+        raise unexpected("a mapping, as {durability: transient_local}", value)
+    for policy, word in value.items():
+        if policy not in policies or not isinstance(word, str):
+            what = f"write words of {', '.join(policies)}, as {{durability: transient_local}}"
+            raise WrongValue(what, f".{policy}")
+    return tuple((policy, word.upper()) for policy, word in value.items())
 
 
 def read_nothing(value: object) -> object:

@@ -9,6 +9,7 @@ import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planned_ends import planned_end
 from plans import PlannedRobot, planned
 from plans import own as nodes_of
 
@@ -16,11 +17,11 @@ from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import expect, planned_end
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
-from multibot_rewrite.spelling.plan_file import to_json as plan_to_json
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.json import to_json as plan_to_json
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from planned_ends import planned_end
 from plans import PlannedRobot, planned
 from rosbags.interfaces import (
     Qos,
@@ -20,7 +21,6 @@ from rosbags.interfaces import (
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)

@@ -10,13 +10,13 @@ from tempfile import TemporaryDirectory
 
 from graph_cases import bridge
 from paths import ROBOTS
+from planned_ends import planned_end
 from plans import PlannedRobot, planned
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

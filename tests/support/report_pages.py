@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import nav2_graphs
 from nav2_graphs import TEXT
+from planned_ends import planned_end
 from plans import PlannedRobot, planned
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
@@ -13,7 +14,6 @@ from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,

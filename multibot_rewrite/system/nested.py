@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a file has below what it is of: the nodes of a robot, the ends and parameters of a node.
+
+A plan is written so, as people edit it. An end of which only a plan knows is a row. Pure.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from itertools import chain
+from sys import intern
+from typing import Any, cast
+
+from multibot_rewrite.system.json_values import Reader, WrongValue, read_list, unexpected
+from multibot_rewrite.system.parameters import parameter_text, parameter_value
+from multibot_rewrite.system.record_values import plain_value, reader
+from multibot_rewrite.system.records import KINDS, ROLES, End, Node, Parameter, Robot, System
+
+ROW = ("role", "kind", "name", "type", "code_name")
+# Between the types of a row.
+OR = " | "
+_TEXTS = {str}
+_ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
+# A node with what is below it.
+_Part = tuple[Node, tuple[End, ...], tuple[Parameter, ...]]
+
+
+def fields_of(system: System) -> dict[str, object]:
+    """Return what a file has of a system by key, settings first: records, or plain values of them."""
+    told = {name: it for name, it in system._asdict().items() if it != system._field_defaults[name]}
+    nested = _below_robots(system) if system.layout else {}
+    told = {name: it for name, it in {**nested, **told, **nested}.items() if it}
+    return {**{name: it for name, it in told.items() if not has_rows(it)}, **told}
+
+
+def has_rows(value: Any) -> bool:
+    """Is it a list of records or rows, and not of texts or numbers?"""
+    return type(value) in (list, tuple) and any(
+        isinstance(it, list | dict | tuple) for it in value[:1]
+    )
+
+
+def _below_robots(system: System) -> dict[str, object]:
+    nodes: dict[str, list[object]] = defaultdict(list)
+    ends: dict[str, list[End]] = defaultdict(list)
+    parameters: dict[str, list[Parameter]] = defaultdict(list)
+    robots = {it.name for it in system.robots}
+    for end in system.ends:
+        ends[end.node].append(end)
+    for it in system.parameters:
+        parameters[it.node].append(it)
+    for node in system.nodes:
+        whose = node.robot if node.robot in robots else ""
+        own = plain_value(node._replace(robot="") if whose else node)
+        if values := _as_values(parameters.get(node.name, ())):
+            own["parameters"] = values
+            del parameters[node.name]
+        if node.name in ends:
+            own["ends"] = [_row(it) for it in ends.pop(node.name)]
+        nodes[whose].append(own)
+    below = {name: {"nodes": own} for name, own in nodes.items()}
+    return {
+        "robots": [{**plain_value(it), **below.get(it.name, {})} for it in system.robots],
+        "nodes": nodes[""],
+        "ends": [*chain.from_iterable(ends.values())],
+        "parameters": [*chain.from_iterable(parameters.values())],
+    }
+
+
+def _as_values(own: Sequence[Parameter]) -> dict[str, object]:
+    """The values of a node's parameters by name; empty where they are not all that is known of them."""
+    values = {it.name: parameter_value(it.value) for it in own}
+    if not all(map(_is_plain, values.values())):
+        return {}
+    again = [Parameter(own[0].node, name, parameter_text(it)) for name, it in values.items()]
+    return values if again == [*own] else {}
+
+
+def _is_plain(value: object) -> bool:
+    items = value if isinstance(value, list) else [value]
+    return all(isinstance(it, bool | int | float | str) for it in items)
+
+
+def _row(end: End) -> object:
+    """A row of its texts, if they are all that is known of an end; else an object."""
+    row = End(*end[:4], node=end.node, code_name=end.code_name, also=end.also)
+    if row == end:
+        return [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]
+    return plain_value(end._replace(node=""))
+
+
+def system_from(value: dict[str, object]) -> System:
+    """Return the system of a file's value; raises WrongValue."""
+    robots = cast(
+        "Sequence[tuple[Robot, Sequence[_Part]]]",
+        _read_below("robots", _read_robot, value.pop("robots", ())),
+    )
+    others = _read_below("nodes", partial(_read_node, ""), value.pop("nodes", ()))
+    nodes = [*chain.from_iterable(own for _, own in robots), *cast("Sequence[_Part]", others)]
+    system = cast(System, reader(System)(value))
+    return system._replace(
+        robots=tuple(it for it, _ in robots),
+        nodes=tuple(it for it, _, _ in nodes),
+        ends=(*chain.from_iterable(ends for _, ends, _ in nodes), *system.ends),
+        parameters=(*chain.from_iterable(own for *_, own in nodes), *system.parameters),
+    )
+
+
+def _read_below(key: str, read: Reader, values: object) -> Any:
+    try:
+        return read_list(read, values)
+    except WrongValue as wrong:
+        wrong.keys.append(f".{key}")
+        raise
+
+
+def _read_robot(value: object) -> tuple[object, object]:
+    nodes = value.pop("nodes", ()) if isinstance(value, dict) else ()
+    robot = cast(Robot, reader(Robot)(value))
+    return robot, _read_below("nodes", partial(_read_node, robot.name), nodes)
+
+
+def _read_node(robot: str, value: object) -> _Part:
+    if isinstance(value, Node) and not robot:
+        return value, (), ()
+    if isinstance(value, Node):
+        return value._replace(robot=robot), (), ()
+    if not isinstance(value, dict):
+        raise unexpected("an object", value)
+    ends, parameters = value.pop("ends", ()), value.pop("parameters", {})
+    node = cast(Node, reader(Node)({"robot": robot, **value}))
+    read = partial(_read_end, node.name)
+    return node, _read_below("ends", read, ends), tuple(_given(node.name, parameters))
+
+
+def _read_end(node: str, value: object) -> object:
+    """The end that a row is, or an object."""
+    if isinstance(value, dict | End):
+        return reader(End)({"node": node, **value} if isinstance(value, dict) else value)
+    if type(value) is not list or len(value) != len(ROW) or {*map(type, value)} != _TEXTS:
+        raise unexpected("[role, kind, name, type, name in the node's code]", value)
+    # Many nodes have the same names, types and words.
+    role, kind, name, types, code_name = map(intern, value)
+    also: tuple[str, ...] = ()
+    if OR in types:
+        types, *others = types.split(OR)
+        also = (*others,)
+    if role in _ROLES and kind in _KINDS and name.startswith("/"):
+        return End(kind, role, name, types, "", node, None, "", code_name, also)
+    # It says what is wrong.
+    return reader(End)({"kind": kind, "role": role, "name": name, "type": types, "node": node})
+
+
+def _given(node: str, values: object) -> Iterator[Parameter]:
+    if not isinstance(values, Mapping):
+        raise WrongValue(unexpected("a mapping of names to values", values).reason, ".parameters")
+    for name, value in values.items():
+        if not _is_plain(value):
+            what = "write a text, a number, true or false, or a list of one"
+            raise WrongValue(what, f".{name}", ".parameters")
+        yield Parameter(node, name, parameter_text(value))
