@@ -70,6 +70,17 @@ def optional(plan: System, robot: str) -> tuple[str, ...]:
     return tuple(it.name for it in plan.nodes if it.robot == robot and it.sure.word == MAY.word)
 
 
+def robot_named(plan: System, name: str) -> Robot:
+    """The robot of that name; raises StopIteration."""
+    return next(it for it in plan.robots if it.name == name)
+
+
+def ends_of(plan: System, node: str) -> list[End]:
+    """The ends of a node; raises AssertionError for a node that is not planned."""
+    assert node in {it.name for it in plan.nodes}
+    return [it for it in plan.ends if it.node == node]
+
+
 def places(plan: System) -> dict[str, str]:
     """By node: where its plugin is."""
     return {it.name: str(it.plugin) for it in plan.nodes if it.plugin.file}
