@@ -47,8 +47,6 @@ def read_word(words: tuple[str, ...], value: object) -> object:
 
 def read_policies(policies: Collection[str], value: object) -> object:
     """The words of policies, in any case; no file has pairs."""
-    if value == ():
-        return value
     if not isinstance(value, dict):
         raise unexpected("a mapping, as {durability: transient_local}", value)
     for policy, word in value.items():
@@ -59,10 +57,8 @@ def read_policies(policies: Collection[str], value: object) -> object:
 
 
 def read_nothing(value: object) -> object:
-    """What no file has: the empty default of its key."""
-    if value != ():
-        raise WrongValue("not a key of a file; leave it out")
-    return value
+    """What no file has."""
+    raise WrongValue("not a key of a file; leave it out")
 
 
 def read_full_name(value: object) -> object:

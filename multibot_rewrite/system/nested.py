@@ -16,12 +16,23 @@ from typing import Any, cast
 from multibot_rewrite.system.json_values import Reader, WrongValue, read_list, unexpected
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
 from multibot_rewrite.system.record_values import plain_value, reader
-from multibot_rewrite.system.records import KINDS, ROLES, End, Node, Parameter, Robot, System
+from multibot_rewrite.system.records import (
+    KINDS,
+    NOWHERE,
+    ROLES,
+    RUNS,
+    End,
+    Node,
+    Parameter,
+    Robot,
+    System,
+)
 
 ROW = ("role", "kind", "name", "type", "code_name")
 # Between the types of a row.
 OR = " | "
 _TEXTS = {str}
+_NOTHING_MORE = ("", None, "", RUNS, NOWHERE)
 _ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
 # A node with what is below it.
 _Part = tuple[Node, tuple[End, ...], tuple[Parameter, ...]]
@@ -85,8 +96,7 @@ def _is_plain(value: object) -> bool:
 
 def _row(end: End) -> object:
     """A row of its texts, if they are all that is known of an end; else an object."""
-    row = End(*end[:4], node=end.node, code_name=end.code_name, also=end.also)
-    if row == end:
+    if (end.type_hash, end.qos, end.process, end.sure, end.place) == _NOTHING_MORE:
         return [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]
     return plain_value(end._replace(node=""))
 
@@ -137,9 +147,9 @@ def _read_node(robot: str, value: object) -> _Part:
 
 def _read_end(node: str, value: object) -> object:
     """The end that a row is, or an object."""
-    if isinstance(value, dict | End):
+    if type(value) is not list:
         return reader(End)({"node": node, **value} if isinstance(value, dict) else value)
-    if type(value) is not list or len(value) != len(ROW) or {*map(type, value)} != _TEXTS:
+    if len(value) != len(ROW) or {*map(type, value)} != _TEXTS:
         raise unexpected("[role, kind, name, type, name in the node's code]", value)
     # Many nodes have the same names, types and words.
     role, kind, name, types, code_name = map(intern, value)

@@ -149,7 +149,8 @@ def reader(expected: Any) -> Reader:
     if hasattr(expected, "_fields"):
         hints = get_type_hints(expected)
         readers = {name: _field_reader(expected, name, hint) for name, hint in hints.items()}
-        whole = partial(_read_record, expected, readers)
+        needed = [it for it in hints if is_needed(expected, it)]
+        whole = partial(_read_record, expected, readers, needed)
         return partial(_read_short, expected, whole) if expected in SHORT else whole
     return read_seconds if expected is float else partial(read_plain, expected)
 
@@ -172,32 +173,33 @@ def _read_short(kind: type, whole: Reader, value: object) -> object:
     return whole(SHORT[kind][1](value)._asdict() if isinstance(value, str) else value)
 
 
-def _read_record(kind: Any, readers: Mapping[str, Reader], value: object) -> object:
+def is_needed(kind: Any, name: str) -> bool:
+    """Must a file have the field: has it no default, or one that is no full name where it has to be?"""
+    usual = kind._field_defaults
+    return name not in usual or (usual[name] == "" and (kind, name) in FULL_NAMES)
+
+
+def _read_record(
+    kind: Any, readers: Mapping[str, Reader], needed: Collection[str], value: object
+) -> object:
     if type(value) is kind:
         return value
     if type(value) in (Node, End, Qos):
         value = cast(Any, value)._asdict()
     if not isinstance(value, dict):
         raise unexpected("an object", value)
-    if value.keys() != readers.keys():
-        value = {**kind._field_defaults, **value}
-    if value.keys() != readers.keys():
-        raise _wrong_key(kind, readers, value)
+    fields: dict[str, object] = {}
     name = ""
     try:
-        fields = []
-        for name, read in readers.items():
-            fields.append(read(value[name]))
+        for name, given in value.items():
+            fields[name] = readers[name](given)
     except WrongValue as wrong:
         wrong.keys.append(f".{name}")
         raise
-    return kind._make(fields)
-
-
-def _wrong_key(kind: type, readers: Collection[str], value: Mapping[str, object]) -> WrongValue:
-    unknown = next((name for name in value if name not in readers), "")
-    if unknown:
+    except KeyError:
         keys = ", ".join((*readers, *BELOW.get(kind, ())))
-        return WrongValue(f"unknown key; the keys are {keys}", f".{unknown}")
-    name = next(name for name in readers if name not in value)
-    return WrongValue("missing; it is needed", f".{name}")
+        raise WrongValue(f"unknown key; the keys are {keys}", f".{name}") from None
+    for name in needed:
+        if name not in fields:
+            raise WrongValue("missing; it is needed", f".{name}")
+    return kind(**fields)

@@ -18,6 +18,7 @@ from multibot_rewrite.system.record_values import (
     POLICIES,
     POLICY_NAMES,
     SHORT,
+    is_needed,
 )
 from multibot_rewrite.system.records import End, Node, Robot, Sure, System
 
@@ -63,7 +64,6 @@ def schema() -> dict[str, object]:
 
 def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
     hints = get_type_hints(kind)
-    usual = kind._field_defaults
     return {
         "type": "object",
         "description": " ".join(kind.__doc__.split()),
@@ -73,7 +73,7 @@ def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
             if LEFT_OUT.get(kind) != name
         }
         | _BELOW.get(kind, {}),
-        "required": [name for name in hints if name not in usual],
+        "required": [it for it in hints if is_needed(kind, it) and (kind, it) != (End, "node")],
         "additionalProperties": False,
     }
 
