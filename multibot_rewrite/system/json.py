@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from math import inf
 from sys import intern
-from typing import Any, cast
+from typing import Any
 
 from multibot_rewrite.base.bounded import QUOTED, load_json, load_yaml
 from multibot_rewrite.base.file_kinds import PLAN, SNAPSHOT, refuse_others
@@ -57,13 +57,13 @@ def to_yaml(system: System) -> str:
     return "".join(_block({"schema": SCHEMA, **fields_of(system)}, ""))
 
 
-def _block(value: Mapping[str, object], indent: str) -> Iterator[str]:
+def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
     for key, item in value.items():
         if not has_rows(item):
             yield f"{indent}{key}: {_flow(plain_value(item))}\n"
             continue
         yield f"{indent}{key}:\n"
-        for row in map(plain_value, cast("list[object]", item)):
+        for row in map(plain_value, item):
             if isinstance(row, dict) and any(map(has_rows, row.values())):
                 lines = "".join(_block(row, f"{indent}  "))
                 yield f"{indent}- {lines[len(indent) + 2 :]}"
@@ -169,7 +169,7 @@ def _end(
 
 
 def _qos(**fields: Any) -> Qos:
-    return _one_of_equal(cast(Qos, reader(Qos)(fields)))
+    return _one_of_equal(reader(Qos)(fields))
 
 
 # By their first keys.
@@ -193,4 +193,4 @@ def from_value(value: object, file: str) -> System:
     if type(schema) is not int or schema not in (SCHEMA, BEFORE):
         hint = "write it again with multibot plan or snapshot of this version"
         raise InputError(f"{file}: schema: expected {SCHEMA}, not {shown(schema)}; {hint}")
-    return cast(System, in_file(cast(Any, system_from), value, file))
+    return in_file(system_from, value, file)

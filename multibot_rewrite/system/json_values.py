@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Collection, Iterable
-from typing import cast
+from collections.abc import Callable, Collection
+from typing import Any
 
-Reader = Callable[[object], object]
+Reader = Callable[[Any], Any]
 _TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
 # NaN is not below it, and every whole number below it fits into a float.
 _LARGEST = 1e300
@@ -79,7 +79,7 @@ def read_seconds(value: object) -> object:
 
 def read_transform(value: object) -> object:
     """Three numbers and four, or nothing; null is one that is none (NaN)."""
-    numbers = cast("tuple[float, ...]", read_list(read_seconds, value))
+    numbers = read_list(read_seconds, value)
     if len(numbers) not in (0, 7) or not all(
         abs(it) < FARTHEST or it == math.inf for it in numbers
     ):
@@ -87,14 +87,14 @@ def read_transform(value: object) -> object:
     return numbers
 
 
-def read_list(reader: Reader, value: object) -> object:
+def read_list(reader: Reader, value: Any) -> tuple[Any, ...]:
     """A list of what ``reader`` reads."""
     # An empty tuple is the default of a key that is left out.
     if not isinstance(value, list) and value != ():
         raise unexpected("a list", value)
     result = []
     try:
-        for item in cast(Iterable[object], value):
+        for item in value:
             result.append(reader(item))
     except WrongValue as wrong:
         wrong.keys.append(f"[{len(result)}]")

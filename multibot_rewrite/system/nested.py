@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from sys import intern
-from typing import Any, cast
+from typing import Any
 
 from multibot_rewrite.system.json_values import Reader, WrongValue, read_list, unexpected
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
@@ -101,20 +101,17 @@ def _row(end: End) -> object:
     return plain_value(end._replace(node=""))
 
 
-def system_from(value: dict[str, object]) -> System:
+def system_from(value: dict[str, Any]) -> System:
     """Return the system of a file's value; raises WrongValue."""
-    robots = cast(
-        "Sequence[tuple[Robot, Sequence[_Part]]]",
-        _read_below("robots", _read_robot, value.pop("robots", ())),
-    )
-    others = _read_below("nodes", partial(_read_node, ""), value.pop("nodes", ()))
-    nodes = [*chain.from_iterable(own for _, own in robots), *cast("Sequence[_Part]", others)]
-    system = cast(System, reader(System)(value))
+    found: dict[str, list[Any]] = defaultdict(list)
+    _read_below("robots", partial(_read_robot, found), value.pop("robots", ()))
+    _read_below("nodes", partial(_read_node, found, ""), value.pop("nodes", ()))
+    system: System = reader(System)(value)
     return system._replace(
-        robots=tuple(it for it, _ in robots),
-        nodes=tuple(it for it, _, _ in nodes),
-        ends=(*chain.from_iterable(ends for _, ends, _ in nodes), *system.ends),
-        parameters=(*chain.from_iterable(own for *_, own in nodes), *system.parameters),
+        robots=tuple(found["robots"]),
+        nodes=tuple(found["nodes"]),
+        ends=(*found["ends"], *system.ends),
+        parameters=(*found["parameters"], *system.parameters),
     )
 
 
@@ -126,26 +123,26 @@ def _read_below(key: str, read: Reader, values: object) -> Any:
         raise
 
 
-def _read_robot(value: object) -> tuple[object, object]:
-    nodes = value.pop("nodes", ()) if isinstance(value, dict) else ()
-    robot = cast(Robot, reader(Robot)(value))
-    return robot, _read_below("nodes", partial(_read_node, robot.name), nodes)
+def _taken(value: object, key: str) -> Any:
+    return value.pop(key, ()) if isinstance(value, dict) else ()
 
 
-def _read_node(robot: str, value: object) -> _Part:
-    if isinstance(value, Node) and not robot:
-        return value, (), ()
-    if isinstance(value, Node):
-        return value._replace(robot=robot), (), ()
-    if not isinstance(value, dict):
-        raise unexpected("an object", value)
-    ends, parameters = value.pop("ends", ()), value.pop("parameters", {})
-    node = cast(Node, reader(Node)({"robot": robot, **value}))
-    read = partial(_read_end, node.name)
-    return node, _read_below("ends", read, ends), tuple(_given(node.name, parameters))
+def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
+    nodes = _taken(value, "nodes")
+    robot = reader(Robot)(value)
+    found["robots"].append(robot)
+    _read_below("nodes", partial(_read_node, found, robot.name), nodes)
 
 
-def _read_end(node: str, value: object) -> object:
+def _read_node(found: Mapping[str, list[Any]], robot: str, value: object) -> None:
+    ends, parameters = _taken(value, "ends"), _taken(value, "parameters")
+    node = reader(Node)(value)
+    found["nodes"].append(node if node.robot or not robot else node._replace(robot=robot))
+    found["ends"].extend(_read_below("ends", partial(_read_end, node.name), ends))
+    found["parameters"].extend(_given(node.name, parameters) if parameters != () else ())
+
+
+def _read_end(node: str, value: object) -> Any:
     """The end that a row is, or an object."""
     if type(value) is not list:
         return reader(End)({"node": node, **value} if isinstance(value, dict) else value)

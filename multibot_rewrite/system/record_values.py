@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Mapping
 from functools import cache, partial
 from operator import attrgetter
 from types import NoneType
-from typing import Any, cast, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.base.findings.finding import LEVELS, Finding
 from multibot_rewrite.base.model import InputError
@@ -94,6 +94,7 @@ SHORT: Mapping[type, tuple[Callable[[Any], str], Callable[[str], Any]]] = {
 }
 # What a file may have below a record.
 BELOW: Mapping[type, tuple[str, ...]] = {Robot: ("nodes",), Node: ("ends", "parameters")}
+Read = TypeVar("Read")
 # The type of a field whose pairs are a mapping in a file: policies of Qos whose value is a word.
 POLICIES = tuple[tuple[str, str], ...]
 POLICY_NAMES = ("history", "reliability", "durability", "liveliness")
@@ -120,12 +121,12 @@ def plain_value(value: object) -> Any:
     return value
 
 
-def record_from(kind: type, value: object, file: str) -> object:
+def record_from(kind: type, value: object, file: str) -> Any:
     """Return a value as the record ``kind``; raises InputError with file, key and what is wrong."""
     return in_file(reader(kind), value, file)
 
 
-def in_file(read: Reader, value: object, file: str) -> object:
+def in_file(read: Callable[[Any], Read], value: object, file: str) -> Read:
     """Return what is read of a value; raises InputError with file, key and what is wrong."""
     try:
         return read(value)

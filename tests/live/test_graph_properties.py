@@ -21,7 +21,6 @@ from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, to_json
-from multibot_rewrite.system.json import to_json as plan_to_json
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -184,8 +183,8 @@ def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject)
 @settings(max_examples=25, deadline=None)
 @given(fleets())
 def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
-    for text in (to_yaml(fleet.plan), plan_to_json(fleet.plan)):
-        assert read_plan(text.encode(), "plan") == fleet.plan
+    for data in (to_yaml(fleet.plan).encode(), to_json(fleet.plan)):
+        assert read_plan(data, "plan") == fleet.plan
     assert from_json(to_json(fleet.graph), "graph") == fleet.graph
 
 

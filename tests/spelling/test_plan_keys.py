@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 import yaml
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from paths import FIXTURES, ROOT
 
@@ -23,6 +25,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.plan import robot_words, vacuous
 from multibot_rewrite.spelling.plan_file import HEAD, is_fleet, read_plan, to_yaml
 from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,
@@ -155,6 +158,30 @@ def test_every_key_of_a_plan_is_written_and_comes_back() -> None:
     for text in (TEXT, to_json(PLAN).decode()):
         assert read_plan(text.encode(), "plan") == PLAN
         assert marked(text) == []
+
+
+# What YAML takes for something else, and what no one line holds.
+ODD = st.text(st.characters(codec="utf-8"), max_size=6) | st.sampled_from(
+    ["no", "~", "1e3", "0x1", "- a", "a: b", "#", "a | b", "a:1", "..", "[]", "\x85", "\ufeff"]
+)
+
+
+@pytest.mark.more
+@given(ODD, ODD, ODD, st.booleans() | st.integers() | st.floats(allow_nan=False) | ODD)
+def test_any_text_comes_back(name: str, word: str, type_: str, value: object) -> None:
+    assume(" | " not in f"{type_}{name}")
+    node = Node(f"/{name}", robot=f"{word}1", host=word, stack=name, place=Place(word, 2), sure=MAY)
+    end = End(TOPIC, PUBLISHES, f"/{word}", type_, node=node.name, code_name=name, also=(name,))
+    plan = System(
+        (node, Node("/runs", robot=f"{word}1")),
+        (end, end._replace(sure=MAY._replace(why=word))),
+        parameters=(Parameter(node.name, name, parameter_text(value)),),
+        robots=(Robot(f"{word}1", (name, type_)),),
+        layout="both",
+        ignored_nodes=(type_,),
+    )
+    for data in (to_yaml(plan).encode(), to_json(plan)):
+        assert read_plan(data, "plan") == plan
 
 
 def test_what_is_as_usual_is_not_written() -> None:
