@@ -20,9 +20,8 @@ from multibot_rewrite.base.file_kinds import PLAN, SNAPSHOT, refuse_others
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.system.json_values import WrongValue, shown
 from multibot_rewrite.system.nested import fields_of, has_rows, system_from
-from multibot_rewrite.system.record_values import in_file, plain_value, reader
+from multibot_rewrite.system.record_values import WrongValue, in_file, plain_value, reader, shown
 from multibot_rewrite.system.records import KINDS, ROLES, End, Node, Qos, System
 
 REMEDY = "use the file that multibot plan or snapshot wrote"
@@ -86,9 +85,8 @@ def _scalar(value: object) -> str:
     import yaml
 
     style = '"' if isinstance(value, str) else None
-    return str(yaml.dump(value, default_style=style, width=inf, allow_unicode=True)).partition(
-        "\n"
-    )[0]
+    text = str(yaml.dump(value, default_style=style, width=inf, allow_unicode=True))
+    return text.partition("\n")[0]
 
 
 def is_json(data: bytes) -> bool:
@@ -185,7 +183,7 @@ def _one_of_equal(record: Qos) -> Qos:
 def from_value(value: object, file: str) -> System:
     """Return the system that a value holds; raises InputError with file, key and what is wrong."""
     if not isinstance(value, dict):
-        raise InputError(f"{file}: not a snapshot, but {shown(value)}")
+        raise InputError(f"{file}: no plan or snapshot, but {shown(value)}; {REMEDY}")
     schema = value.pop("schema", None)
     if schema is None and "layout" in value:
         hint = f"make it again: multibot plan fleet.yaml -o {file}, or multibot build fleet.yaml"

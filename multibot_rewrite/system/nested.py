@@ -13,9 +13,15 @@ from itertools import chain
 from sys import intern
 from typing import Any
 
-from multibot_rewrite.system.json_values import Reader, WrongValue, read_list, unexpected
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
-from multibot_rewrite.system.record_values import plain_value, reader
+from multibot_rewrite.system.record_values import (
+    Reader,
+    WrongValue,
+    plain_value,
+    read_list,
+    reader,
+    unexpected,
+)
 from multibot_rewrite.system.records import (
     KINDS,
     NOWHERE,
@@ -124,7 +130,9 @@ def _read_below(key: str, read: Reader, values: object) -> Any:
 
 
 def _taken(value: object, key: str) -> Any:
-    return value.pop(key, ()) if isinstance(value, dict) else ()
+    """What is below a key, of which a user may have taken out all."""
+    found = value.pop(key, None) if isinstance(value, dict) else None
+    return () if found is None else found
 
 
 def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:

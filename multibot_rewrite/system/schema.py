@@ -38,10 +38,10 @@ _SCALAR = {"type": ["string", "number", "boolean"]}
 _SCALARS = {"anyOf": [_SCALAR, {"type": "array", "items": _SCALAR}]}
 # What may be below a record; what it is of is not said again.
 _BELOW: Mapping[type, dict[str, dict[str, object]]] = {
-    Robot: {"nodes": {"type": "array", "items": {"$ref": "#/$defs/Node"}}},
+    Robot: {"nodes": {"type": ["array", "null"], "items": {"$ref": "#/$defs/Node"}}},
     Node: {
-        "ends": {"type": "array", "items": {"anyOf": [_ROW, {"$ref": "#/$defs/End"}]}},
-        "parameters": {"type": "object", "additionalProperties": _SCALARS},
+        "ends": {"type": ["array", "null"], "items": {"anyOf": [_ROW, {"$ref": "#/$defs/End"}]}},
+        "parameters": {"type": ["object", "null"], "additionalProperties": _SCALARS},
     },
 }
 

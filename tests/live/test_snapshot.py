@@ -166,7 +166,7 @@ NODE_OBJECT = {"name": "/a", "process": ""}
         (b"{", "g.json:1:2: not valid JSON"),
         (b"\xff", "g.json: not valid JSON: it is not UTF-8; use"),
         (b"[" * 100_000, "g.json:1:1: not valid JSON: it is nested deeper than 100 levels"),
-        (b"[]", "g.json: not a snapshot, but []"),
+        (b"[]", "g.json: no plan or snapshot, but []; use the file that"),
         (changed("schema"), "g.json: schema: expected 3, not null; write it again with"),
         (changed("schema", to=4), "g.json: schema: expected 3, not 4"),
         (changed("schema", to=True), "g.json: schema: expected 3, not true"),

@@ -290,6 +290,26 @@ def test_what_is_below_something_is_its() -> None:
     assert [it.node for it in plan.ends] == ["/far"]
 
 
+def test_what_is_below_something_may_be_taken_out() -> None:
+    text = TEXT.replace('{use_sim_time: false, rates: [1, 2.5, "no"]}', "")
+    rows = [
+        it for it in text.splitlines() if not it.startswith(("    - [pub", "    - {kind", "  - [s"))
+    ]
+    left = "\n".join(rows)
+    plan = read_plan(left.encode(), "p")
+    assert ([it.name for it in plan.ends], len(plan.parameters)) == (["/z"], 1)
+    assert marked(left) == []
+
+
+@pytest.mark.parametrize("value", ["2024-01-01", "{2024-01-01: 1}", "!!binary aGk=", "!!set {a}"])
+def test_what_only_yaml_has_is_refused_in_one_line(value: str) -> None:
+    for key in ("layout: tf-per-robot", "release: jazzy", "host: pc", "place: ../a.yaml:3"):
+        assert key in TEXT
+        text = TEXT.replace(key, f"{key.partition(':')[0]}: {value}")
+        with pytest.raises(InputError, match=r"\Ap: [^\n]*(?:expected|unknown key)[^\n]*\Z"):
+            read_plan(text.encode(), "p")
+
+
 @pytest.mark.parametrize("state", ["unconfigured", "inactive", "active", "finalized"])
 def test_a_state_of_a_life_cycle_is_a_primary_one(state: str) -> None:
     """lifecycle_msgs/msg/State."""

@@ -17,7 +17,7 @@ from multibot_rewrite import system_of_description
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.system.json import from_json, to_json
-from multibot_rewrite.system.json_values import read_seconds
+from multibot_rewrite.system.record_values import read_seconds
 from multibot_rewrite.system.records import (
     MAY,
     Controller,
