@@ -40,20 +40,19 @@ OR = " | "
 _TEXTS = {str}
 _NOTHING_MORE = ("", None, "", RUNS, NOWHERE)
 _ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
-# A node with what is below it.
-_Part = tuple[Node, tuple[End, ...], tuple[Parameter, ...]]
 
 
 def fields_of(system: System) -> dict[str, object]:
     """Return what a file has of a system by key, settings first: records, or plain values of them."""
-    told = {name: it for name, it in system._asdict().items() if it != system._field_defaults[name]}
+    usual = system._field_defaults
+    fields = {name: it for name, it in system._asdict().items() if it != usual[name]}
     nested = _below_robots(system) if system.layout else {}
-    told = {name: it for name, it in {**nested, **told, **nested}.items() if it}
-    return {**{name: it for name, it in told.items() if not has_rows(it)}, **told}
+    fields = {name: it for name, it in {**nested, **fields, **nested}.items() if it}
+    return {**{name: it for name, it in fields.items() if not has_rows(it)}, **fields}
 
 
 def has_rows(value: Any) -> bool:
-    """Is it a list of records or rows, and not of texts or numbers?"""
+    """Is the value a list of records or rows, and not of texts or numbers?"""
     return type(value) in (list, tuple) and any(
         isinstance(it, list | dict | tuple) for it in value[:1]
     )
@@ -87,12 +86,12 @@ def _below_robots(system: System) -> dict[str, object]:
 
 
 def _as_values(own: Sequence[Parameter]) -> dict[str, object]:
-    """The values of a node's parameters by name; empty where they are not all that is known of them."""
+    """Return the values of a node's parameters by name; nothing where more is known of one."""
     values = {it.name: parameter_value(it.value) for it in own}
     if not all(map(_is_plain, values.values())):
         return {}
-    again = [Parameter(own[0].node, name, parameter_text(it)) for name, it in values.items()]
-    return values if again == [*own] else {}
+    read_back = [Parameter(own[0].node, name, parameter_text(it)) for name, it in values.items()]
+    return values if read_back == [*own] else {}
 
 
 def _is_plain(value: object) -> bool:
@@ -101,7 +100,7 @@ def _is_plain(value: object) -> bool:
 
 
 def _row(end: End) -> object:
-    """A row of its texts, if they are all that is known of an end; else an object."""
+    """Return a row of the texts of an end; an object where more is known of it."""
     if (end.type_hash, end.qos, end.process, end.sure, end.place) == _NOTHING_MORE:
         return [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]
     return plain_value(end._replace(node=""))
@@ -129,29 +128,29 @@ def _read_below(key: str, read: Reader, values: object) -> Any:
         raise
 
 
-def _taken(value: object, key: str) -> Any:
-    """What is below a key, of which a user may have taken out all."""
+def _pop_list(value: object, key: str) -> Any:
+    """Take what is below a key out of a value, and return it; a user may have left the key alone."""
     found = value.pop(key, None) if isinstance(value, dict) else None
     return () if found is None else found
 
 
 def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
-    nodes = _taken(value, "nodes")
+    nodes = _pop_list(value, "nodes")
     robot = reader(Robot)(value)
     found["robots"].append(robot)
     _read_below("nodes", partial(_read_node, found, robot.name), nodes)
 
 
 def _read_node(found: Mapping[str, list[Any]], robot: str, value: object) -> None:
-    ends, parameters = _taken(value, "ends"), _taken(value, "parameters")
+    ends, parameters = _pop_list(value, "ends"), _pop_list(value, "parameters")
     node = reader(Node)(value)
     found["nodes"].append(node if node.robot or not robot else node._replace(robot=robot))
     found["ends"].extend(_read_below("ends", partial(_read_end, node.name), ends))
-    found["parameters"].extend(_given(node.name, parameters) if parameters != () else ())
+    found["parameters"].extend(_read_parameters(node.name, parameters) if parameters != () else ())
 
 
 def _read_end(node: str, value: object) -> Any:
-    """The end that a row is, or an object."""
+    """Return the end that a row or an object is; raises WrongValue."""
     if type(value) is not list:
         return reader(End)({"node": node, **value} if isinstance(value, dict) else value)
     if len(value) != len(ROW) or {*map(type, value)} != _TEXTS:
@@ -164,11 +163,11 @@ def _read_end(node: str, value: object) -> Any:
         also = (*others,)
     if role in _ROLES and kind in _KINDS and name.startswith("/"):
         return End(kind, role, name, types, "", node, None, "", code_name, also)
-    # It says what is wrong.
+    # The reader of an end says which text is wrong.
     return reader(End)({"kind": kind, "role": role, "name": name, "type": types, "node": node})
 
 
-def _given(node: str, values: object) -> Iterator[Parameter]:
+def _read_parameters(node: str, values: object) -> Iterator[Parameter]:
     if not isinstance(values, Mapping):
         raise WrongValue(unexpected("a mapping of names to values", values).reason, ".parameters")
     for name, value in values.items():

@@ -124,7 +124,7 @@ def read_word(words: tuple[str, ...], value: object) -> object:
 
 
 def read_policies(policies: Collection[str], value: object) -> object:
-    """The words of policies, in any case; no file has pairs."""
+    """Return policies with their words, which may be written in small letters."""
     if not isinstance(value, dict):
         raise unexpected("a mapping, as {durability: transient_local}", value)
     for policy, word in value.items():
@@ -135,7 +135,7 @@ def read_policies(policies: Collection[str], value: object) -> object:
 
 
 def read_nothing(value: object) -> object:
-    """What no file has."""
+    """Raise WrongValue for what no file has."""
     raise WrongValue("not a key of a file; leave it out")
 
 
@@ -200,8 +200,8 @@ def plain_value(value: object) -> Any:
                 return text
         usual, left_out = cast(Any, kind)._field_defaults, LEFT_OUT.get(kind)
         named = zip(fields, value, strict=True)
-        told = (it for it in named if usual.get(it[0], ...) != it[1])
-        return {name: plain_value(it) for name, it in told if name != left_out}
+        unusual = (it for it in named if usual.get(it[0], ...) != it[1])
+        return {name: plain_value(it) for name, it in unusual if name != left_out}
     if isinstance(value, float) and math.isinf(value):
         return None
     return value
