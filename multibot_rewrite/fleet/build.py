@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterator, Sequence
-from functools import cache, reduce
+from functools import cache
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
@@ -214,14 +214,12 @@ def _from(folder: str, text: str) -> str:
 
 def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
     """A finding with its files as seen from a folder."""
-    paths = {f"{it}:": f"{os.path.relpath(it, folder)}:" for it in input_files(plan.file)}
-
-    def from_folder(text: str) -> str:
-        return reduce(lambda said, path: said.replace(path, paths[path]), paths, text)
-
+    message, hint = gap.message, gap.hint
+    for path in input_files(plan.file):
+        own = os.path.relpath(path, folder)
+        message, hint = message.replace(f"{path}:", f"{own}:"), hint.replace(f"{path}:", f"{own}:")
     file = os.path.relpath(gap.file, folder) if gap.file else ""
-    message, hint, *calls = map(from_folder, (gap.message, gap.hint, *gap.calls))
-    return gap._replace(message=message, hint=hint, file=file, calls=tuple(calls))
+    return gap._replace(message=message, hint=hint, file=file)
 
 
 def _remappings(table: Table) -> str:

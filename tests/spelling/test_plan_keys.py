@@ -7,6 +7,7 @@ The schema that editors read marks what the reader refuses.
 from __future__ import annotations
 
 import json
+import re
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -79,6 +80,8 @@ PLAN = System(
     parameters=(
         Parameter("/r1/drive", "use_sim_time", "false"),
         Parameter("/r1/drive", "rates", '[1, 2.5, "no"]'),
+        Parameter("/r1/drive", "gain", "1.0"),
+        Parameter("/r1/drive", "is_on", "true"),
         Parameter("/r1/arm", "rate", "5", Place("p.yaml", 2)),
     ),
     robots=(Robot("r1", ("b1/base",), "/r1/tf", ("b1/gps",), "b1"),),
@@ -115,7 +118,7 @@ robots:
     sure: {word: runs, instead: [/r1/drive, /r1/spare]}
     place: ../a.yaml:3
     plugin: r.urdf:7
-    parameters: {use_sim_time: false, rates: [1, 2.5, "no"]}
+    parameters: {use_sim_time: false, rates: [1, 2.5, "no"], gain: 1.0, is_on: true}
     ends:
     - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]
     - {kind: topic, role: subscribes, name: /r1/y, type: std_msgs/msg/String, sure: may}
@@ -222,7 +225,7 @@ DRIVES, R1 = "robots[0].nodes[0]", "robots[0]"
         ("nav2, sure: may", "nav2, sure: perhaps", "nodes[1].sure.word: expected one of runs, may"),
         ("{use_sim_time: false,", "{use_sim_time: {},", f"{DRIVES}.parameters.use_sim_time: write a"),
         ("[1, 2.5,", "[null, 2.5,", f"{DRIVES}.parameters.rates: write a text, a number, true or f"),
-        ('{use_sim_time: false, rates: [1, 2.5, "no"]}', "[1]",
+        ('{use_sim_time: false, rates: [1, 2.5, "no"], gain: 1.0, is_on: true}', "[1]",
          f"{DRIVES}.parameters: expected a mapping of names to values, not [1]"),
         ("tf_topic: /r1/tf", "tf_topic: r1/tf", f"{R1}.tf_topic: expected a full name that starts"),
         ("frames: [b1/base]", "frames: b1/base", f"{R1}.frames: expected a list"),
@@ -288,10 +291,12 @@ def test_what_is_below_something_is_its() -> None:
         ("/r1/z", "r1"), ("/r1/w", "r1"), ("/x", ""), ("/r1/y", "r1"),
     ]  # fmt: skip
     assert [it.node for it in plan.ends] == ["/far"]
+    said = TEXT.replace("name: /r1/y, ", "name: /r1/y, node: /r1/arm, ")
+    assert read_plan(said.encode(), "p").ends[1].node == "/r1/arm"
 
 
 def test_what_is_below_something_may_be_taken_out() -> None:
-    text = TEXT.replace('{use_sim_time: false, rates: [1, 2.5, "no"]}', "")
+    text = re.sub("{use_sim_time.*}", "", TEXT)
     rows = [
         it for it in text.splitlines() if not it.startswith(("    - [pub", "    - {kind", "  - [s"))
     ]
