@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 import live_fleet  # the nodes of the tests
 import zenoh_robots  # and its sessions
 from one_page import write_section
-from planned_ends import planned_end
+from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS

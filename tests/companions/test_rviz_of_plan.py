@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 import yaml
 from paths import ROBOTS
-from planned_ends import planned_end
+from plans import planned_end
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.rviz import of_plan

@@ -24,8 +24,7 @@ from fleet_folder import SMALL, fleet_folder, mixed
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
-from planned_ends import planned_end
-from plans import PlannedRobot, from_plugin, planned
+from plans import PlannedRobot, from_plugin, planned, planned_end
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import folders

@@ -6,8 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import live

@@ -24,8 +24,7 @@ from graph_cases import (
     with_type,
     without_node,
 )
-from planned_ends import planned_end
-from plans import from_plugin, more, own, told, without
+from plans import from_plugin, more, own, planned_end, told, without
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE

@@ -9,8 +9,7 @@ import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 from plans import own as nodes_of
 
 from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled

@@ -11,8 +11,7 @@ import live_fleet
 import pytest
 from live_commands import TEXT
 from paths import ROBOTS
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan_file import to_yaml

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import pytest
 from graph_cases import environment, qos
-from planned_ends import planned_end
-from plans import own
+from plans import own, planned_end
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.rules.check import check

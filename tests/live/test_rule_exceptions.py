@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
-from planned_ends import planned_end
-from plans import PlannedRobot
+from plans import PlannedRobot, planned_end
 from plans import planned as as_plan
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING

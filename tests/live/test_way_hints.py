@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from paths import ROBOTS
-from planned_ends import planned_end
+from plans import planned_end
 
 from multibot_rewrite.fleet.fleet import expected, make_fleet
 from multibot_rewrite.rules.pair.causes import how_to_remap, why_other_name

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from planned_ends import planned_end
+from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS

@@ -39,8 +39,7 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 from node_answers import told
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 from plans import told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE

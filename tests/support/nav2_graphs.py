@@ -10,8 +10,7 @@ from tempfile import TemporaryDirectory
 
 from graph_cases import bridge
 from paths import ROBOTS
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.scene import Scene, make_scene

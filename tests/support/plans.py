@@ -60,6 +60,19 @@ def planned(
     )
 
 
+def planned_end(
+    node: str,
+    kind: str,
+    role: str,
+    name: str,
+    type_: str = "",
+    code_name: str = "",
+    also: tuple[str, ...] = (),
+) -> End:
+    """An end of which nothing is known that only a running system shows."""
+    return End(kind, role, name, type_, node=node, code_name=code_name, also=also)
+
+
 def own(plan: System, robot: str = "") -> tuple[str, ...]:
     """The names of a robot's nodes, or of those for all robots."""
     return tuple(nodes_by_robot(plan)[robot])

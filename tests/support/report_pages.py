@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import nav2_graphs
 from nav2_graphs import TEXT
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.live.diagnose import diagnose

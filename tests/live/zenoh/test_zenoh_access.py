@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 from paths import ROBOTS
-from planned_ends import planned_end
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.conventions import SENT_BY_ANY_NODE
 from multibot_rewrite.cli.multibot import main
