@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 
 from multibot_rewrite.base.file_kinds import PLAN, ROBOTS, recognised, refuse_others
@@ -48,7 +49,9 @@ def _contradictions(plan: System) -> Iterator[str]:
         yield f"layout: missing; it is needed; {json.REMEDY}"
     if nothing := vacuous(plan):
         yield f"{nothing}, so every graph would be as planned; {json.REMEDY}"
-    robots = [it.name for it in plan.robots]
+    robots = Counter(it.name for it in plan.robots)
+    for name in (it for it in robots if robots[it] > 1):
+        yield f"robots: {name} is there twice; join the two"
     for domain in plan.domains:
         if domain.robot and domain.robot not in robots:
             yield f"domains: {unknown('robot', domain.robot, robots)}"

@@ -258,6 +258,7 @@ def test_what_is_wrong_is_said_with_its_place_and_marked(old: str, new: str, sai
     [
         (PLAN._replace(robots=()), "no robot is planned, so every graph would be as planned"),
         (PLAN._replace(nodes=PLAN.nodes[1:2]), "r1 has no node that must run, so every graph"),
+        (PLAN._replace(robots=PLAN.robots * 2), "robots: r1 is there twice; join the two"),
         (PLAN._replace(domains=(Domain("r2", 1),)), "domains: robot 'r2' is not known"),
         (PLAN._replace(domains=(Domain("r1", 233),)), "domains: 233: write a ROS_DOMAIN_ID, 0 to 232"),
         (PLAN._replace(nodes=(DRIVE._replace(lifecycle="on"), *PLAN.nodes[1:])),
