@@ -35,7 +35,7 @@ from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import expect, named_frames, planned_end, vacuous
+from multibot_rewrite.spelling.plan import expect, named_frames, vacuous
 from multibot_rewrite.spelling.records import GivenNode, Run, Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
@@ -312,7 +312,7 @@ def _sends(fleet: Fleet) -> Iterator[Edge]:
 def possible(fleet: Fleet) -> tuple[End, ...]:
     """Every endpoint that its nodes may have, by parameter too."""
     return tuple(
-        planned_end(run.full_name, end.kind, end.role, name, end.type, end.name)
+        End(end.kind, end.role, name, end.type, node=run.full_name, code_name=end.name)
         for run, end, name in fleet.table.ends
         if end.role
     )

@@ -16,7 +16,6 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.records import Rules, Run, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
@@ -175,7 +174,7 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
         action = Endpoint(planned.kind, planned.role, planned.name, planned.type)
         for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
-            yield planned_end(planned.node, kind, role, name, type_, code_name)
+            yield End(kind, role, name, type_, node=planned.node, code_name=code_name)
     else:
         also = tuple(replaced.get(type_, type_) for type_ in planned.also)
         yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)

@@ -30,19 +30,6 @@ NOTHING: Mapping[str, Sequence[str]] = {}
 NO_WORDS: Mapping[str, str] = {}
 
 
-def planned_end(
-    node: str,
-    kind: str,
-    role: str,
-    name: str,
-    type_: str = "",
-    code_name: str = "",
-    also: tuple[str, ...] = (),
-) -> End:
-    """An end of which nothing is known that only a running system shows."""
-    return End(kind, role, name, type_, "", node, None, "", code_name, also)
-
-
 def robot_words(plan: System) -> dict[str, str]:
     """The words that stand for robots, in names and in frames, and the robot of each."""
     return {word: it.name for it in plan.robots for word in (it.name, it.tag) if word}

@@ -175,10 +175,10 @@ class End(NamedTuple):
     role: str
     name: str
     type: str
-    type_hash: str
-    node: str
-    qos: Qos | None
-    process: str
+    type_hash: str = ""
+    node: str = ""
+    qos: Qos | None = None
+    process: str = ""
     code_name: str = ""
     also: tuple[str, ...] = ()
     sure: Sure = RUNS
@@ -195,9 +195,9 @@ class Edge(NamedTuple):
 
     child: str
     parent: str
-    topic: str
-    static: bool
-    publishers: tuple[str, ...]
+    topic: str = ""
+    static: bool = False
+    publishers: tuple[str, ...] = ()
     several: bool = False
     transform: tuple[float, ...] = ()
     rate: float = 0.0
@@ -207,7 +207,7 @@ class Edge(NamedTuple):
 
 def edge_of(parent: str, child: str, static: bool = False) -> Edge:
     """A transform of which neither the topic nor the sender is told."""
-    return Edge(child, parent, "", static, ())
+    return Edge(child, parent, static=static)
 
 
 class Heard(NamedTuple):

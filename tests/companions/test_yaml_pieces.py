@@ -42,7 +42,8 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
     spliced,
 )
-from multibot_rewrite.spelling.plan_file import _quoted
+from multibot_rewrite.system.json import to_yaml
+from multibot_rewrite.system.records import System
 
 
 def read(text: str) -> YamlText:
@@ -70,7 +71,8 @@ def test_words_that_yaml_1_1_reads_as_something_else_are_quoted() -> None:
     """yaml.org/type/bool.html, null.html; rcl reads as YAML 1.1."""
     for word in ("~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"):
         for it in (word, word.upper(), word.title()):
-            assert quoted(it) == _quoted(it) == f'"{it}"'
+            assert quoted(it) == f'"{it}"'
+            assert f'shared_frames: ["{it}"]' in to_yaml(System(shared_frames=(it,)))
 
 
 def test_a_scalar_is_replaced_with_its_quotes() -> None:

@@ -21,8 +21,9 @@ from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
+from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
@@ -227,8 +228,8 @@ def test_the_launch_file_starts_each_robot_in_its_domain(made: Outputs) -> None:
 def test_the_plan_has_the_bridge_on_both_sides_and_comes_back_from_a_file(made: Outputs) -> None:
     plan = made.planned
     assert domain_of(plan) == {"": 10, "robot1": 11, "robot2": 12}
-    for text_ in (to_yaml(plan), to_json(plan)):
-        again = read_plan(text_.encode(), "plan")
+    for data in (to_yaml(plan).encode(), to_json(plan)):
+        again = read_plan(data, "plan")
         assert again.domains == plan.domains
         assert by_domain(again).keys() == {10, 11, 12}
     parts = by_domain(plan)

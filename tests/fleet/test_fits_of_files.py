@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 import yaml
 from paths import ROOT
+from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"
@@ -75,8 +77,8 @@ def build(folder: Path, text: str, **files: str) -> int:
 
 def ends(folder: Path, node: str) -> set[tuple[str, str]]:
     """What the plan says that a node does with topics."""
-    plan = yaml.safe_load((folder / "out" / "plan.yaml").read_text())
-    return {(it[0], it[2]) for it in plan["robots"]["robot1"]["nodes"][node]}
+    plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    return {(it.role, it.name) for it in ends_of(plan, node)}
 
 
 def is_as_planned(folder: Path) -> bool:

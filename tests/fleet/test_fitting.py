@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 import yaml
 from paths import FIXTURES, ROOT
+from plans import ends_of, own
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
@@ -61,8 +63,9 @@ def given(out: Path, parameter: str) -> dict[str, str]:
 
 def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
     """The types of an end in the plan."""
-    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
-    return [it[3] for it in plan[node] if it[0] == role and it[2] == topic]
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    found = [it for it in ends_of(plan, node) if (it.role, it.name) == (role, topic)]
+    return [type_ for it in found for type_ in (it.type, *it.also)]
 
 
 @pytest.mark.parametrize(
@@ -198,12 +201,9 @@ def test_cartographer_gets_its_options(tmp_path: Path) -> None:
 
 def sent_on(out: Path, topic: str) -> list[str]:
     """Who sends on a topic as the written plan has it, by the last word of its name."""
-    plan = yaml.safe_load((out / "plan.yaml").read_text())
-    sent = ["publishes", "topic", topic]
-    nodes = plan["robots"]["robot1"]["nodes"].items()
-    return sorted(
-        name.rpartition("/")[2] for name, ends in nodes if sent in [it[:3] for it in ends]
-    )
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    sent = [it for it in plan.ends if (it.role, it.kind, it.name) == ("publishes", "topic", topic)]
+    return sorted(it.node.rpartition("/")[2] for it in sent if it.node in own(plan, "robot1"))
 
 
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])

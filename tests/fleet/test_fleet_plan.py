@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.fleet import expected, planned
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
 
@@ -87,7 +87,7 @@ def scalars(value: Any) -> Iterator[str]:
 @pytest.mark.slow
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
-    common = {"plan.yaml", ".plan.schema.json", "remappings.yaml", "commands.md", "bridge.yaml"}
+    common = {"plan.yaml", ".system.schema.json", "remappings.yaml", "commands.md", "bridge.yaml"}
     common |= {"fleet.launch.py"}
     # One set of frames for each robot: a layout of Foxglove shows all.
     common |= {"foxglove.json"} if layout != "L1" else set()

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
-from plans import PlannedRobot
+from plans import PlannedRobot, planned_end
 from plans import planned as as_plan
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"

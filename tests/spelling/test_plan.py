@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -16,12 +17,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.spelling.plan import (
-    expect,
-    named_frames,
-    planned_end,
-    tf_topic,
-)
+from multibot_rewrite.spelling.plan import expect, named_frames, tf_topic
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.targets import expanded, placed, target_of

@@ -31,7 +31,7 @@ _FUNCTION = re.compile(r"(?m)^def start_(\w+)\(\):\n(?:(?:[ ].*)?\n)*")
 # The table of the launch file: what starts each robot.
 _TABLE = "\nROBOTS = {\n"
 _ROW = re.compile(r"""(?m)^    ['"](\w+)['"]: .*,\n""")
-_PLANNED = re.compile(r"(?m)^  ([^\s:]+):\n(?:    .*\n)+")
+_PLANNED = re.compile(r"(?m)^- name: ([^\s/]\S*)\n(?:  .*\n)+")
 _FILE = re.compile(r"""(?:file|text)\(['"]([^'"\n]+)['"]\)""")
 _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.])")
 # The read-back looks for an RViz config, and not into it.
