@@ -15,6 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
+from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
@@ -113,7 +114,8 @@ def robot_nodes(
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
     source = member.source
-    standing = _standing(without, given) if _is_mounted(source.root) else without
+    drives = wheels_in(source.root) and not _is_mounted(source.root)
+    standing = without if drives else _standing(without, given)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
