@@ -41,7 +41,10 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Node, Place, Robot, System
 
-START = "start ros2_control_node there, or load gz_ros2_control in the description"
+START = (
+    "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
+    "that starts it beside this one"
+)
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
 MANAGER = ("controller_manager", "ros2_control_node", "controller_manager")
