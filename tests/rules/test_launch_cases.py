@@ -371,6 +371,21 @@ def test_a_stack_may_be_in_another_launch_file(
     assert [*as_one_of_several([other], plan, seen)] == [other]
 
 
+@pytest.mark.parametrize(("started", "level"), [("", "inconclusive"), ("/r2/arm", "error")])
+def test_what_a_node_makes_for_itself_is_left_with_it(started: str, level: str) -> None:
+    """The plan has no stack for it; of two makers the one with the longer name is meant."""
+    nodes = (
+        Node("/r1/arm", stack="moveit"),
+        Node("/r2/arm", stack="moveit"),
+        Node("/r1/arm_private_*"),
+        Node("/r1/a", stack="nav2"),
+    )
+    seen = System(tuple(map(Node, ("/r1/a", started))))
+    found = missing_node.finding("x", "y", node="/r1/arm_private_*")
+    (told,) = as_one_of_several([found], System(nodes), seen)
+    assert told.level == level
+
+
 def managed(*names: str, **values: object) -> LaunchedNode:
     given = {"autostart": True, "node_names": [*names], **values}
     return started(*LIFECYCLE, parameters=with_values(given))
