@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``check-launch`` names the argument with which a controller manager is started, where there is one."""
+"""``check-launch`` names the argument with which a controller manager is started, if there is one."""
 
 from __future__ import annotations
 

@@ -384,6 +384,44 @@ def test_what_behaviors_pass_on_when_asked_is_no_way_to_the_drive() -> None:
     assert entry_of("x", ring) in "xy"
 
 
+TRANSFORMS = (
+    "- {{ros_topic_name: {}, gz_topic_name: {}, direction: {},\n"
+    "   ros_type_name: tf2_msgs/msg/TFMessage, gz_type_name: gz.msgs.Pose_V}}\n"
+)
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "postfix"])
+@pytest.mark.parametrize(
+    ("rows_", "places"),
+    [
+        ([("odom_tf", "tf", "GZ_TO_ROS")], True),
+        ([("/truth", "/tf", "GZ_TO_ROS")], True),
+        ([("tf", "tf", "GZ_TO_ROS")], False),
+        ([("odom_tf", "tf", "GZ_TO_ROS"), ("tf", "tf", "GZ_TO_ROS")], False),
+        # The transform of the drive has a row that the build adds.
+        ([("truth", "/world/w/pose", "GZ_TO_ROS")], False),
+    ],
+)
+def test_a_filter_places_the_robot_where_the_bridge_has_no_tf(
+    rows_: list[tuple[str, str, str]],
+    places: bool,
+    layout: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """One of the two sends odom to base_link on tf: never both, never none."""
+    (tmp_path / "bridge.yaml").write_text("".join(TRANSFORMS.format(*it) for it in rows_))
+    text = "distro: jazzy\nsimulator: gazebo\nstack: robot_localization\n"
+    text += "companions: {bridge: bridge.yaml}"
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{text}\n{ROBOTS}\n")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    told = capsys.readouterr().err
+    assert "MG408" not in told
+    assert "MG406" not in told
+    assert [*given(out, "publish_tf").values()] == ([] if places else ["False"])
+
+
 def test_a_static_transform_without_frames_is_left_out(tmp_path: Path) -> None:
     """Its program ends at once without them; a file that names the node has it started."""
     text = "distro: jazzy\nsimulator: gazebo\nstack: [static_tf]"

@@ -30,7 +30,11 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
 from multibot_rewrite.fleet.robots.fitting.frames import changed_frames, fitting_frames, with_frames
-from multibot_rewrite.fleet.robots.fitting.transforms import sends_too, sent_by_controllers
+from multibot_rewrite.fleet.robots.fitting.transforms import (
+    is_led_elsewhere,
+    sends_too,
+    sent_by_controllers,
+)
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -140,7 +144,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    is_placed = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed
     return RobotEvidence(given, known, marked, said, spawned, *more)
 

@@ -86,8 +86,8 @@ def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> I
 
 
 def _source(node: str, sources: Mapping[str, str]) -> str:
-    """Return the stack or file of a planned node; that of its maker for one that a node makes for itself,
-    as /move_group_private_*, whose name begins with that of the maker."""
+    """Return the stack or file of a planned node. One that a node makes for itself has that of its
+    maker, with whose name its own begins: /move_group_private_*."""
     if source := sources.get(node, ""):
         return source
     makers = (it for it in sources if it != node and node.startswith(it))
