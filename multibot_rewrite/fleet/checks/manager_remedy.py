@@ -15,6 +15,7 @@ from multibot_rewrite.producers.launch.include_arguments import arguments_declar
 from multibot_rewrite.producers.launch.kept_paths import read_text
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.launch.started import START_MANAGER, no_manager
 
 Read = Callable[[Sequence[LaunchOrder]], Launched]
@@ -32,8 +33,12 @@ def with_remedies(
     return [it._replace(hint=remedy) if _is_open(it) else it for it in every]
 
 
+def _is_missing(it: Finding) -> bool:
+    return it.code == no_manager.code
+
+
 def _is_open(it: Finding) -> bool:
-    return (it.code, it.level, it.hint) == (no_manager.code, ERROR, START_MANAGER)
+    return _is_missing(it) and it.level == ERROR and it.hint == START_MANAGER
 
 
 def _argument(orders: Sequence[LaunchOrder], read: Read) -> str:
@@ -41,7 +46,7 @@ def _argument(orders: Sequence[LaunchOrder], read: Read) -> str:
     for name, value in islice(_choices(orders), MOST):
         with suppress(MultibotError):
             other = read([_with(it, name, value) for it in orders])
-            if other.models.found and not any(no_manager.check(other)):
+            if other.models.found and not any(map(_is_missing, judge_launch(other))):
                 return f"add {name}:={value}, with which a manager is started"
     return ""
 
