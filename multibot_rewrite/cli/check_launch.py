@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Sequence
+from functools import partial
 
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
@@ -13,6 +14,7 @@ from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.fleet.checks.manager_remedy import with_remedies
 from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
@@ -27,13 +29,14 @@ def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
     orders = orders_of(options, options.words)
     _check_use(options, orders)
-    plan = check.plan_of(options) if options.plan else None
+    plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
     told = release_told(options.distro) or (plan.release if plan else "")
-    made = launched_by(orders, told, *own_nodes(options))
+    read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
+    made = read(orders)
     for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
-    found = [*judge_launch(made), *named_findings(made)]
+    found = [*with_remedies(judge_launch(made), orders, read), *named_findings(made)]
     if options.format != "text":
         found += not_read(made.graph)
     if plan is not None:

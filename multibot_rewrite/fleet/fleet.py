@@ -68,7 +68,8 @@ class Fleet(NamedTuple):
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
     ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
-    robots whose files have a node that sends the transform which their drive sends, too."""
+    robots whose files have a node that sends the transform which their drive sends, too, or that
+    transform on another topic."""
 
     table: Table
     inventories: dict[str, Inventory]

@@ -220,3 +220,50 @@ def test_a_manager_that_no_stack_starts_is_one_finding(
     assert ("'-c', f'controller_manager_{name}'" in launch.replace('"', "'")) == (
         layout == "postfix"
     )
+
+
+ASSISTED = """behavior_server:
+  ros__parameters:
+    behavior_plugins: [assisted_teleop]
+    assisted_teleop: {{plugin: "nav2_behaviors::AssistedTeleop"}}
+{}"""
+MUX = """twist_mux:
+  ros__parameters:
+{}    topics:
+      navigation: {{topic: nav_vel, timeout: 0.5, priority: 10}}
+      teleop: {{topic: joy_vel, timeout: 0.5, priority: 100}}
+"""
+
+
+@pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize(
+    ("behaviors", "mux"),
+    [("", "use_stamped: true"), ("", ""), ("enable_stamped_cmd_vel: true", "")],
+)
+def test_assisted_teleop_takes_the_type_of_its_server(
+    behaviors: str, mux: str, release: str, stack: str, tmp_path: Path
+) -> None:
+    """nav2_behaviors assisted_teleop.cpp: a TwistSubscriber, which asks for the server's
+    enable_stamped_cmd_vel; the build sets that where the files leave it open."""
+    nav2, own = (f"    {it}\n" if it else "" for it in (behaviors, mux))
+    text = f"layout: both\ndistro: {release}\nstack: {stack}\ndescription: {ROVER}\n"
+    files = {"nav2_yaml": ASSISTED.format(nav2), "mux_yaml": MUX.format(own)}
+    assert build(tmp_path, f"{text}companions: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
+    plan = yaml.safe_load((tmp_path / "out" / "plan.yaml").read_text())
+    of_server = plan["robots"]["robot1"]["nodes"]["/robot1/behavior_server"]
+    assert "/robot1/cmd_vel_teleop" in {it[2] for it in of_server}
+    assert len({it[3] for it in of_server if "/Twist" in it[3]}) == 1
+
+
+@pytest.mark.parametrize("layout", ["both", "postfix"])
+def test_a_mux_that_the_build_starts_sends_to_the_drive(layout: str, tmp_path: Path) -> None:
+    """Its output has a name that is there to be remapped (twist_mux.cpp: cmd_vel_out)."""
+    text = f"layout: {layout}\ndistro: jazzy\nstack: [twist_mux]\ndescription: {ROVER}\n"
+    more = "companions: {params: mux.yaml}\n"
+    assert build(tmp_path, text + more, mux_yaml=MUX.format("")) == 0
+    node, topic = ("/twist_mux_robot1", "/cmd_vel/robot1")
+    if layout == "both":
+        node, topic = "/robot1/twist_mux", "/robot1/cmd_vel"
+    assert ("publishes", topic) in ends(tmp_path, node)
+    assert is_as_planned(tmp_path)

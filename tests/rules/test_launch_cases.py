@@ -41,7 +41,10 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Node, Place, Robot, System
 
-START = "start ros2_control_node there, or load gz_ros2_control in the description"
+START = (
+    "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
+    "that starts it beside this one"
+)
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
 MANAGER = ("controller_manager", "ros2_control_node", "controller_manager")
@@ -366,6 +369,21 @@ def test_a_stack_may_be_in_another_launch_file(
     assert hints == {LEFT}
     other = unplanned_node.finding("x", "y", node="/r1/amcl")
     assert [*as_one_of_several([other], plan, seen)] == [other]
+
+
+@pytest.mark.parametrize(("started", "level"), [("", "inconclusive"), ("/r2/arm", "error")])
+def test_what_a_node_makes_for_itself_is_left_with_it(started: str, level: str) -> None:
+    """The plan has no stack for it; of two makers the one with the longer name is meant."""
+    nodes = (
+        Node("/r1/arm", stack="moveit"),
+        Node("/r2/arm", stack="moveit"),
+        Node("/r1/arm_private_*"),
+        Node("/r1/a", stack="nav2"),
+    )
+    seen = System(tuple(map(Node, ("/r1/a", started))))
+    found = missing_node.finding("x", "y", node="/r1/arm_private_*")
+    (told,) = as_one_of_several([found], System(nodes), seen)
+    assert told.level == level
 
 
 def managed(*names: str, **values: object) -> LaunchedNode:

@@ -36,6 +36,11 @@ MOST = 8
 Suits = Callable[[_Element], bool]
 
 
+def is_called_as_switch(argument: str) -> bool:
+    """Is an argument called as those are that switch between the simulated and the real robot?"""
+    return _NAME.search(argument.lower()) is not None
+
+
 def hardware_classes(root: _Element) -> list[str]:
     """The hardware classes of a description's ``<ros2_control>``."""
     found = (it.text or "" for it in root.iterfind(".//ros2_control/hardware/plugin"))
@@ -103,7 +108,7 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
         for it in read_document(data, file).root.iter("{*}arg"):
             declared.setdefault(it.get("name", ""), it.get("default", ""))
     every = {**declared, **given}
-    named = [it for it in every if _NAME.search(it.lower()) and every[it] in _OTHERS]
+    named = [it for it in every if is_called_as_switch(it) and every[it] in _OTHERS]
     yield from ((it, _OTHERS[every[it]]) for it in named[:MOST])
     text = b"\n".join(sources.values()).decode("utf-8", "replace")
     words = (

@@ -15,6 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
+from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
@@ -29,7 +30,11 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
 from multibot_rewrite.fleet.robots.fitting.frames import changed_frames, fitting_frames, with_frames
-from multibot_rewrite.fleet.robots.fitting.transforms import sends_too, sent_by_controllers
+from multibot_rewrite.fleet.robots.fitting.transforms import (
+    is_led_elsewhere,
+    sends_too,
+    sent_by_controllers,
+)
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
@@ -113,7 +118,8 @@ def robot_nodes(
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
     source = member.source
-    standing = _standing(without, given) if _is_mounted(source.root) else without
+    drives = wheels_in(source.root) and not _is_mounted(source.root)
+    standing = without if drives else _standing(without, given)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -138,7 +144,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    is_placed = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed
     return RobotEvidence(given, known, marked, said, spawned, *more)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
@@ -78,12 +78,20 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
     """What is missing by a plan: a stack or parameter file of which the launch file starts no node for
     any robot is left to another one, as a vendor's bringup starts its own nodes."""
-    there = {it.name for it in seen.nodes}
-    begun = {it.stack or it.place.file for it in plan.nodes if it.name in there}
-    left = {it.name for it in plan.nodes if (it.stack or it.place.file) not in {*begun, ""}}
+    sources = {it.name: it.stack or it.place.file for it in plan.nodes}
+    begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
-        is_left = it.code == missing_node.code and it.node in left
+        is_left = it.code == missing_node.code and _source(it.node, sources) not in begun
         yield it._replace(level=INCONCLUSIVE, hint=_LEFT) if is_left else it
+
+
+def _source(node: str, sources: Mapping[str, str]) -> str:
+    """Return the stack or file of a planned node. One that a node makes for itself has that of its
+    maker, with whose name its own begins: /move_group_private_*."""
+    if source := sources.get(node, ""):
+        return source
+    makers = (it for it in sources if it != node and node.startswith(it))
+    return sources.get(max(makers, key=len, default=""), "")
 
 
 def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:

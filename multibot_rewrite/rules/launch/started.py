@@ -29,7 +29,10 @@ from multibot_rewrite.rules.launch.joints import read_by_joints
 from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import SERVICE
 
-_START = "start ros2_control_node there, or load gz_ros2_control in the description"
+START_MANAGER = (
+    "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
+    "that starts it beside this one"
+)
 _CHANGE, _BOND = "/change_state", "bond"
 _UNSURE = "a node that is not known may; see what is incomplete"
 _ELSEWHERE = "name the launch file that does beside this one, if there is one"
@@ -68,7 +71,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
         if near := nearest(manager, there) or next(iter(there), ""):
             yield at(no_manager, mine[0].place, message, f"did you mean {near}?")
         elif described and _is_known(launched):
-            yield at(no_manager, mine[0].place, message, _START)
+            yield at(no_manager, mine[0].place, message, START_MANAGER)
         else:
             hint = _ELSEWHERE if _is_known(launched) else _UNSURE
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)

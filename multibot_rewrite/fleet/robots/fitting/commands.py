@@ -5,12 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.conventions import is_tool_word
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
     COMMANDS,
+    CommandEnd,
     controllers,
+    entry_of,
     topic_of,
     topics_of,
     usual_values,
@@ -46,6 +49,33 @@ def _sending(node: NodeFacts, heard: Collection[str], drive: str) -> NodeFacts:
         for it in node.endpoints
     )
     return node if node.host else node._replace(endpoints=tuple(ends))
+
+
+def by_way_of_relays(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
+    """Return the nodes; ``own`` ones with which a person drives send to the first of what limits or
+    chooses the commands of the drive, and not past it."""
+    ends = [
+        CommandEnd(node.name, it.role, topic_of(node, it), it.type, it.parameter)
+        for node in nodes
+        for it in node.endpoints
+        if it.type in COMMANDS and not it.when
+    ]
+    return [
+        _at_entry(it, ends) if it.name in own and not it.host and is_tool_word(it.kind) else it
+        for it in nodes
+    ]
+
+
+def _at_entry(node: NodeFacts, ends: Sequence[CommandEnd]) -> NodeFacts:
+    moved = (
+        it._replace(remapped=entry)
+        if it.role == PUBLISHES
+        and it.type in COMMANDS
+        and (entry := entry_of(topic := topic_of(node, it), ends)) != topic
+        else it
+        for it in node.endpoints
+    )
+    return node._replace(endpoints=tuple(moved))
 
 
 def of_one_type(

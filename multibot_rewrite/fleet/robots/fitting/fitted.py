@@ -12,9 +12,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
-from multibot_rewrite.fleet.robots.fitting.commands import driving, of_one_type
+from multibot_rewrite.fleet.robots.fitting.commands import by_way_of_relays, driving, of_one_type
 from multibot_rewrite.fleet.robots.fitting.frames import root_link, with_root
-from multibot_rewrite.fleet.robots.fitting.mux import own_mux, through_a_mux
+from multibot_rewrite.fleet.robots.fitting.mux import own_mux, through_a_mux, to_the_drive
 from multibot_rewrite.fleet.robots.fitting.node_topics import usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
     by_sensor,
@@ -74,10 +74,12 @@ def fitted(
         for it in nodes
     ]
     muxes = own_mux(settled, own)
+    settled = [to_the_drive(it) if it.name in muxes else it for it in settled]
     usual = dict(one for it in nodes if it.name in muxes for one in it.usual)
     if muxes:
         settled = [*through_a_mux(driving(settled, muxes), own, usual, known[TWIST_MUX])]
-    typed = of_one_type(driving(settled, own), own, free, given, known, spec)
+    routed = by_way_of_relays(driving(settled, own), own)
+    typed = of_one_type(routed, own, free, given, known, spec)
     return tuple(without_second_senders(typed, free, has.sent))
 
 

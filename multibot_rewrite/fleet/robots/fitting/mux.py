@@ -15,6 +15,8 @@ from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 # The parameters of an input, and what the stack calls the one of a planner.
 _INPUT, _OF_PLANNER = "topics.{}.", "navigation"
+# What the output of a mux is called where a drive obeys it.
+_DRIVE = "cmd_vel"
 # What an input gets behind its name where the mux would hear itself.
 _APART = "_in"
 Usual = Mapping[str, str | float]
@@ -31,6 +33,18 @@ class _Mux(NamedTuple):
 def own_mux(nodes: Iterable[NodeFacts], added: Collection[str]) -> tuple[str, ...]:
     """Return the name of the twist_mux that the build starts, if there is one."""
     return tuple(it.name for it in nodes if it.kind == TWIST_MUX and it.name in added)[:1]
+
+
+def to_the_drive(node: NodeFacts) -> NodeFacts:
+    """Return the twist_mux with its output on the usual topic of a drive, where no rule has it on
+    another: its own name is there to be remapped."""
+    ends = (
+        it._replace(remapped=it.remapped or _DRIVE)
+        if it.role == PUBLISHES and it.type in COMMANDS
+        else it
+        for it in node.endpoints
+    )
+    return node._replace(endpoints=tuple(ends))
 
 
 def through_a_mux(

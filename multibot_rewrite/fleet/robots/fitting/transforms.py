@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.conventions import BODY_FRAMES
@@ -11,32 +12,58 @@ from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_o
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import parse_condition
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.filling import sent_with
+from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.spelling.transforms import sent_by
-from multibot_rewrite.system.records import NOWHERE, Edge, edge_of
+from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.tool_nodes import last_word
 
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
+_TF = "tf"
 
 
 def sent_by_plugins(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
-    """Return the transforms that plugins of the description send; none of a real robot."""
+    """Return the transforms that plugins of the description send to tf; none of a real robot."""
     if spec.simulator == REAL:
         return ()
-    source = member.source
-    found: list[Edge] = []
-    for host, section in collect(source, member.tree).served:
+    elsewhere = _led_elsewhere(spec)
+    found = (edge for topic, edge in _sent_by_systems(member) if topic not in elsewhere)
+    return (*found, *(it for node in plugins(member) for it in sent_by(node, "")))
+
+
+def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
+    """Has a bridge file of the robot the transform of its drive on another topic than tf?"""
+    elsewhere = _led_elsewhere(spec)
+    return bool(elsewhere) and any(topic in elsewhere for topic, _ in _sent_by_systems(member))
+
+
+def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
+    """Yield the transforms of the simulator's systems, each with the last word of its topic there."""
+    for host, section in collect(member.source, member.tree).served:
         sites = frame_sites(host, section, _NAMING)
         frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
         if len(frames) == 2:
             parent, child = (it.removeprefix(MODEL) for it in frames)
-            found.append(edge_of(parent, child))
-    return (*found, *(it for node in plugins(member) for it in sent_by(node, "")))
+            yield last_word(text_at(host, TF_ELEMENT) or _TF), edge_of(parent, child)
+
+
+def _led_elsewhere(spec: RobotSpec) -> set[str]:
+    """Return the last words of the simulator's topics with transforms that bridge files of the robot
+    have on no tf."""
+    led: dict[str, set[str]] = defaultdict(set)
+    for path in spec.companions.get("bridge", ()):
+        for it in bridge_rows(own_yaml(spec, path)):
+            if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
+                led[last_word(it.inside)].add(last_word(it.end.name))
+    return {inside for inside, names in led.items() if _TF not in names}
 
 
 def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
